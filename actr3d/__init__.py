@@ -1,0 +1,1 @@
+"""ACT-R 3D: cognitive models in physical bodies, run in exact lockstep."""

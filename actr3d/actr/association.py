@@ -1,0 +1,106 @@
+"""Activation from what went before: learned associations, and inhibition of what was just used."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from actr3d.actr.activation import DMBaseLevel, MemorySubModule
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.profile import PYTHON_ACTR
+
+if TYPE_CHECKING:
+    from actr3d.actr.memory import Memory
+
+
+class _Link:
+    """An association between two slot values; it has a base level as chunks have."""
+
+
+class DMAssociate(MemorySubModule):
+    """Learns which values are retrieved after which: each retrieval strengthens the links from the buffer's values.
+
+    Args:
+        memory: The memory.
+        buffer: Whose chunk is the context.
+        weight: What the sum of the links' base levels is multiplied with.
+        decay: Of the links' base level.
+        limit: As in `DMBaseLevel`.
+    """
+
+    def __init__(self, memory: Memory, buffer: Any, weight: float = 1, decay: float | None = 0.5, limit: int | None = None) -> None:
+        MemorySubModule.__init__(self, memory)
+        self._buffer = buffer
+        self._links: dict[tuple[Any, Any], Any] = {}
+        self._base = DMBaseLevel(None, decay=decay, limit=limit)
+        self.weight = weight
+
+    def set_association(self, pre: Any, post: Any, baselevel: float) -> None:
+        """Fixes the strength of the link from one value to another."""
+        self._link(pre, post).baselevel = baselevel
+
+    def _link(self, pre: Any, post: Any) -> Any:
+        link = self._links.get((pre, post))
+        if link is None:
+            link = self._links[pre, post] = _Link()
+            self._time().create(link)
+        return link
+
+    def _time(self) -> DMBaseLevel:
+        """Returns the links' base level, on the memory's clock; in Python ACT-R 1.9.5 it has none: no time passes for links."""
+        self._base.parent = None if self.rules is PYTHON_ACTR else self.parent
+        return self._base
+
+    def recalled(self, chunk: Any) -> None:
+        context: Chunk | None = self._buffer.chunk
+        if context is None:
+            return
+        base = self._time()
+        for pre in context.values():
+            for post in chunk.values():
+                if (pre, post) in self._links:
+                    base.merge(self._links[pre, post])
+                else:
+                    self._link(pre, post)
+
+    def activation(self, chunk: Any) -> float:
+        context: Chunk | None = self._buffer.chunk
+        if context is None:
+            return 0
+        base = self._time()
+        total = 0.0
+        for pre in context.values():
+            for post in chunk.values():
+                link = self._links.get((pre, post))
+                if link is not None:
+                    total += base.activation(link)
+        return total * self.weight
+
+
+class DMInhibition(MemorySubModule):
+    """Inhibits what was used lately: -ln(1 + t^-decayScale / timeScale), t since its latest use [s].
+
+    Args:
+        memory: The memory.
+        decayScale: How quickly inhibition goes.
+        timeScale: How long it lasts [s].
+
+    Source: Lebiere & Best (2009), Proceedings of the Cognitive Science Society.
+    """
+
+    def __init__(self, memory: Memory, decayScale: float = 1.0, timeScale: float = 5.0) -> None:  # noqa: N803
+        MemorySubModule.__init__(self, memory)
+        self.decayScale = decayScale
+        self.timeScale = timeScale
+
+    def create(self, chunk: Any, time: float = 0.0, **keys: Any) -> None:
+        chunk.mostRecentTime = time
+
+    def merge(self, chunk: Any, time: float = 0.0, **keys: Any) -> None:
+        chunk.mostRecentTime = self.now()
+
+    def activation(self, chunk: Any) -> float:
+        age = self.now() - chunk.mostRecentTime
+        if age <= 0:
+            age = self.rules.youngest_age
+        return -math.log(1 + math.pow(age, -self.decayScale) / self.timeScale)

@@ -1,0 +1,87 @@
+"""Buffers: each holds one chunk, or nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.model import Model, traceable
+from actr3d.errors import ChunkError, did_you_mean
+from actr3d.trace import Trace
+
+
+class Buffer(Model):
+    """Holds at most one chunk; its slots are read by `buffer[slot]` and matched by productions."""
+
+    chunk: Chunk | None
+
+    def __init__(self) -> None:
+        self.chunk = None
+
+    def set(self, chunk: object) -> None:
+        """Puts a new chunk in; `?name` in a text stands for what the firing production has bound.
+
+        Raises:
+            ChunkError: If the contents make no chunk, or a variable is not bound.
+        """
+        sch = self.__dict__.get("sch")
+        new = Chunk(chunk, sch.bound if sch is not None else None)
+        self._harvest()
+        self.chunk = new
+
+    def modify(self, **args: Any) -> None:
+        """Changes slots of the chunk: `modify(count=3)`, and `modify(_1='b')` for the slot numbered 1.
+
+        Raises:
+            ChunkError: If the buffer is empty, or its chunk has no such slot.
+        """
+        for name, value in args.items():
+            chunk = self.chunk
+            if chunk is None:
+                raise ChunkError(f"buffer '{self.name}' is empty: there is no slot '{name}' to modify; use set")
+            slot = int(name[1:]) if name[0] == "_" and name[1:].isdecimal() else name
+            if slot not in chunk:
+                raise ChunkError(
+                    f"buffer '{self.name}': no slot '{slot}' to modify to {value!r}{did_you_mean(str(slot), chunk)}; the chunk is '{chunk}'"
+                )
+            chunk[slot] = value
+            self.chunk = chunk
+
+    def clear(self) -> None:
+        """Empties the buffer."""
+        self._harvest()
+        self.chunk = None
+
+    def isEmpty(self) -> bool:  # noqa: N802 - Python ACT-R's name
+        """Tells whether there is no chunk, or one without slots."""
+        return len(self) == 0
+
+    def _harvest(self) -> None:
+        """Gives a chunk that is about to leave to declarative memory, where the agent's profile asks for it (ACT-R 7)."""
+        profile = self._profile
+        if profile is not None and profile.harvest and self.chunk and self.parent is not None:
+            for part in self.parent.get_children():
+                collect = getattr(part, "_collect", None)
+                if collect is not None:
+                    collect(self.chunk)
+
+    def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
+        if key != "chunk":
+            super()._trace_change(trace, key, value)
+        elif trace.buffer:
+            trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(value)})
+
+    def __getitem__(self, key: Any) -> Any:
+        chunk = self.chunk
+        if chunk is None:
+            raise TypeError(f"buffer '{self.name}' is empty: it has no slot '{key}'")
+        return chunk[key]
+
+    def __eq__(self, other: object) -> bool:
+        return self.chunk == other
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    def __len__(self) -> int:
+        return 0 if self.chunk is None else len(self.chunk)

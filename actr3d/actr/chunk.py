@@ -1,0 +1,143 @@
+"""Chunks: slots with values, and how text becomes one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, cast
+
+from actr3d.errors import ChunkError, did_you_mean
+
+if TYPE_CHECKING:
+    from actr3d.actr.store import ChunkStore
+
+Slot = int | str
+PLAIN = (str, float, int, bool)
+"""The types of attribute that a chunk takes over from an object."""
+
+
+def as_text(value: object) -> str:
+    """Returns a slot's value as patterns compare it: text as it is, floats as `%g`, anything else by `repr`."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float):
+        return f"{value:g}"
+    return repr(value)
+
+
+@lru_cache(maxsize=4096)
+def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:
+    """Splits a chunk's text into slots and values.
+
+    A word without a colon goes to the slot numbered by its place, `slot:value` to the named slot, where only the first
+    colon counts.
+    """
+    slots: list[tuple[Slot, str]] = []
+    for place, word in enumerate(text.split()):
+        if ":" in word:
+            name, value = word.split(":", 1)
+            slots.append((name, value))
+        else:
+            slots.append((place, word))
+    return tuple(slots)
+
+
+def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any:
+    """Returns the value of the bound variable `?name` that stands in `text`.
+
+    Raises:
+        ChunkError: If no production has bound it.
+    """
+    if bound is not None and name in bound:
+        return bound[name]
+    known = sorted(str(key) for key in bound) if bound else []
+    among = f"bound here: {', '.join('?' + k for k in known)}" if known else "no variable is bound here"
+    raise ChunkError(f"chunk '{text}': '?{name}' is not bound{did_you_mean(name, known)} ({among})")
+
+
+class Chunk(dict[Any, Any]):
+    """A set of slots and their values.
+
+    Args:
+        contents: Text (`'a:1 b:2'`, `'hello world'`, `'?x ?y'`), a mapping (its values keep their types), another
+            chunk, a buffer (its chunk), or any object (its public attributes that are text or numbers).
+        bound: The variables that `?name` in a text stands for.
+
+    Raises:
+        ChunkError: If the contents are of no such kind, or a variable is not bound.
+    """
+
+    def __init__(self, contents: object, bound: Mapping[str, Any] | None = None) -> None:
+        super().__init__()
+        if isinstance(contents, str):
+            for slot, value in parse_slots(contents):
+                dict.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
+            return
+        inner = getattr(contents, "chunk", None)
+        if isinstance(inner, Chunk):  # a buffer
+            contents = inner
+        if isinstance(contents, Mapping):
+            dict.update(self, cast("Mapping[Any, Any]", contents))
+        elif hasattr(contents, "__dict__") and not isinstance(contents, type):
+            dict.update(self, {key: value for key, value in vars(contents).items() if type(value) in PLAIN and key[0] != "_"})
+        else:
+            try:
+                dict.update(self, cast("Any", contents))
+            except (TypeError, ValueError):
+                raise ChunkError(f"a chunk is made of text, a mapping, a chunk or an object (got {contents!r})") from None
+
+    def __repr__(self) -> str:
+        """Positional slots in order, then the named ones sorted; slots that begin with `_` are left out."""
+        words: list[str] = []
+        place = 0
+        while place in self:
+            words.append(f"{self[place]}")
+            place += 1
+        rest = [key for key in self if not (type(key) is int and 0 <= key < place)]
+        words += [f"{key}:{self[key]}" for key in sorted(rest, key=str) if str(key)[:1] != "_"]
+        return " ".join(words)
+
+    __str__ = __repr__
+
+    def copy(self) -> Chunk:
+        """Returns a chunk with the same slots, known to no memory."""
+        return Chunk(self)
+
+    # A chunk that lies in a declarative memory tells it of every change, because the memory finds chunks by their
+    # slots; for all others `_store` is None.
+    _store: ChunkStore | None = None
+
+    def _changed(self) -> None:
+        if self._store is not None:
+            self._store.forget_order()
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        dict.__setitem__(self, key, value)
+        self._changed()
+
+    def __delitem__(self, key: Any) -> None:
+        dict.__delitem__(self, key)
+        self._changed()
+
+    def update(self, *args: Any, **keys: Any) -> None:
+        dict.update(self, *args, **keys)
+        self._changed()
+
+    def setdefault(self, key: Any, default: Any = None) -> Any:
+        value = dict.setdefault(self, key, default)
+        self._changed()
+        return value
+
+    def pop(self, *args: Any) -> Any:
+        value = dict.pop(self, *args)
+        self._changed()
+        return value
+
+    def popitem(self) -> tuple[Any, Any]:
+        item = dict.popitem(self)
+        self._changed()
+        return item
+
+    def clear(self) -> None:
+        dict.clear(self)
+        self._changed()

@@ -1,0 +1,158 @@
+"""Loads and runs model files: as programs, unchanged, from a file or from text."""
+
+from __future__ import annotations
+
+import io
+import linecache
+import random
+import sys
+import tokenize
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from actr3d.actr import logger as logs
+from actr3d.actr.aliases import aliases
+from actr3d.actr.limits import EndOfRun, RunLimits
+from actr3d.actr.python2 import python_2_reason
+from actr3d.errors import ModelFileError, did_you_mean
+
+
+def read_source(path: Path) -> str:
+    """Returns a model file's text, in the encoding it declares.
+
+    Raises:
+        ModelFileError: If there is no such file, or it is no text.
+    """
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        near = [p.name for p in path.parent.glob("*.py")] if path.parent.is_dir() else []
+        raise ModelFileError(f"no model file '{path}'{did_you_mean(path.name, near)}") from None
+    except IsADirectoryError:
+        raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
+    except OSError as error:
+        raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+    except (SyntaxError, UnicodeDecodeError, LookupError) as error:
+        raise ModelFileError(f"'{path}' is no Python source: {error}") from None
+
+
+def compile_source(source: str, filename: str) -> Any:
+    """Compiles a model's text, and makes it known to tracebacks.
+
+    Raises:
+        ModelFileError: If it is no Python 3; the message names the line, and says so where it is Python 2.
+    """
+    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
+    try:
+        return compile(source, filename, "exec", dont_inherit=True)
+    except SyntaxError as error:
+        reason = python_2_reason(source, error)
+        line = error.lineno or 0
+        text = (error.text or "").strip()
+        if reason is not None:
+            line, reason = reason
+            raise ModelFileError(f"{filename}:{line}: this file is written for Python 2 ({reason}); convert it to Python 3") from None
+        raise ModelFileError(f"{filename}:{line}: {error.msg}" + (f": {text}" if text else "")) from None
+    except ValueError as error:  # NUL bytes
+        raise ModelFileError(f"'{filename}' is no Python source: {error}") from None
+
+
+@contextmanager
+def _as_main(module: ModuleType, folder: Path) -> Iterator[None]:
+    """Lets a module be the program: `__main__`, its folder first on the path, and its own helper modules gone afterwards."""
+    main, path, known = sys.modules.get("__main__"), list(sys.path), set(sys.modules)
+    sys.modules["__main__"] = module
+    sys.path.insert(0, str(folder))
+    try:
+        yield
+    finally:
+        sys.path[:] = path
+        if main is not None:
+            sys.modules["__main__"] = main
+        for name in set(sys.modules) - known:
+            file = getattr(sys.modules[name], "__file__", None)
+            if file is not None and Path(file).is_relative_to(folder) and not Path(file).is_relative_to(sys.prefix):
+                del sys.modules[name]
+
+
+def run_text(
+    source: str,
+    filename: str = "<model>",
+    *,
+    limits: RunLimits | None = None,
+    folder: Path | None = None,
+    names: dict[str, Any] | None = None,
+    prepare: Callable[[ModuleType], None] | None = None,
+) -> ModuleType:
+    """Runs a model's text as a program.
+
+    Args:
+        source: The program.
+        filename: How tracebacks call it.
+        limits: Its seed, end and trace; None for a fresh seed, no end and no trace.
+        folder: Where it finds its own helper modules; the present folder unless given.
+        names: Globals it starts with.
+        prepare: Called with the module before it runs.
+
+    Returns:
+        The program's module, as it is in the end.
+
+    Raises:
+        ModelFileError: If it is no Python 3.
+        Exception: Whatever the program raises.
+    """
+    code = compile_source(source, filename)
+    module = ModuleType("__main__")
+    module.__dict__.update(__file__=filename, __builtins__=__builtins__, **(names or {}))
+    if prepare is not None:
+        prepare(module)
+    limits = limits or RunLimits()
+    restore = logs.settings()
+    logs.LOG.announce = False
+    state = random.getstate()
+    with ExitStack() as stack:
+        stack.callback(random.setstate, state)
+        stack.callback(restore)
+        stack.enter_context(limits)
+        stack.enter_context(aliases())
+        stack.enter_context(_as_main(module, (folder or Path.cwd()).resolve()))
+        if limits.seed is not None:
+            random.seed(limits.seed)
+        logs.LOG.source = filename
+        with suppress(EndOfRun):
+            exec(code, module.__dict__)
+        logs.finished()
+    return module
+
+
+def run_file(path: Path | str, *, limits: RunLimits | None = None) -> ModuleType:
+    """Runs a model file as a program; see `run_text`.
+
+    Raises:
+        ModelFileError: If there is no such file, or it is no Python 3.
+        Exception: Whatever the program raises.
+    """
+    path = Path(path)
+    return run_text(read_source(path), str(path), limits=limits, folder=path.parent)
+
+
+def load_text(source: str, filename: str = "<model>") -> ModuleType:
+    """Loads a model's text as a module; its classes can be used afterwards.
+
+    Raises:
+        ModelFileError: If it is no Python 3.
+        Exception: Whatever its top level raises.
+    """
+    code = compile_source(source, filename)
+    module = ModuleType(f"actr3d_model_{abs(hash(filename))}")
+    module.__file__ = filename
+    sys.modules[module.__name__] = module  # dataclasses and pickling look a class's module up
+    with aliases():
+        exec(code, module.__dict__)
+    return module

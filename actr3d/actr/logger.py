@@ -1,0 +1,214 @@
+"""The logs of Python ACT-R: lines of text, an HTML table, data files, and a summary.
+
+A log is written by setting attributes: `log.score = 3`, `agent.log.mood = 'good'`; `log_everything` makes every change
+of every model's attributes such a line. Where times of several runs follow one another in one program, a line's time is
+that of the latest step of any run, as in python_actr 1.9.5.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, cast
+
+BASIC = (int, float, bool, str, tuple, list, dict)
+
+
+class Log:
+    """Where all log lines of a program go."""
+
+    def __init__(self) -> None:
+        self.time = 0.0
+        self.do_screen = True
+        self.do_html = False
+        self.do_summary = False
+        self.do_data = False
+        self.directory: str | None = None
+        self.source: str | None = None
+        """The model file that is being run; the default directory is named after it."""
+        self.locked = False
+        """Whether the model's own settings are left unheard, as in a parameter sweep."""
+        self.announce = False
+        """Whether to print a last line, as python_actr 1.9.5 does; so for models that import it by name."""
+        self.reset()
+
+    def reset(self) -> None:
+        """Forgets what was logged."""
+        self.data: dict[str, Any] = {}
+        self.rows: list[tuple[float, str, Any]] = []
+        self.time = 0.0
+
+    def set(self, key: str, value: Any) -> None:
+        """Takes one line."""
+        if key == "time":
+            self.time = value
+        elif self.do_screen:
+            print(f"{self.time:8.3f} {key} {value}")
+        if self.do_data or self.do_summary:
+            self.data[key] = value
+        if self.do_html and key != "time":
+            self.rows.append((self.time, key, value if isinstance(value, (bool, int, float, str)) else repr(value)))
+
+    def display_all(self) -> None:
+        """Prints the last value of everything."""
+        if self.time > 0:
+            print(f"Total time: {self.time:8.3f}")
+        for key in sorted(self.data):
+            if key != "time":
+                print(f" {key} {self.data[key]}")
+
+    def file(self, ending: str) -> Path:
+        """Returns a new file's path in the log's directory, and makes the directory."""
+        name = self.directory or (self.source or sys.argv[0]).removesuffix(".py") or "log"
+        folder = Path(name)
+        folder.mkdir(parents=True, exist_ok=True)
+        # The file's own name is no part of the run: it does not draw from the run's random numbers.
+        mark = f"{random.SystemRandom().randrange(0x7FFFFFFF):08x}"
+        return folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{mark}{ending}"
+
+
+class DummyLog:
+    """Takes everything and keeps nothing; false, so that nobody computes for it."""
+
+    def set(self, key: str, value: Any) -> None:
+        """Takes a line."""
+
+    def __bool__(self) -> bool:
+        return False
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        pass
+
+    def __getattr__(self, key: str) -> DummyLog:
+        if key[:1] == "_" and key != "_":
+            raise AttributeError(key)
+        return self
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        pass
+
+    def __getitem__(self, key: Any) -> DummyLog:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> DummyLog:
+        return self
+
+
+class LogProxy:
+    """A place in a log: `proxy.a.b = 3` and `proxy['x'] = 4` write lines named after the place; `proxy._ = 5` names the place itself."""
+
+    def __init__(self, target: Log, prefix: str = "") -> None:
+        own = self.__dict__
+        own["_log"] = target
+        own["_prefix"] = prefix.removeprefix(".")
+        own["_items"] = {}
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        if key == "_":
+            self._set(value)
+        elif key[0] == "_":
+            self.__dict__[key] = value
+        else:
+            getattr(self, key)._set(value)
+
+    def __getattr__(self, key: str) -> LogProxy:
+        if key == "_":
+            return self
+        if key[0] == "_":
+            raise AttributeError(key)
+        place = self.__dict__[key] = LogProxy(self._log, f"{self._prefix}.{key}")
+        return place
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self[key]._set(value)
+
+    def __getitem__(self, key: Any) -> LogProxy:
+        items: dict[Any, LogProxy] = self._items
+        if key not in items:
+            items[key] = LogProxy(self._log, f"{self._prefix}[{key}]")
+        return items[key]
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> LogProxy:
+        return self
+
+    def _set(self, value: Any) -> None:
+        self._log.set(self._prefix, value if isinstance(value, BASIC) else repr(value))
+
+
+LOG = Log()
+log_proxy = LogProxy(LOG)
+dummy = DummyLog()
+
+
+def log(
+    screen: bool | None = None,
+    html: bool | None = None,
+    data: bool | None = None,
+    summary: bool | None = None,
+    directory: str | None = None,
+) -> LogProxy:
+    """Returns the program's log, after changing what it does; None leaves a setting as it is.
+
+    Args:
+        screen: Whether to print each line.
+        html: Whether to write an HTML table at the end.
+        data: Whether to write the last value of everything to a file at the end.
+        summary: Whether to print the last value of everything at the end.
+        directory: Where files go; named after the model file unless given.
+    """
+    if LOG.locked:
+        return log_proxy
+    if screen is not None:
+        LOG.do_screen = screen
+    if html is not None:
+        LOG.do_html = html
+    if data is not None:
+        LOG.do_data = data
+    if summary is not None:
+        LOG.do_summary = summary
+    if directory is not None:
+        LOG.directory = directory
+    return log_proxy
+
+
+def log_everything(model: Any, log: Any = None) -> None:
+    """Logs every change of every public attribute of a model and of all models below it."""
+    if log is None:
+        log = log_proxy
+    if not hasattr(model, "log"):
+        model.run(limit=0)
+    model.log = log
+    for key, part in list(vars(model).items()):
+        if key[0] != "_" and key != "parent" and hasattr(part, "get_children") and getattr(part, "parent", None) is model:
+            log_everything(part, getattr(log, key))
+
+
+def finished(flush: bool = True) -> None:
+    """Writes what the log's settings ask for, and begins a new log."""
+    from actr3d.actr.html import write_html
+
+    if LOG.data or LOG.rows:
+        if LOG.do_summary:
+            LOG.display_all()
+        if LOG.do_data:
+            lines = [f"{key}={LOG.data[key]}\n" for key in sorted(LOG.data)]
+            LOG.file(".data").write_text("".join(lines), encoding="utf-8")
+        if LOG.do_html:
+            write_html(LOG.file(".html"), LOG.rows)
+    LOG.reset()
+    if LOG.announce:
+        print("end...")
+
+
+def settings() -> Callable[[], None]:
+    """Returns a function that puts the log back as it is now, with nothing in it."""
+    before = dict(vars(LOG))
+
+    def restore() -> None:
+        vars(LOG).update(cast("dict[str, Any]", before))
+        LOG.reset()
+
+    return restore

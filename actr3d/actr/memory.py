@@ -1,0 +1,324 @@
+"""Declarative memory: requests, retrievals and failures, and who won and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+from actr3d.actr.activation import MemorySubModule
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.finst import Finst
+from actr3d.actr.model import Model
+from actr3d.actr.partial import Partial
+from actr3d.actr.pattern import Pattern
+from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
+from actr3d.actr.store import ChunkStore
+from actr3d.errors import ChunkError
+
+
+@dataclass(slots=True)
+class Candidate:
+    """A chunk that matched a request, and how it stood."""
+
+    chunk: Chunk
+    parts: tuple[float, ...]
+    """What each activation module added, in the memory's order."""
+    partial: float
+    """What mismatches cost (0 or less)."""
+    activation: float
+    """The sum."""
+
+
+@dataclass(slots=True)
+class Retrieval:
+    """One request and what came of it."""
+
+    time: float
+    """When it was made [s]."""
+    pattern: str
+    modules: tuple[str, ...]
+    """The activation modules, in the order of each candidate's parts."""
+    threshold: float | None
+    require_new: bool
+    marked: list[Chunk]
+    """What had been retrieved lately (finsts)."""
+    excluded: list[Chunk] = field(default_factory=list[Chunk])
+    """Matching chunks that were left out for being marked."""
+    candidates: list[Candidate] = field(default_factory=list[Candidate])
+    chosen: Chunk | None = None
+    latency: float | None = None
+    """How long the retrieval or its failure takes [s]."""
+
+
+class Memory(Model):
+    """Declarative memory: keeps chunks, and brings the most active one that matches a request to a buffer.
+
+    Args:
+        buffer: Where retrieved chunks go.
+        latency: F in the retrieval time F exp(-A) [s]; None for the profile's.
+        threshold: The least activation that can be retrieved; None for no limit.
+        maximum_time: The longest a retrieval or its failure may take [s].
+        finst_size: How many retrieved chunks are remembered as such.
+        finst_time: For how long [s].
+        profile: «python-actr» or «act-r-7»; None for the agent's.
+
+    Raises:
+        ParameterError: If there is no such profile.
+    """
+
+    def __init__(
+        self,
+        buffer: Any,
+        latency: float | None = None,
+        threshold: float | None = 0,
+        maximum_time: float = 10.0,
+        finst_size: int = 4,
+        finst_time: float = 3.0,
+        profile: str | Profile | None = None,
+    ) -> None:
+        Model.__init__(self)
+        self._buffer = buffer
+        self._profile = None if profile is None else find_profile(profile, "Memory.profile")
+        self._latency_given = latency is not None
+        self.dm = ChunkStore()
+        self.error = False
+        self.busy = False
+        self.adaptors: list[MemorySubModule] = []
+        self.latency: float = self.rules.latency if latency is None else latency
+        self.threshold = threshold
+        self.maximum_time = maximum_time
+        self.partials: list[Partial] = []
+        self.finst = Finst(self, size=finst_size, time=finst_time)
+        self.record_all_chunks = False
+        self._request_count = 0
+        self._last: Retrieval | None = None
+
+    @property
+    def rules(self) -> Profile:
+        """The numbers this memory goes by: its own profile, else its agent's."""
+        return self._profile or PYTHON_ACTR
+
+    def start(self) -> None:
+        """Takes over the agent's profile, where none was given."""
+        if self._profile is None and self.parent is not None and self.parent._profile is not None:
+            self._profile = self.parent._profile
+            if not self._latency_given:
+                self.__dict__["latency"] = self._profile.latency
+
+    # -- what is known
+
+    def clear(self) -> None:
+        """Forgets everything."""
+        self.dm.clear()
+
+    def add(self, chunk: Any, record: bool | None = None, **keys: Any) -> None:
+        """Adds a chunk, or strengthens an equal one that is known already.
+
+        Args:
+            chunk: What makes a chunk; of a buffer, its chunk.
+            record: Whether to log the chunk's activation whenever it is computed.
+            keys: For the activation modules: `time` [s ago], `baselevel`, `fixed`.
+
+        Raises:
+            ChunkError: If the contents make no chunk, or a variable is not bound.
+        """
+        if self.error:
+            self.error = False
+        new = Chunk(chunk, self._bound())
+        known = self.dm.equal_to(new)
+        if known is not None:
+            for adaptor in self.adaptors:
+                adaptor.merge(known, **keys)
+        else:
+            for adaptor in self.adaptors:
+                adaptor.create(new, **keys)
+            self.dm.keep(new)
+        new.record = record
+
+    def _collect(self, chunk: Chunk) -> None:
+        """Takes in a chunk that left a buffer (ACT-R 7)."""
+        if self.rules.harvest:
+            self.add(Chunk(chunk))
+
+    def _bound(self) -> dict[str, Any] | None:
+        sch = self.__dict__.get("sch")
+        return None if sch is None else sch.bound
+
+    def find_matching_chunks(self, pattern: Any, threshold: float | None = None) -> list[Chunk]:
+        """Returns the chunks that match a pattern, in the order they came; those of at least `threshold`, if given.
+
+        Raises:
+            PatternException: If the text is no pattern.
+        """
+        found = self._matching(self._pattern(pattern, None))
+        if threshold is not None:
+            found = [chunk for chunk in found if self.get_activation(chunk) >= threshold]
+        return found
+
+    def _pattern(self, pattern: Any, partial: Partial | None) -> Pattern:
+        return Pattern([pattern] if isinstance(pattern, Mapping) else pattern, self._bound(), partial)
+
+    def _matching(self, pattern: Pattern) -> list[Chunk]:
+        """Returns the matching chunks in order, looking only at those that have the rarest of the slots asked for."""
+        chunks: Sequence[Chunk] = self.dm
+        for op, _, key, value in pattern.conditions:
+            if op in ("call", "empty") or (isinstance(key, str) and (key[:1] == "?" or "." in key)):
+                continue
+            fewer = self.dm.with_value(key, value) if op == "is" and pattern.partial is None else self.dm.with_slot(key)
+            if len(fewer) < len(chunks):
+                chunks = fewer
+        match = pattern.match
+        return [chunk for chunk in chunks if match(chunk) is not None]
+
+    # -- requests
+
+    def request(self, pattern: Any, partial: Partial | None = None, require_new: bool = False) -> None:
+        """Asks for the most active chunk that matches.
+
+        Activations are those of this moment. The chunk arrives in the buffer after `latency * exp(-A)`, or the buffer is
+        emptied and `error` set after `latency * exp(-threshold)`; a further request before that cancels this one.
+
+        Args:
+            pattern: What to look for.
+            partial: Which similarities to allow for; the memory's first unless given.
+            require_new: Whether to leave out what has been retrieved lately.
+
+        Raises:
+            PatternException: If the text is no pattern.
+        """
+        if partial is None and self.partials:
+            partial = self.partials[0]
+        self.busy = True
+        if self.error:
+            self.error = False
+        self._request_count += 1
+        number = self._request_count
+        if self.rules.clear_at_request:
+            self._buffer.clear()
+        compiled = self._pattern(pattern, partial)
+        matches = self._matching(compiled)
+        record = self._last = Retrieval(
+            time=self.now(),
+            pattern=str(pattern),
+            modules=tuple(type(a).__name__ for a in self.adaptors),
+            threshold=self.threshold,
+            require_new=require_new,
+            marked=list(self.finst.obj),
+        )
+        if require_new and self.finst.obj:
+            record.excluded = [chunk for chunk in matches if self.finst.contains(chunk)]
+            matches = [chunk for chunk in matches if not self.finst.contains(chunk)]
+        for adaptor in self.adaptors:
+            adaptor.matched(matches)
+        best = self._weigh(matches, record, partial)
+        if not best:
+            self._note_request(record)
+            self.fail(number)
+            return
+        choice = self.random.choice(best)
+        record.chosen = choice
+        self._note_request(record)
+        self.recall(choice, matches=matches, request_number=number)
+
+    def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
+        """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
+        for chunk in cast("list[Any]", matches):
+            parts = self._parts(chunk)
+            cost: float = chunk._partial if partial is not None else 0.0
+            chunk.activation = sum(parts) + cost if partial is not None else sum(parts)
+            record.candidates.append(Candidate(chunk, parts, cost, chunk.activation))
+        if not matches:
+            return []
+        best: float = max(candidate.activation for candidate in record.candidates)
+        if self.threshold is not None and self._strength(record, best) < self.threshold:
+            return []
+        return [candidate.chunk for candidate in record.candidates if candidate.activation == best]
+
+    def _strength(self, record: Retrieval, best: float) -> float:
+        """Returns the activation that the threshold is compared with, and that sets the time."""
+        return best
+
+    def _note_request(self, record: Retrieval) -> None:
+        """Records a request with all its candidates, where that is wanted."""
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            data = {
+                "pattern": record.pattern,
+                "threshold": record.threshold,
+                "require_new": record.require_new,
+                "finsts": [str(chunk) for chunk in record.marked],
+                "excluded": [str(chunk) for chunk in record.excluded],
+                "modules": list(record.modules),
+                "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in record.candidates],
+                "chosen": None if record.chosen is None else str(record.chosen),
+            }
+            trace.emit(self.sch.now_us, self._path, "request", data)
+
+    def _note_end(self, data: dict[str, Any]) -> None:
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, "retrieval", data)
+
+    def fail(self, request_number: int) -> Iterator[float]:
+        """Lets a request fail, after its time."""
+        time = self.maximum_time if self.threshold is None else self._time(self.threshold)
+        if self._last is not None:
+            self._last.latency = time
+        yield time
+        if request_number != self._request_count:
+            return
+        self.error = True
+        self._buffer.clear()
+        self.busy = False
+        self._note_end({"failed": True})
+
+    def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
+        """Brings a chunk to the buffer, after its time."""
+        self.finst.add(chunk)
+        time = self._time(chunk.activation)
+        if self._last is not None:
+            self._last.latency = time
+        yield time
+        if request_number != self._request_count:
+            return
+        self._buffer.set(chunk)
+        for adaptor in self.adaptors:
+            adaptor.recalled(chunk)
+        self.busy = False
+        self._note_end({"failed": False, "chunk": str(chunk)})
+
+    def _time(self, activation: float) -> float:
+        """Returns F exp(-A), at most the maximum time [s]."""
+        try:
+            return min(self.latency * math.exp(-activation), self.maximum_time)
+        except OverflowError:
+            return self.maximum_time
+
+    # -- activation
+
+    def _parts(self, chunk: Chunk) -> tuple[float, ...]:
+        """Returns what each activation module adds to a chunk's activation now."""
+        parts = tuple([adaptor.activation(chunk) for adaptor in self.adaptors])
+        if self.record_all_chunks or getattr(chunk, "record", None) is True:
+            self.log[str(chunk)] = sum(parts)
+        return parts
+
+    def get_activation(self, chunk: Any) -> float:
+        """Returns a chunk's activation now; noise is drawn anew.
+
+        Raises:
+            ChunkError: If the memory holds no such chunk.
+        """
+        if not isinstance(chunk, Chunk) or chunk._store is not self.dm:  # pyright: ignore[reportPrivateUsage]
+            wanted = Chunk(chunk, self._bound())
+            known = self.dm.equal_to(wanted)
+            if known is None:
+                raise ChunkError(f"memory '{self.name}' holds no chunk '{wanted}'")
+            chunk = known
+        return sum(self._parts(chunk))
+
+    def add_adaptor(self, a: MemorySubModule) -> None:
+        """Takes in an activation module; done by the module itself."""
+        self.adaptors.append(a)

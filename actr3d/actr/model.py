@@ -1,0 +1,398 @@
+"""Model: the part everything is made of; it has a place in a tree, a clock, and methods that can be waited for."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import random
+from collections.abc import Callable, Iterator
+from types import ModuleType
+from typing import Any, cast
+
+from actr3d.actr import logger as logs
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.limits import RunLimits
+from actr3d.actr.profile import PYTHON_ACTR, Profile
+from actr3d.actr.scheduler import Event, Scheduler, Trigger
+from actr3d.errors import SchedulerError
+from actr3d.trace import Trace
+
+UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
+"""Attributes that hold the tree together; setting them is not a change that productions could see."""
+
+Method = Callable[..., Any]
+
+
+class MethodWrapper:
+    """A method of one model; `yield model.method` waits for the end of its next call."""
+
+    def __init__(self, obj: Model, func: Method, name: str) -> None:
+        self.obj = obj
+        self.func = func
+        self.__name__ = name
+        self.begins = Trigger(f"{name} begin")
+        self.ends = Trigger(f"{name} end")
+
+    @property
+    def default_trigger(self) -> Trigger:
+        """What `yield` on the method itself waits for."""
+        return self.ends
+
+    def __call__(self, *args: Any, **keys: Any) -> Any:
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
+        value = self.func(self.obj, *args, **keys)
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)
+        return value
+
+    def __repr__(self) -> str:
+        return f"<method {self.func.__qualname__}>"
+
+
+class GeneratorWrapper(MethodWrapper):
+    """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
+
+    def __call__(self, *args: Any, **keys: Any) -> Event | None:
+        return self.obj.sch.add(self.steps, args=args, keys=keys)
+
+    def steps(self, *args: Any, **keys: Any) -> Iterator[Any]:
+        """Runs the method, waking whoever waits for its begin or end."""
+        self.obj.sch.trigger(self.begins)
+        yield from self.func(self.obj, *args, **keys)
+        self.obj.sch.trigger(self.ends)
+
+
+class Model:
+    """A part of a simulation: an agent, one of its modules, an object of its environment, or the environment.
+
+    What a class names among its attributes becomes each instance's own: models there become children, and their
+    methods can be waited for. A model joins a tree when it is set as another's attribute, and comes to life when that
+    tree is first run or changed.
+
+    Args:
+        log: True for the text log, or a log of one's own.
+        attrs: Become attributes.
+    """
+
+    name = "top"
+    _converted = False
+    _convert_methods = True
+    _auto_run_start = True
+    _init_log: Any = None
+    _profile: Profile | None = None
+
+    # Given to every instance when it comes to life.
+    changes: Trigger
+    sch: Scheduler
+    log: Any
+    random: random.Random
+    parent: Model | None
+    _children: dict[str, Model]
+
+    def __init__(self, log: Any = None, **attrs: Any) -> None:
+        self._init_log = log
+        for key, value in attrs.items():
+            setattr(self, key, value)
+
+    def __getitem__(self, item: str) -> Any:
+        return getattr(self, item)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self._path}>"
+
+    # -- coming to life
+
+    def _ensure_converted(self) -> None:
+        if not self._converted:
+            self._convert()
+
+    def _is_converted(self) -> bool:
+        return self._converted
+
+    def _get_scheduler(self) -> Scheduler:
+        self._ensure_converted()
+        return self.sch
+
+    def _convert(self, parent: Model | None = None) -> None:
+        """Brings the model to life: gives it the tree's clock, its own copies of its class's attributes, its methods."""
+        own = self.__dict__
+        own["_converted"] = True
+        own["changes"] = Trigger("changes")
+        own.setdefault("name", type(self).name)
+        parent = own.get("parent") or parent
+        methods, objects = class_members(type(self))
+        objects = copy_objects(objects)
+        if parent is not None:
+            parent._ensure_converted()
+            own["sch"], own["log"], own["random"], own["parent"] = parent.sch, logs.dummy, parent.random, parent
+        else:
+            self._become_top()
+        self._convert_info(objects, methods)
+        for name, obj in objects.items():
+            if isinstance(obj, Model):
+                obj.__dict__["name"] = name
+                if not obj._converted:
+                    obj._convert(self)
+                self._adopted(name, obj)
+            own[name] = obj
+        if self._convert_methods:
+            for name, func in methods.items():
+                wrapper = GeneratorWrapper if inspect.isgeneratorfunction(func) else MethodWrapper
+                own[name] = wrapper(self, func, name)
+        if self._auto_run_start:
+            self.start()
+        for key, value in list(own.items()):
+            if key[0] != "_" and key != "parent" and isinstance(value, Model) and not value._converted:
+                self._take_in(key, value)
+        if self._profile is None and parent is not None:
+            self._profile = parent._profile
+
+    def _become_top(self) -> None:
+        own = self.__dict__
+        limits = RunLimits.current()
+        sch = own["sch"] = Scheduler()
+        wanted = self._init_log
+        own["log"] = logs.log() if wanted is True else logs.dummy if wanted is None else wanted
+        seed = limits.next_seed() if limits is not None else None
+        if seed is None:
+            seed = random.SystemRandom().getrandbits(64)
+        sch.seed = seed
+        own["random"] = random.Random(seed)
+        own["parent"] = None
+        if limits is not None and limits.trace is not None:
+            self._attach_trace(limits.trace)
+
+    def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
+        """Looks at what the class brings, before its objects come to life; for subclasses."""
+
+    def _adopted(self, name: str, child: Model) -> None:
+        self.__dict__.setdefault("_children", {})[name] = child
+
+    # -- changes
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        own = self.__dict__
+        if key == "parent" and value is None and own.get("parent") is not None:
+            siblings = own["parent"].__dict__.get("_children", {})
+            for known in [name for name, part in siblings.items() if part is self]:
+                del siblings[known]
+            self._forget_path()
+        own[key] = value
+        public = key[0] != "_"
+        if public and isinstance(value, Model) and key != "parent":
+            self._ensure_converted()
+            self._take_in(key, value)
+        if public and self._converted and key not in UNWATCHED:
+            sch = self.sch
+            above: Model | None = self
+            while above is not None:
+                if above.changes.waiting:
+                    sch.trigger(above.changes, priority=-1)
+                above = above.parent
+                if above is self:
+                    break
+            if sch.trace is not None:
+                self._trace_change(sch.trace, key, value)
+            if self.log:
+                setattr(self.log, key, value)
+        if key == "log" and value is not None:
+            for name, known in list(own.items()):
+                if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
+                    setattr(value, name, known)
+
+    def _take_in(self, key: str, value: Model) -> None:
+        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor."""
+        above: Model | None = self
+        while above is not None:
+            if above is value:
+                return
+            above = above.__dict__.get("parent")
+        if value.__dict__.get("parent") is not None:
+            return
+        value.parent = self
+        value.name = key
+        self._adopted(key, value)
+        value._forget_path()
+        if not value._converted:
+            value._convert(self)
+        elif value.sch is not self.sch:
+            value._join(self.sch, self.random)
+
+    def _join(self, sch: Scheduler, numbers: random.Random) -> None:
+        """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
+        if self.sch.now_us != 0:
+            raise SchedulerError(f"'{self.name}' has run by itself until {self.sch.time:g} s; put it into its environment before that")
+        while self.sch.queue.heap:
+            time, priority, _, event = self.sch.queue.heap[0]
+            self.sch.queue.pop()
+            sch.queue.push(max(time, sch.now_us), event, -priority)
+        for part in self._tree():
+            part.__dict__["sch"], part.__dict__["random"] = sch, numbers
+
+    def _tree(self) -> Iterator[Model]:
+        """Yields the model and everything below it."""
+        yield self
+        for child in self.get_children():
+            yield from child._tree()
+
+    # -- the trace
+
+    @property
+    def _path(self) -> str:
+        """The dotted names from below the top model down to this one; «top» for that model itself."""
+        known = self.__dict__.get("_known_path")
+        if known is None:
+            known = self.__dict__["_known_path"] = self._make_path()
+        return known
+
+    def _forget_path(self) -> None:
+        for part in self._tree():
+            part.__dict__.pop("_known_path", None)
+
+    def _make_path(self) -> str:
+        names: list[str] = []
+        above: Model | None = self
+        while above is not None and (up := above.__dict__.get("parent")) is not None and len(names) < 64:
+            names.append(above.name)
+            above = cast("Model", up)
+        return ".".join(reversed(names)) or "top"
+
+    def traced(self, level: str = "all") -> Trace:
+        """Starts a trace of the whole run this model belongs to, and returns it.
+
+        Args:
+            level: How much to record; see `actr3d.trace.LEVELS`.
+
+        Raises:
+            ParameterError: If the level is unknown.
+        """
+        self._ensure_converted()
+        top: Model = self
+        while top.parent is not None:
+            top = top.parent
+        trace = Trace(level)
+        top._attach_trace(trace)
+        return trace
+
+    def _attach_trace(self, trace: Trace) -> None:
+        self.sch.trace = trace
+        if trace.production:
+            data = {"model": type(self).__name__, "seed": self.sch.seed, "profile": (self._profile or PYTHON_ACTR).name}
+            trace.emit(self.sch.now_us, "top", "start", data)
+        if trace.buffer:
+            for part in self._tree():
+                part._trace_state(trace)
+
+    def _trace_state(self, trace: Trace) -> None:
+        """Records the present value of every attribute, so that a trace which starts late can be read from its start."""
+        for key, value in list(self.__dict__.items()):
+            if key[0] != "_" and key not in UNWATCHED and (isinstance(value, Chunk) or value is None or type(value) in PLAIN_TYPES):
+                self._trace_change(trace, key, value)
+
+    def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
+        if trace.all:
+            if isinstance(value, Model) and value.__dict__.get("parent") is self:
+                for part in value._tree():
+                    part._trace_state(trace)
+            else:
+                trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
+
+    # -- running
+
+    def start(self) -> Any:
+        """Is called when the model comes to life; a generator here runs from time 0. For subclasses."""
+
+    def run(self, limit: float | None = None, func: Callable[[], Any] | None = None) -> None:
+        """Runs the whole tree until nothing is left to do, `stop` is called, or `limit` seconds more have passed.
+
+        Args:
+            limit: How long [s from now]; calls can follow one another for ever without drift.
+            func: Called first.
+
+        Raises:
+            SchedulerError: If time stands still, or something cannot be waited for.
+        """
+        if not self._converted:
+            self._convert()
+        if func is not None:
+            self.sch.add(func)
+        self.sch.run(limit)
+
+    def stop(self) -> None:
+        """Ends the run once the present event is over."""
+        self._ensure_converted()
+        self.sch.stop()
+
+    def now(self) -> float:
+        """Returns the present [s]."""
+        self._ensure_converted()
+        return self.sch.now_us / 1_000_000
+
+    def get_children(self) -> list[Model]:
+        """Returns the models that are this one's parts, in the order they came."""
+        return list(self.__dict__.get("_children", {}).values())
+
+
+PLAIN_TYPES = frozenset({int, float, str, bool})
+
+
+def traceable(value: Any) -> Any:
+    """Returns what a trace keeps of a value: plain values as they are, chunks as a copy, others as text without addresses."""
+    if value is None or type(value) in PLAIN_TYPES:
+        return value
+    if isinstance(value, Chunk):
+        return {str(key): item if item is None or type(item) in PLAIN_TYPES else traceable(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [traceable(item) for item in cast("list[Any]", value)]
+    if isinstance(value, Model):
+        return f"<{value._path}>"  # pyright: ignore[reportPrivateUsage]
+    if callable(value):
+        return f"<{getattr(value, '__qualname__', type(value).__name__)}>"
+    text = repr(value)
+    return f"<{type(value).__name__}>" if " at 0x" in text else text
+
+
+def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
+    """Returns what a class and its ancestors below Model bring, in alphabetical order: methods, and other objects.
+
+    Names that begin with `_` and properties are left out, and so is what Model itself defines.
+    """
+    found: dict[str, Any] = {}
+    for klass in reversed(kind.__mro__):
+        if klass is not object and klass is not Model:
+            found.update(vars(klass))
+    methods: dict[str, Method] = {}
+    objects: dict[str, Any] = {}
+    for name in sorted(found):
+        member = found[name]
+        if name[0] == "_" or name in RESERVED:
+            continue
+        if inspect.isfunction(member):
+            methods[name] = member
+        elif isinstance(member, type) and issubclass(member, Model):
+            objects[name] = member()
+        elif not isinstance(member, (property, staticmethod, classmethod)) and not hasattr(type(member), "__set__"):
+            objects[name] = member
+    return methods, objects
+
+
+RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
+"""What a subclass may override, but not turn into something that is waited for or copied."""
+
+
+def copy_objects(objects: dict[str, Any]) -> dict[str, Any]:
+    """Copies a class's objects for one instance; what cannot be copied (an open file, a running model) is shared."""
+    memo: dict[int, Any] = {id(obj): obj for obj in objects.values() if isinstance(obj, ModuleType)}
+    copies: dict[str, Any] = {}
+    for name, obj in objects.items():
+        if type(obj) in PLAIN_TYPES or obj is None:
+            copies[name] = obj
+        elif isinstance(obj, Model) and obj._is_converted():  # pyright: ignore[reportPrivateUsage]
+            copies[name] = memo[id(obj)] = obj
+        else:
+            try:
+                copies[name] = copy.deepcopy(obj, memo)
+            except TypeError:
+                copies[name] = obj
+    return copies

@@ -1,0 +1,1 @@
+"""ACT-R modules besides memory and the production systems, one a file."""

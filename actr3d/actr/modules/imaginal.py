@@ -1,0 +1,61 @@
+"""The imaginal module: building and changing a mental picture takes time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.model import Model
+
+
+class ImaginalModule(Model):
+    """Sets, changes and clears a buffer, each after a delay; while it is busy, further calls are left undone.
+
+    Args:
+        buffer: The buffer it works on.
+        delay: How long it takes [s]; a number, or a function without arguments.
+        delay_sd: The standard deviation of that [s]; None for no noise.
+
+    Source: 0.2 s, ACT-R's imaginal delay.
+    """
+
+    def __init__(self, buffer: Any, delay: Any = 0.2, delay_sd: float | None = None) -> None:
+        Model.__init__(self)
+        self._buffer = buffer
+        self.busy = False
+        self.delay = delay
+        self.delay_sd = delay_sd
+
+    def delay_time(self) -> float:
+        """Returns how long the next change takes [s]."""
+        time: float = self.delay() if callable(self.delay) else self.delay
+        return time if self.delay_sd is None else max(0.0, self.random.gauss(time, self.delay_sd))
+
+    def set(self, chunk: Any) -> Iterator[float]:
+        """Puts a new chunk into the buffer; its variables mean what they are bound to now."""
+        if self.busy:
+            return
+        self.busy = True
+        new = Chunk(chunk, self.sch.bound)
+        yield self.delay_time()
+        self._buffer.set(new)
+        self.busy = False
+
+    def modify(self, **args: Any) -> Iterator[float]:
+        """Changes slots of the buffer's chunk."""
+        if self.busy:
+            return
+        self.busy = True
+        yield self.delay_time()
+        self._buffer.modify(**args)
+        self.busy = False
+
+    def clear(self, **args: Any) -> Iterator[float]:
+        """Empties the buffer."""
+        if self.busy:
+            return
+        self.busy = True
+        yield self.delay_time()
+        self._buffer.clear()
+        self.busy = False

@@ -1,0 +1,38 @@
+"""The motor module: pressing a key."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from actr3d.actr.model import Model
+
+
+class Motor(Model):
+    """Presses keys; the environment's `key_pressed(key)` is called when the finger comes down. One press at a time.
+
+    Source: ACT-R's times: 0.25 s preparation, 0.05 s initiation, 0.1 s until the key is struck, 0.15 s to finish.
+    """
+
+    def __init__(self) -> None:
+        Model.__init__(self)
+        self.busy = False
+
+    def press(self, key: Any) -> Iterator[float]:
+        """Presses a key, unless a press is under way."""
+        if self.busy:
+            return
+        self.busy = True
+        self.log._ = "Pressing key preparation"
+        yield 0.25
+        self.log._ = "Pressing key preparation complete"
+        yield 0.05
+        self.log._ = "Pressing key initiation complete"
+        yield 0.1
+        self.log._ = "Actually pressing the key"
+        environment: Any = self.parent and self.parent.parent
+        environment.key_pressed(key)
+        self.log._ = "Finishing movement"
+        yield 0.15
+        self.log._ = "Finished movement"
+        self.busy = False

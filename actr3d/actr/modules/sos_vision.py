@@ -1,0 +1,65 @@
+"""SOSVision: seeing as a search among the objects of the environment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from actr3d.actr.model import Model
+from actr3d.actr.pattern import Pattern
+
+
+class SOSVision(Model):
+    """Looks for an object that matches a pattern, and brings one of those it notices to a buffer.
+
+    Each object of the environment (the agent's parent) that has a `salience` is noticed with that probability; one that
+    has only `visible` always. What has `visible` False or `value` None is not there. Where nothing is found, the buffer
+    is cleared and `error` set.
+
+    Args:
+        buffer: Where what is seen goes.
+        delay: How long looking takes [s].
+        delay_sd: The standard deviation of that [s]; None for no noise.
+
+    Source: SOS Vision (West & Emond 2002).
+    """
+
+    def __init__(self, buffer: Any, delay: float = 0.0, log: Any = None, delay_sd: float | None = None) -> None:
+        self._buffer = buffer
+        self.delay = delay
+        self.delay_sd = delay_sd
+        self.error = False
+        self.busy = False
+
+    def request(self, pattern: Any = "") -> Iterator[float]:
+        """Looks for what matches, unless it is looking already."""
+        if self.busy:
+            return
+        matcher = Pattern(pattern, self.sch.bound)
+        self.error = False
+        noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
+        self.busy = True
+        time = self.delay
+        if self.delay_sd is not None:
+            time = max(0, self.random.gauss(time, self.delay_sd))
+        yield time
+        self.busy = False
+        seen = self.random.choice(noticed) if noticed else None
+        if seen is None or not any(obj is seen for obj in self._objects()) or getattr(seen, "visible", True) == False:  # noqa: E712
+            self._buffer.clear()
+            self.error = True
+        else:
+            self._buffer.set(seen)
+
+    def _objects(self) -> list[Any]:
+        environment = self.parent and self.parent.parent
+        return list(environment.get_children()) if environment is not None else []
+
+    def _notices(self, obj: Any) -> bool:
+        if not hasattr(obj, "salience") and not hasattr(obj, "visible"):
+            return False
+        if hasattr(obj, "salience") and self.random.random() > obj.salience:
+            return False
+        if hasattr(obj, "visible") and obj.visible == False:  # noqa: E712 - 0 is not visible either
+            return False
+        return not hasattr(obj, "value") or obj.value is not None

@@ -1,0 +1,45 @@
+"""The timer: an inner clock whose pulses get longer and longer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from actr3d.actr.model import Model
+from actr3d.actr.scheduler import Trigger
+
+
+class Timer(Model):
+    """Counts pulses; pulse n + 1 lasts a t_n plus noise with standard deviation a b t_n.
+
+    Args:
+        startpulse: t_0 [s].
+        a: How much longer each pulse gets.
+        b: How noisy pulses are.
+
+    Source: Taatgen, van Rijn & Anderson (2007), Psychological Review 114; ACT-R's temporal module.
+    """
+
+    def __init__(self, startpulse: float = 0.011, a: float = 1.1, b: float = 0.015) -> None:
+        Model.__init__(self)
+        self.startpulse = startpulse
+        self.a = a
+        self.b = b
+        self.count = 0
+        self.t = startpulse
+        self._restart = Trigger("timer reset")
+
+    def reset(self) -> None:
+        """Begins to count from 0."""
+        self.count = 0
+        self.t = self.startpulse
+        self.sch.trigger(self._restart)
+
+    def start(self) -> Iterator[object]:
+        """Counts for ever."""
+        while True:
+            begun = self.t
+            before = self.count
+            yield self.t, self._restart
+            if self.count == before and self.t == begun:
+                self.count += 1
+                self.t = max(0.0, self.random.gauss(self.a * begun, self.a * begun * self.b))

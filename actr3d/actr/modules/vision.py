@@ -1,0 +1,136 @@
+"""Vision: where and what, with attention drawn to what has just appeared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.finst import Finst
+from actr3d.actr.model import Model
+from actr3d.actr.pattern import Pattern
+
+
+class Vision(Model):
+    """Sees the objects of the environment that have `x` and `y`, unless their `visible` is False.
+
+    A new object's place goes to the location buffer by itself while that is empty.
+
+    Args:
+        visual: The buffer for what is seen.
+        location: The buffer for where it is, as `'x y'`.
+
+    Source: ACT-R's onset span of 0.5 s, and 0.085 s for an attention shift.
+    """
+
+    def __init__(self, visual: Any, location: Any) -> None:
+        Model.__init__(self)
+        self._visual = visual
+        self._location = location
+        self.busy = False
+        self.tracking: Any = None
+        self.timeAppeared: dict[Any, float] = {}
+        self.visualOnsetSpan = 0.5
+        self.finst = Finst(self)
+
+    def start(self) -> None:
+        """Begins to watch the environment."""
+        self.environmentUpdate()
+
+    def isNew(self, obj: Any) -> bool:  # noqa: N802 - Python ACT-R's names, here and below
+        """Tells whether an object appeared within the onset span; notes the time of one not known before."""
+        if not getattr(obj, "visible", True):
+            return False
+        appeared = self.timeAppeared.get(obj)
+        if appeared is None:
+            self.timeAppeared[obj] = self.now()
+            return True
+        return self.now() < appeared + self.visualOnsetSpan
+
+    def environmentUpdate(self) -> Iterator[Any]:  # noqa: N802
+        """Puts a new object's place into the empty location buffer, again at every change of the environment."""
+        environment = self._environment()
+        if environment is None:
+            return
+        while True:
+            if self._location.isEmpty():
+                new = [obj for obj in environment.get_children() if self._appears(obj)]
+                if new:
+                    obj: Any = self.random.choice(new)
+                    self.log._ = f"Vision stuffed obj at ({obj.x:g},{obj.y:g})"
+                    self._location.set(f"{obj.x:g} {obj.y:g}")
+            for obj in environment.get_children():
+                self.isNew(obj)
+            yield environment.changes, self.lostTrack
+
+    def _environment(self) -> Model | None:
+        return self.parent.parent if self.parent is not None else None
+
+    def _appears(self, obj: Any) -> bool:
+        if not getattr(obj, "visible", True):
+            self.timeAppeared.pop(obj, None)
+            return False
+        return obj not in self.timeAppeared and hasattr(obj, "x") and hasattr(obj, "y")
+
+    def lostTrack(self) -> None:  # noqa: N802
+        """Ends the tracking of an object that is gone."""
+        if self.tracking is not None:
+            self.tracking = None
+            self.log._ = "Object disappeared"
+            self._visual.clear()
+
+    def attendToUnattended(self, pattern: Any = "") -> None:  # noqa: N802
+        """Finds the place of an object that was not examined lately."""
+        self.attendTo(pattern, unattended=True)
+
+    def attendToNew(self, pattern: Any = "") -> None:  # noqa: N802
+        """Finds the place of an object that has just appeared."""
+        self.attendTo(pattern, new=True)
+
+    def attendTo(self, pattern: Any, unattended: bool = False, new: bool = False) -> None:  # noqa: N802
+        """Puts the place of a matching object into the location buffer; where there is none, nothing happens."""
+        matcher = self._pattern(pattern)
+        found: list[Any] = []
+        for obj in self._visible():
+            if new and not self.isNew(obj):
+                continue
+            if unattended and self.finst.contains(obj):
+                continue
+            if matcher.match(obj) is not None:
+                found.append(obj)
+        if found:
+            obj = self.random.choice(found)
+            self.log._ = f"Vision found obj at ({obj.x:g},{obj.y:g})"
+            self._location.set(f"{obj.x:g} {obj.y:g}")
+
+    def examine(self, pat: Any) -> Iterator[float]:
+        """Brings the first matching object to the visual buffer, after 0.085 s; `'x y'` names a place."""
+        matcher = self._pattern(pat)
+        for obj in self._visible():
+            if matcher.match(obj) is None:
+                continue
+            self.busy = True
+            yield 0.085
+            self.busy = False
+            if any(child is obj for child in self._children_of_environment()):
+                self.tracking = obj
+                self.log._ = f"Vision sees {Chunk(obj)}"
+                self._visual.set(obj)
+                self.finst.add(obj)
+            else:
+                self.tracking = None
+                self.log._ = "Vision sees nothing"
+                self._visual.clear()
+            break
+
+    def _pattern(self, pattern: Any) -> Pattern:
+        if isinstance(pattern, str) and ":" not in pattern and pattern.count(" ") == 1:
+            pattern = "x:{} y:{}".format(*pattern.split(" "))
+        return Pattern(pattern, self.sch.bound)
+
+    def _children_of_environment(self) -> list[Model]:
+        environment = self._environment()
+        return environment.get_children() if environment is not None else []
+
+    def _visible(self) -> list[Any]:
+        return [o for o in self._children_of_environment() if hasattr(o, "x") and hasattr(o, "y") and getattr(o, "visible", True)]

@@ -1,0 +1,47 @@
+"""Partial matching: similar values may match, at the price of activation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from actr3d.actr.chunk import Slot, as_text
+
+if TYPE_CHECKING:
+    from actr3d.actr.memory import Memory
+
+
+class Partial:
+    """Lets a memory retrieve chunks whose values are only similar to those asked for.
+
+    Args:
+        memory: The memory; its first `Partial` serves all requests that name no other.
+        strength: MP, what a mismatch of -1 costs in activation.
+        limit: The similarity of values that nothing is said about.
+
+    Source: P = sum MP M_l (Anderson & Lebiere 1998, equation 3.7).
+    """
+
+    def __init__(self, memory: Memory, strength: float = 1.0, limit: float = -1.0) -> None:
+        self._memory = memory
+        self.limit = limit
+        self.strength = strength
+        self.sims: dict[tuple[str, str], float] = {}
+        memory.partials.append(self)
+
+    def similarity(self, a: Any, b: Any, value: float) -> None:
+        """Says how similar two values are, in both directions; 0 is the same, less is less similar."""
+        self.sims[as_text(a), as_text(b)] = value
+        self.sims[as_text(b), as_text(a)] = value
+
+    def request(self, pattern: Any) -> None:
+        """Asks the memory with these similarities."""
+        self._memory.request(pattern, partial=self)
+
+    def match(self, key: Slot, a: str, b: str) -> float:
+        """Returns what finding `b` where `a` was asked for adds to activation (0 or less)."""
+        return self.strength * self.sims.get((a, b), self.limit)
+
+    def negated(self, key: Slot, value: str) -> float | None:
+        """Returns what finding just what was not wanted adds; None where that rules the chunk out (not in ACT-R 7)."""
+        profile = self._memory.rules
+        return self.strength * self.limit if profile.negations_cost else None

@@ -1,0 +1,259 @@
+"""Production systems: the cycle of matching, choosing, waiting and firing."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from actr3d.actr.matcher import Matcher
+from actr3d.actr.model import Method, MethodWrapper, Model
+from actr3d.actr.production import Production
+from actr3d.actr.profile import find_profile
+from actr3d.actr.utility import ProceduralSubModule
+from actr3d.errors import ProductionException, did_you_mean
+
+if TYPE_CHECKING:
+    from actr3d.actr.explain import Explanation
+
+
+class ProductionSystem(Model):
+    """A model whose methods with patterns are productions; it chooses at random among those that match.
+
+    It may be an agent, or stand inside one as a parallel system with a cycle time of its own; it sees its ancestors'
+    buffers and modules by name.
+    """
+
+    production_time: Any = 0.05
+    """How long a production takes to fire [s]; a number, or a function without arguments."""
+    production_match_delay: float = 0
+    """How long matching takes, as a part of that [s]."""
+    _auto_run_start = False
+    _matcher: Matcher | None = None
+
+    _productions: list[Production]
+    _initializers: list[Production]
+    _context: dict[str, Any]
+    _top: Model
+
+    def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
+        wanted = objects.get("profile")
+        if wanted is not None:
+            self._profile = find_profile(wanted, f"{type(self).__name__}.profile")
+            self.sch.round_ms = self.sch.round_ms or self._profile.whole_milliseconds
+        own = self.__dict__
+        own["_productions"] = []
+        own["_initializers"] = []
+        for name, func in methods.items():
+            spec = inspect.getfullargspec(func)
+            if spec.varargs is None and spec.varkw is None and len(spec.args) == len(spec.defaults or ()):
+                own["_productions" if spec.args else "_initializers"].append(Production(self, name, func))
+        self.sch.add(self._process_productions)
+
+    # -- the cycle
+
+    def _process_productions(self) -> Iterator[Any]:
+        """Matches, chooses at random, waits, fires."""
+        self._begin()
+        while True:
+            if self.production_match_delay > 0:
+                yield self.production_match_delay
+            matching = self._match()
+            if not matching:
+                yield self._top.changes
+                continue
+            choice = self.random.choice(matching)
+            self._select(choice)
+            yield self._duration()
+            self._fire(choice)
+
+    def _begin(self) -> None:
+        """Fixes what productions can see by name, and carries out the methods without parameters."""
+        self._calc_context()
+        for production in self._initializers:
+            production.bound = {}
+            production.fire()
+            if self.sch.bound:  # what an initializer assigns, every production can see
+                self._context.update(self.sch.bound)
+        self._matcher = Matcher(self._context)
+        self._matcher.build(self._productions)
+
+    def _calc_context(self) -> None:
+        context: dict[str, Any] = {}
+        above: Model | None = self
+        top: Model = self
+        while above is not None:
+            for name, value in above.__dict__.items():
+                if name[0] != "_" and name != "parent" and name not in context and not isinstance(value, MethodWrapper):
+                    context[name] = value
+            top = above
+            above = above.parent
+        context["self"] = self
+        context["top"] = top
+        own = self.__dict__
+        own["_top"] = top
+        own["_context"] = context
+        for production in (*self._initializers, *self._productions):
+            production.context = context
+            for name in production.keys:
+                if name not in context:
+                    raise ProductionException(
+                        f"production '{production.name}' ({production.place}) matches on '{name}', which neither the agent "
+                        f"nor its ancestors have{did_you_mean(name, context)}"
+                    )
+
+    def _match(self) -> list[Production]:
+        assert self._matcher is not None
+        return self._matcher.matching()
+
+    def _select(self, choice: Production) -> None:
+        """Notes which production will fire."""
+        trace = self.sch.trace
+        if trace is not None and trace.production:
+            trace.emit(self.sch.now_us, self._path, "select", {"production": choice.name})
+        self.log.production = choice.name
+
+    def _duration(self) -> float:
+        time = self.production_time
+        return (time() if callable(time) else time) - self.production_match_delay
+
+    def _fire(self, choice: Production) -> None:
+        trace = self.sch.trace
+        if trace is not None and trace.production:
+            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": dict(choice.bound or {})})
+        self.log.production = None
+        choice.fire()
+
+    def _add_production(self, production: Production) -> None:
+        """Takes in a production that came while running (compilation)."""
+        production.context = self._context
+        self._productions.append(production)
+        if self._matcher is not None:
+            self._matcher.build(self._productions)
+
+    def explain(self, at: float | None = None) -> Explanation:
+        """Says why: for each production whether it matches or what fails first, and its utility; for each memory its last request.
+
+        Args:
+            at: A past time of a traced run [s]; None for now.
+
+        Raises:
+            ParameterError: If the run was not traced (level «all») at that time, or it lies in the future.
+        """
+        from actr3d.actr.explain import explain
+
+        return explain(self, at)
+
+
+class ACTR(ProductionSystem):
+    """An ACT-R agent: the production with the highest utility fires, ties are broken at random, and utilities learn."""
+
+    production_time_sd: float | None = None
+    """The standard deviation of the firing time [s]; None for no noise."""
+    production_threshold: Any = None
+    """The least utility a production needs to fire; a number, a function without arguments, or None for none."""
+
+    def __init__(self, log: Any = None, **attrs: Any) -> None:
+        self._adaptors: list[ProceduralSubModule] = []
+        super().__init__(log, **attrs)
+
+    def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
+        self.__dict__.setdefault("_adaptors", [])
+        super()._convert_info(objects, methods)
+
+    def _process_productions(self) -> Iterator[Any]:
+        """Matches, chooses the best, waits, matches again, fires; then lets everything else happen first."""
+        self._begin()
+        adaptors = self._adaptors
+        while True:
+            if self.production_match_delay > 0:
+                yield self.production_match_delay
+            matching = self._match()
+            choice = self._choose(matching) if matching else None
+            if choice is None:
+                yield self._top.changes
+                continue
+            for adaptor in adaptors:
+                adaptor.selecting(choice)
+            self._select(choice)
+            yield self._duration()
+            assert self._matcher is not None
+            if not self._matcher.matches(choice):
+                self._abandon(choice)
+                continue
+            for adaptor in adaptors:
+                adaptor.firing(choice)
+            self._fire(choice)
+            yield {"delay": 0, "priority": -1000}
+
+    def _choose(self, matching: list[Production]) -> Production | None:
+        """Returns one of those with the highest utility, or None where that is below the threshold."""
+        utilities = [self.get_activation(p) for p in matching]
+        best = max(utilities)
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            self._trace_conflict(matching, utilities)
+        threshold = self.production_threshold
+        if callable(threshold):
+            threshold = threshold()
+        if threshold is not None and best < threshold:
+            for adaptor in self._adaptors:
+                adaptor.below_threshold()
+            return None
+        return self.random.choice([p for p, u in zip(matching, utilities, strict=True) if u == best])
+
+    def _trace_conflict(self, matching: list[Production], utilities: list[float]) -> None:
+        trace = self.sch.trace
+        assert trace is not None
+        found = {p.name: u for p, u in zip(matching, utilities, strict=True)}
+        trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": found})
+
+    def _duration(self) -> float:
+        time = self.production_time
+        if callable(time):
+            time = time()
+        if self.production_time_sd is not None:
+            time += self.random.gauss(0, self.production_time_sd)
+        return max(0, time - self.production_match_delay)
+
+    def _abandon(self, choice: Production) -> None:
+        trace = self.sch.trace
+        if trace is not None and trace.production:
+            trace.emit(self.sch.now_us, self._path, "changed", {"production": choice.name})
+        self.log.production = "(changed before firing)"
+
+    # -- utility
+
+    def add_adaptor(self, module: ProceduralSubModule) -> None:
+        """Takes in a module that adds to utilities; done by the module itself when it becomes an attribute."""
+        self._adaptors.append(module)
+        for production in self._productions:
+            module.create(production)
+
+    def reward(self, value: float) -> None:
+        """Gives a reward to the productions that led here."""
+        trace = self.sch.trace
+        if trace is not None and trace.production:
+            trace.emit(self.sch.now_us, self._path, "reward", {"value": value})
+        for adaptor in self._adaptors:
+            adaptor.reward(value)
+
+    def success(self) -> None:
+        """Gives a reward of 1."""
+        self.reward(1)
+
+    def failure(self) -> None:
+        """Gives a reward of -1."""
+        self.reward(-1)
+
+    def get_activation(self, production: Production | str | None = None) -> Any:
+        """Returns a production's utility, None for an unknown name; without a name, the utilities of all by name."""
+        if isinstance(production, Production):
+            utility = production.base_utility
+            for adaptor in self._adaptors:
+                utility += adaptor.utility(production)
+            return utility
+        if production is None:
+            return {p.name: self.get_activation(p) for p in self._productions}
+        return next((self.get_activation(p) for p in self._productions if p.name == production), None)
+

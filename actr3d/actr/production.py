@@ -1,0 +1,122 @@
+"""Productions: what a method with patterns as its defaults becomes."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from actr3d.actr.bodies import Body, Scope, compile_body, stored_names
+from actr3d.actr.pattern import Bindings, Condition, conditions
+from actr3d.actr.sources import function_node, place
+from actr3d.errors import PatternException, ProductionException, did_you_mean
+
+if TYPE_CHECKING:
+    from actr3d.actr.procedural import ProductionSystem
+
+
+class Production:
+    """One rule of a production system: patterns to match, and a body to carry out.
+
+    Args:
+        system: The production system it belongs to.
+        name: Its name.
+        func: The modeller's method; its parameters name what to match, its defaults are the patterns.
+
+    Raises:
+        ProductionException: If a pattern cannot be read, or the body's source is not to be had.
+    """
+
+    base_utility: float = 0
+
+    def __init__(self, system: ProductionSystem, name: str, func: Callable[..., Any]) -> None:
+        self.system = system
+        self.name = name
+        self.original_func = func
+        spec = inspect.getfullargspec(func)
+        patterns: dict[str, Any] = dict(zip(spec.args, spec.defaults or (), strict=True))
+        self.base_utility = patterns.pop("utility", 0)
+        self.pattern_specs = patterns
+        self.keys = list(patterns)
+        try:
+            self.conditions = conditions(patterns)
+        except PatternException as error:
+            raise PatternException(f"production '{name}' ({self.place}): {error}") from None
+        self.bound: Bindings | None = None
+        """What the last match bound."""
+        self.context: Mapping[str, Any] = {}
+        """What the body sees by name; set when the system begins."""
+
+    @property
+    def place(self) -> str:
+        """Where the modeller wrote it: `file:line`."""
+        return place(self.original_func)
+
+    @cached_property
+    def node(self) -> ast.FunctionDef:
+        """The syntax tree of the modeller's method."""
+        node = function_node(self.original_func)
+        if node is None:
+            raise ProductionException(
+                f"production '{self.name}': its source is not to be had ({self.place}); load the model from a file, "
+                "or its text with actr3d.actr.load_text"
+            )
+        return node
+
+    @cached_property
+    def variables(self) -> list[str]:
+        """The variables that the patterns bind."""
+        return [condition.value for condition in self.conditions if condition.op == "bind"]
+
+    @cached_property
+    def assigned(self) -> set[str]:
+        """The names that the body assigns."""
+        return stored_names(self.node.body)
+
+    def body_of(self, statements: Sequence[ast.stmt]) -> Body:
+        """Makes a function of some of the body's statements."""
+        return compile_body(
+            statements,
+            name=self.name,
+            filename=self.original_func.__code__.co_filename,
+            bound=self.variables,
+            context=self.context,
+            file=self.original_func.__globals__,
+        )
+
+    @cached_property
+    def _body(self) -> Body:
+        return self.body_of(self.node.body)
+
+    def scope(self, bound: Bindings) -> Bindings:
+        """Returns the bound variables in the form the body asks for."""
+        return Scope(bound, self.context, self.original_func.__globals__) if self.assigned else bound
+
+    def fire(self) -> None:
+        """Carries out the body, with what the last match bound."""
+        bound = self.system.sch.bound = self.scope(self.bound or {})
+        try:
+            self._body(bound)
+        except Exception as error:
+            self.note(error)
+            raise
+
+    def note(self, error: Exception) -> None:
+        """Adds to an error which production it happened in, and what a misspelt name may have meant."""
+        hint = ""
+        if isinstance(error, NameError) and error.name:
+            bound = self.system.sch.bound or {}
+            hint = did_you_mean(error.name, [*bound, *self.context, *self.original_func.__globals__])
+        elif isinstance(error, AttributeError) and error.name and error.obj is not None:
+            hint = did_you_mean(error.name, [name for name in (*dir(error.obj), *vars(type(error.obj))) if name[0] != "_"])
+        error.add_note(f"in production '{self.name}' ({self.place}) at {self.system.now():g} s{hint}")
+
+    def __repr__(self) -> str:
+        return f"<Production {self.name}>"
+
+
+def condition_text(condition: Condition) -> str:
+    """Returns a production's condition with the name of what it looks at."""
+    return f"{condition.name}: {condition}"

@@ -1,0 +1,245 @@
+"""Modules that give productions their utility, and learn it.
+
+Each is an attribute of an agent: `pm = PMNew(alpha=0.1)`. An agent's utilities are the sum of what all of them say.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from actr3d.actr.model import Model
+
+if TYPE_CHECKING:
+    from actr3d.actr.production import Production
+
+
+def logistic_noise(numbers: Any, scale: float) -> float:
+    """Draws from the logistic distribution with mean 0 and variance pi^2 scale^2 / 3.
+
+    Source: ACT-R's activation noise; one random number is used up whatever the scale.
+    """
+    x = numbers.random()
+    while x == 0.0:
+        x = numbers.random()
+    return scale * math.log(1.0 / x - 1.0)
+
+
+class ProceduralSubModule(Model):
+    """The base of all utility modules; each method may be overridden."""
+
+    def start(self) -> None:
+        """Joins the agent."""
+        self.parent.add_adaptor(self)  # type: ignore[union-attr]
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        """Takes in a production; `parents` are the two that a compiled one was made of."""
+
+    def selecting(self, prod: Any) -> None:
+        """Is told that a production has been chosen."""
+
+    def firing(self, prod: Any) -> None:
+        """Is told that a production fires."""
+
+    def reward(self, value: float) -> None:
+        """Takes a reward."""
+
+    def utility(self, prod: Any) -> float:
+        """Returns this module's part of a production's utility."""
+        return 0
+
+    def below_threshold(self) -> None:
+        """Is told that no production's utility reached the threshold."""
+
+    def _learned(self, prod: Any, part: float) -> None:
+        """Records what a production's utility has become by learning."""
+        trace = self.sch.trace
+        if trace is not None and trace.all and self.parent is not None:
+            data = {"production": prod.name, "part": self.name, "value": part}
+            trace.emit(self.sch.now_us, self.parent._path, "utility", data)
+
+
+class PMNoise(ProceduralSubModule):
+    """Adds logistic noise: `noise` drawn anew at each choice, `baseNoise` once for each production."""
+
+    def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
+        self.noise = noise
+        self.baseNoise = baseNoise
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.baseNoise = self.logisticNoise(self.baseNoise)
+
+    def utility(self, prod: Any) -> float:
+        return prod.baseNoise + self.logisticNoise(self.noise)
+
+    def logisticNoise(self, s: float) -> float:  # noqa: N802 - Python ACT-R's name
+        """Draws logistic noise of scale `s`."""
+        return logistic_noise(self.random, s)
+
+
+class _Credited(ProceduralSubModule):
+    """Keeps the productions chosen since the last reward, with the time of each choice [s]."""
+
+    history: list[tuple[Any, float]]
+
+    def _begin_history(self) -> None:
+        self.history = []
+        self._rewarded = False
+
+    def selecting(self, prod: Any) -> None:
+        if self._rewarded:
+            self.history.clear()
+            self._rewarded = False
+        self.history.append((prod, self.now()))
+
+
+class PMPGC(_Credited):
+    """Utility as expected gain, U = P G - C, learned from successes, failures and the time that was spent.
+
+    Args:
+        goal: G, what reaching the goal is worth [s].
+
+    Source: Anderson & Lebiere (1998), chapter 3.
+    """
+
+    def __init__(self, goal: float = 20) -> None:
+        self._begin_history()
+        self.goal = goal
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.successes = 1
+        prod.failures = 0
+        time = self.parent.production_time  # type: ignore[union-attr]
+        prod.time = time() if callable(time) else time
+        prod.lock_pgc = False
+
+    def reward(self, value: float) -> None:
+        """Counts a success for a reward of 0 or more, a failure for one below, weighted by its size."""
+        now = self.now()
+        for prod, chosen in self.history:
+            if not prod.lock_pgc:
+                prod.time += now - chosen
+                if value >= 0:
+                    prod.successes += value
+                else:
+                    prod.failures -= value
+                self._learned(prod, self.utility(prod))
+        self._rewarded = True
+
+    def utility(self, prod: Any) -> float:
+        tries = prod.successes + prod.failures
+        return prod.successes / tries * self.goal - prod.time / tries
+
+    def set(
+        self,
+        prod: Any,
+        successes: float | None = None,
+        failures: float | None = None,
+        time: float | None = None,
+        lock: bool | None = None,
+    ) -> None:
+        """Sets a production's history; `lock` keeps rewards from changing it.
+
+        Raises:
+            KeyError: If the agent has no production of that name.
+        """
+        if isinstance(prod, str):
+            prod = {p.name: p for p in self.parent._productions}[prod]  # type: ignore[union-attr]
+        if successes is not None:
+            prod.successes = successes
+        if failures is not None:
+            prod.failures = failures
+        if time is not None:
+            prod.time = time
+        if lock is not None:
+            prod.lock_pgc = lock
+
+
+class PMPGCSuccessWeighted(PMPGC):
+    """PMPGC with P = 1 and the cost counted for each success."""
+
+    def utility(self, prod: Any) -> float:
+        return 1.0 * self.goal - prod.time / prod.successes
+
+
+class PMPGCMixedWeighted(PMPGC):
+    """PMPGC with the cost counted for each success."""
+
+    def utility(self, prod: Any) -> float:
+        return prod.successes / (prod.successes + prod.failures) * self.goal - prod.time / prod.successes
+
+
+class PMNew(_Credited):
+    """Utility learning U += alpha (R - dt - U), where dt is the time from the choice to the reward [s].
+
+    Args:
+        alpha: The learning rate.
+
+    Source: Anderson (2007), equation for utility learning; ACT-R 6 and 7.
+    """
+
+    def __init__(self, alpha: float = 0.2) -> None:
+        self._begin_history()
+        self.alpha = alpha
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.util = 0
+
+    def reward(self, value: float) -> None:
+        now = self.now()
+        whole = self._profile is not None and self._profile.total_utility
+        for prod, chosen in self.history:
+            present = prod.util + prod.base_utility if whole else prod.util
+            prod.util += self.alpha * (value - (now - chosen) - present)
+            self._learned(prod, prod.util)
+        self._rewarded = True
+
+    def utility(self, prod: Any) -> float:
+        return prod.util
+
+    def recreated(self, prod: Any, first: Any) -> None:
+        """Moves a compiled rule's utility to its first parent's, U += alpha (U_parent - U) (ACT-R 7)."""
+        whole = prod.base_utility + prod.util
+        prod.util += self.alpha * (first.base_utility + first.util - whole)
+        self._learned(prod, prod.util)
+
+
+class PMTD(ProceduralSubModule):
+    """Temporal-difference learning: a production is worth its reward and what the next one is worth, discounted by time.
+
+    Args:
+        alpha: The learning rate.
+        discount: k in the hyperbolic discount 1 / (1 + k t) [1/s].
+        cost: What firing costs.
+
+    Source: Fu & Anderson (2004), Proceedings of the Cognitive Science Society.
+    """
+
+    def __init__(self, alpha: float = 0.1, discount: float = 1, cost: float = 0.05) -> None:
+        self.alpha = alpha
+        self.discount = discount
+        self.last_prod: Any = None
+        self.last_time: float | None = None
+        self.this_reward: float = 0
+        self.cost = cost
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.td_u = 0
+        prod.cost = self.cost
+
+    def firing(self, prod: Any) -> None:
+        last = self.last_prod
+        if last is not None and self.last_time is not None:
+            passed = self.now() - self.last_time
+            worth = self.this_reward - last.cost + prod.td_u / (1 + self.discount * passed)
+            last.td_u += self.alpha * (worth - last.td_u)
+            self._learned(last, last.td_u)
+        self.last_prod = prod
+        self.last_time = self.now()
+        self.this_reward = 0
+
+    def reward(self, value: float) -> None:
+        self.this_reward += value
+
+    def utility(self, prod: Any) -> float:
+        return prod.td_u

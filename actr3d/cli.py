@@ -1,0 +1,156 @@
+"""The command `actr3d`: runs models, and measures how fast they run."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, TextIO
+
+from actr3d.actr.limits import RunLimits
+from actr3d.actr.loading import run_file
+from actr3d.errors import Actr3dError
+from actr3d.trace import LEVELS, Trace, TraceEvent
+
+
+class _Lines(io.TextIOBase):
+    """Takes what a model prints, and hands on whole lines."""
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self._take = take
+        self._rest = ""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, text: str, /) -> int:
+        *lines, self._rest = (self._rest + text).split("\n")
+        for line in lines:
+            self._take(line)
+        return len(text)
+
+    def finish(self) -> None:
+        """Hands on what was printed without an end of line."""
+        if self._rest:
+            self._take(self._rest)
+            self._rest = ""
+
+
+def event_line(event: TraceEvent) -> str:
+    """Returns an event as a line that a person reads."""
+    words = " ".join(f"{key}={value}" for key, value in event.data.items())
+    return f"{event.time:10.3f}  {event.source:<20} {event.kind:<10} {words}"
+
+
+def run_command(options: argparse.Namespace) -> int:
+    """Runs a model file."""
+    out: TextIO = sys.stdout
+    level = options.trace or ("all" if options.json else "none")
+    trace = Trace(level, keep=False) if level != "none" else None
+    limits = RunLimits(seed=options.seed, until=options.until, trace=trace)
+    lines: _Lines | None = None
+    if options.json:
+        lines = _Lines(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
+        if trace is not None:
+            trace.listen(lambda event: print(event.to_json(), file=out))
+    elif trace is not None:
+        trace.listen(lambda event: print(event_line(event), file=out))
+    warnings.showwarning = _show_warning
+    try:
+        if lines is not None:
+            sys.stdout = lines
+        run_file(options.file, limits=limits)
+    except Actr3dError as error:
+        out.flush()
+        return _complain(error, options.file)
+    except BrokenPipeError:
+        raise
+    except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
+        out.flush()
+        return _complain(error, options.file)
+    finally:
+        sys.stdout = out
+        if lines is not None:
+            lines.finish()
+    out.flush()
+    return 0
+
+
+def _complain(error: BaseException, file: str) -> int:
+    """Prints an error with the modeller's own lines only."""
+    report = traceback.TracebackException.from_exception(error)
+    library = str(Path(__file__).parent)
+    own = [frame for frame in report.stack if not frame.filename.startswith((library, "<frozen"))]
+    own = [frame for frame in own if Path(frame.filename).name != "actr3d"]
+    report.stack = traceback.StackSummary.from_list(own)
+    shown = list(report.format(chain=False))
+    if not own:
+        shown = shown[1:] if shown and shown[0].startswith("Traceback") else shown
+    text = "".join(shown)
+    if isinstance(error, Actr3dError):
+        kind = f"{type(error).__module__}.{type(error).__qualname__}: "
+        text = text.replace(kind, "error: ", 1)
+    print(text, end="", file=sys.stderr)
+    return 1
+
+
+def _show_warning(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None, line: str | None = None
+) -> None:
+    print(f"{filename}:{lineno}: warning: {message}", file=file or sys.stderr)
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"must be a number of seconds above 0 (got {text})")
+    return value
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    run = commands.add_parser("run", help="run a model file", description="Runs a Python ACT-R model file, unchanged.")
+    run.add_argument("file", metavar="FILE", help="the model file")
+    run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)")
+    run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest")
+    run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)")
+    run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
+    run.set_defaults(function=run_command)
+    bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
+    bench.add_argument("name", choices=["core"], help="what to measure")
+    bench.add_argument("--json", action="store_true", help="print one JSON object")
+    bench.set_defaults(function=_bench)
+    return parser
+
+
+def _bench(options: argparse.Namespace) -> int:
+    from actr3d.bench import core
+
+    return core.main(json_output=options.json)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    if arguments is None and os.environ.get("PYTHONHASHSEED") is None and sys.argv[1:2] == ["run"]:
+        # The order of sets of texts must not differ between two runs of one seed.
+        os.environ["PYTHONHASHSEED"] = "0"
+        os.execv(sys.executable, [sys.executable, "-m", "actr3d.cli", *sys.argv[1:]])
+    options: Any = _parser().parse_args(arguments)
+    try:
+        return options.function(options)
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # nobody reads any more
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

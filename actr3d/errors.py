@@ -1,0 +1,48 @@
+"""Every exception and warning of the library, and the «did you mean» they share."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class Actr3dError(Exception):
+    """The root of every error that this library raises on purpose."""
+
+
+class PatternException(Actr3dError):
+    """A pattern cannot be read; the message quotes the pattern and the text that is wrong."""
+
+
+class ChunkError(Actr3dError):
+    """A chunk cannot be made or changed as asked: unknown contents, slot, or variable."""
+
+
+class ProductionException(Actr3dError):
+    """A production cannot be built: unknown module, unreadable body, missing source."""
+
+
+class SchedulerError(Actr3dError):
+    """Something was yielded or scheduled that the scheduler cannot wait for."""
+
+
+class ParameterError(Actr3dError):
+    """A parameter has a wrong name, type or value."""
+
+
+class ModelFileError(Actr3dError):
+    """A model file cannot be loaded: missing, not Python 3, or not readable as text."""
+
+
+class ModelWarning(UserWarning):
+    """Something in a model that is most likely not what its author meant.
+
+    It is only said: a warning never changes what the model does.
+    """
+
+
+def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str:
+    """Returns `"; did you mean 'x'?"` for the known name nearest to `word`, or an empty string."""
+    names = sorted({str(name) for name in known} - {word})
+    near = difflib.get_close_matches(word, names, n=1, cutoff=cutoff)
+    return f"; did you mean '{near[0]}'?" if near else ""

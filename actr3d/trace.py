@@ -1,0 +1,90 @@
+"""The trace: the append-only record of everything that happens in one run.
+
+A run has no trace until somebody asks for one, and then records no more than the level asked for. Whoever emits an
+event first looks at the trace's level flags, so that nothing is computed which nobody wants.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+from actr3d.clock import seconds
+from actr3d.errors import ParameterError, did_you_mean
+
+LEVELS = ("none", "production", "buffer", "all")
+"""What a trace may hold: nothing; selections and firings; also buffer changes; everything."""
+
+Record = tuple[int, str, str, dict[str, Any]]
+
+
+class TraceEvent(NamedTuple):
+    """One thing that happened."""
+
+    time_us: int
+    """When [us of simulated time]."""
+    source: str
+    """Who: the dotted path below the top model, or «top» for that model itself."""
+    kind: str
+    """What: buffer, state, conflict, select, fire, changed, request, retrieval, reward, utility, log, output, ..."""
+    data: dict[str, Any]
+    """The particulars; plain values, lists and dicts only."""
+
+    @property
+    def time(self) -> float:
+        """When [s of simulated time]."""
+        return seconds(self.time_us)
+
+    def to_json(self) -> str:
+        """Returns the event as one line of JSON; the same event always gives the same bytes."""
+        record = {"time": self.time, "source": self.source, "kind": self.kind, "data": self.data}
+        return json.dumps(record, default=repr, ensure_ascii=False)
+
+
+class Trace:
+    """Records the events of one run and hands each to whoever listens.
+
+    Args:
+        level: One of `LEVELS`; what is not asked for is neither computed nor kept.
+        keep: Whether the trace keeps its events; a run that only streams them need not.
+
+    Raises:
+        ParameterError: If the level is unknown.
+    """
+
+    __slots__ = ("_listeners", "_records", "all", "buffer", "keep", "level", "production")
+
+    def __init__(self, level: str = "all", keep: bool = True) -> None:
+        if level not in LEVELS:
+            raise ParameterError(f"Trace.level: no level {level!r}; use one of {', '.join(LEVELS)}{did_you_mean(level, LEVELS)}")
+        self.level = level
+        self.keep = keep
+        self.production = level != "none"
+        self.buffer = level in ("buffer", "all")
+        self.all = level == "all"
+        self._records: list[Record] = []
+        self._listeners: list[Callable[[TraceEvent], None]] = []
+
+    def emit(self, time_us: int, source: str, kind: str, data: dict[str, Any]) -> None:
+        """Appends one event; the caller has looked at the level and gives `data` away."""
+        if self.keep:
+            self._records.append((time_us, source, kind, data))
+        if self._listeners:
+            event = TraceEvent(time_us, source, kind, data)
+            for listener in self._listeners:
+                listener(event)
+
+    def listen(self, listener: Callable[[TraceEvent], None]) -> None:
+        """Calls `listener` with every event from now on."""
+        self._listeners.append(listener)
+
+    def __len__(self) -> int:
+        return len(self._records)
+
+    def __iter__(self) -> Iterator[TraceEvent]:
+        return (TraceEvent(*record) for record in self._records)
+
+    def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
+        """Returns the events of one kind, of one source where it is named, in order."""
+        return [e for e in self if e.kind == kind and (source is None or e.source == source)]
