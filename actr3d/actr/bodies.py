@@ -10,7 +10,9 @@ from __future__ import annotations
 import ast
 import builtins
 import copy
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import CodeType
 from typing import Any, cast
 
 from actr3d.errors import ProductionException
@@ -161,21 +163,19 @@ class _Rebinder(ast.NodeTransformer):
 def compile_body(
     statements: Sequence[ast.stmt],
     *,
+    func: Callable[..., Any],
     name: str,
-    filename: str,
     bound: Iterable[str],
     context: Mapping[str, Any],
-    file: dict[str, Any],
 ) -> Body:
     """Makes a function of a body's statements.
 
     Args:
-        statements: The body, as parsed; it is left as it is.
+        statements: The body, or some of its statements, as parsed; they are left as they are.
+        func: The modeller's method they come from; its file's globals are seen live.
         name: The production's name, which tracebacks show.
-        filename: The modeller's file.
         bound: The variables that the patterns bind.
         context: What the agent and its ancestors offer by name; fixed from here on.
-        file: The globals of the modeller's file; live.
 
     Returns:
         A function that takes the bound variables. Where the body assigns names, these must be a `Scope`.
@@ -183,6 +183,53 @@ def compile_body(
     Raises:
         ProductionException: If the body contains `yield`, or cannot be compiled.
     """
+    filename = func.__code__.co_filename
+    stored = stored_names(statements)
+    used = used_names(statements)
+    taken = tuple(n for n in bound if n in used and n not in stored)
+    given = tuple(sorted(n for n in used & context.keys() if n not in stored and n not in taken))
+    # Thousands of agents of one class differ in what their names mean, not in their code.
+    key = (filename, name, func.__code__, tuple((s.lineno, s.col_offset) for s in statements), taken, given)
+    code = _CODES.get(key)
+    if code is None:
+        _refuse_yield(statements, name, filename)
+        if len(_CODES) >= MOST_CODES:
+            _CODES.clear()
+        code = _CODES[key] = _compile(statements, name, filename, stored, taken, given)
+    space: dict[str, Any] = {}
+    exec(code, func.__globals__, space)
+    made = space["__make__"](*(context[n] for n in given))
+    made.__code__ = made.__code__.replace(co_name=name, co_qualname=name)
+    return made
+
+
+_CODES: dict[Any, CodeType] = {}
+MOST_CODES = 10_000
+"""How many bodies' code is kept."""
+
+
+def _compile(
+    statements: Sequence[ast.stmt], name: str, filename: str, stored: set[str], taken: Sequence[str], given: Sequence[str]
+) -> CodeType:
+    """Compiles a function that takes what the body is given by name, and returns the body as a function."""
+    body = [cast("ast.stmt", copy.deepcopy(node)) for node in statements]
+    if stored:
+        rebinder = _Rebinder(stored)
+        body = [part for node in body for part in _as_list(rebinder.visit(node))]
+    first = statements[0]
+    prologue = [ast.Assign([ast.Name(n, ast.Store())], ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(n), ast.Load())) for n in taken]
+    inner = _function("__production__", [BOUND], [*prologue, *body], first)
+    outer = _function("__make__", given, [inner, ast.Return(ast.Name("__production__", ast.Load()))], first)
+    module = ast.fix_missing_locations(ast.Module([outer], []))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
+            return compile(module, filename, "exec", dont_inherit=True)
+    except SyntaxError as error:
+        raise ProductionException(f"{filename}:{error.lineno or first.lineno}: production '{name}': {error.msg}") from error
+
+
+def _refuse_yield(statements: Sequence[ast.stmt], name: str, filename: str) -> None:
     for node in statements:
         for part in _own_nodes(node):
             if isinstance(part, (ast.Yield, ast.YieldFrom, ast.Await)):
@@ -190,27 +237,6 @@ def compile_body(
                     f"{filename}:{part.lineno}: production '{name}' yields; a production acts at once: "
                     "let it call a generator method, which may wait"
                 )
-    stored = stored_names(statements)
-    used = used_names(statements)
-    body = [cast("ast.stmt", copy.deepcopy(node)) for node in statements]
-    if stored:
-        rebinder = _Rebinder(stored)
-        body = [part for node in body for part in _as_list(rebinder.visit(node))]
-    taken = [n for n in bound if n in used and n not in stored]
-    given = sorted(n for n in used & context.keys() if n not in stored and n not in taken)
-    first = statements[0]
-    prologue = [ast.Assign([ast.Name(n, ast.Store())], ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(n), ast.Load())) for n in taken]
-    inner = _function("__production__", [BOUND], [*prologue, *body], first)
-    outer = _function("__make__", given, [inner, ast.Return(ast.Name("__production__", ast.Load()))], first)
-    module = ast.fix_missing_locations(ast.Module([outer], []))
-    space: dict[str, Any] = {}
-    try:
-        exec(compile(module, filename, "exec", dont_inherit=True), file, space)
-    except SyntaxError as error:
-        raise ProductionException(f"{filename}:{error.lineno or first.lineno}: production '{name}': {error.msg}") from error
-    made = space["__make__"](*(context[n] for n in given))
-    made.__code__ = made.__code__.replace(co_name=name, co_qualname=name)
-    return made
 
 
 def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:

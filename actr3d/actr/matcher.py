@@ -5,22 +5,14 @@ that ask for a certain value are found by that value, so that the others cost no
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import as_text
 from actr3d.actr.model import Model
 from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, is_empty, look_up
 from actr3d.actr.production import Production
-
-Value = str | Missing | bool | None
-Test = tuple[int, int, Any, Any]
-"""(operation, which reading, what it is compared with, the object itself)"""
-
-IS, NOT, BIND, SAME, DIFFERS, EMPTY, CALL, DYNAMIC = range(8)
-_OPS = {"is": IS, "not": NOT, "bind": BIND, "same": SAME, "differs": DIFFERS, "empty": EMPTY, "call": CALL}
-_UNREAD: Any = object()
-
 
 def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     """Returns a function that reads a slot of an object as text, in the quickest way for that kind of object."""
@@ -49,6 +41,14 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     return read_anything
 
 
+class Test(NamedTuple):
+    """A condition with the number of the reading it looks at; -1 where it looks at the object itself."""
+
+    condition: Condition
+    place: int
+    target: Any
+
+
 class Matcher:
     """The productions of one system, compiled against the objects they look at.
 
@@ -60,39 +60,41 @@ class Matcher:
         self._context = context
         self._places: dict[tuple[str, Any], int] = {}
         self._readers: list[Callable[[], Any]] = []
-        self._tests: dict[Production, tuple[Test, ...]] = {}
+        self._attempts: dict[Production, tuple[Attempt, list[Any]]] = {}
         self._order: dict[Production, int] = {}
         self._always: list[Production] = []
         self._by_value: dict[int, dict[str, list[Production]]] = {}
 
     def build(self, productions: Sequence[Production]) -> None:
         """Takes in all productions of the system, in their order."""
-        self._tests = {p: tuple(self._test(c) for c in p.conditions) for p in productions}
+        tests = {p: [self._test(c) for c in p.conditions] for p in productions}
         self._order = {p: i for i, p in enumerate(productions)}
+        self._attempts = {
+            p: (compile_attempt(tuple(shape(t) for t in of)), [(t.condition, t.target) for t in of])
+            for p, of in tests.items()
+        }
         spread: dict[int, set[str]] = {}
-        for tests in self._tests.values():
-            for op, place, value, _ in tests:
-                if op == IS:
-                    spread.setdefault(place, set()).add(value)
+        keys = {p: [(t.place, t.condition.value) for t in of if t.condition.op == "is" and t.place >= 0] for p, of in tests.items()}
+        for of in keys.values():
+            for place, value in of:
+                spread.setdefault(place, set()).add(value)
         self._always = []
         self._by_value = {}
-        for production, tests in self._tests.items():
-            keys = [(len(spread[place]), -place, place, value) for op, place, value, _ in tests if op == IS]
+        for production, of in keys.items():
             # A value that every such production shares finds nobody faster than trying does.
-            if keys and max(keys)[0] > 1:
-                _, _, place, value = max(keys)
+            many, _, place, value = max(((len(spread[place]), -place, place, value) for place, value in of), default=(0, 0, 0, ""))
+            if many > 1:
                 self._by_value.setdefault(place, {}).setdefault(value, []).append(production)
             else:
                 self._always.append(production)
 
     def _test(self, condition: Condition) -> Test:
-        op, name, key, value = condition
-        target = self._context[name or "self"]
-        if op == "call":
-            return CALL, -1, value, target
-        if isinstance(key, str) and key[:1] == "?":
-            return DYNAMIC, -1, condition, target
-        return _OPS[op], self._place(name or "self", None if op == "empty" else key, target), value, target
+        _, name, key, _ = condition
+        name = name or "self"
+        target = self._context[name]
+        if condition.op == "call" or (isinstance(key, str) and key[:1] == "?"):
+            return Test(condition, -1, target)
+        return Test(condition, self._place(name, None if condition.op == "empty" else key, target), target)
 
     def _place(self, name: str, key: Any, target: Any) -> int:
         """Returns the number of a reading; a key of None asks whether the object is empty."""
@@ -104,21 +106,24 @@ class Matcher:
 
     def matching(self) -> list[Production]:
         """Returns the productions that match now, in order; each keeps what it bound."""
-        values: list[Any] = [_UNREAD] * len(self._readers)
+        readers = self._readers
+        values: list[Any] = [UNREAD] * len(readers)
         candidates = self._always
         if self._by_value:
-            readers = self._readers
             found: list[Production] = []
             for place, productions in self._by_value.items():
                 value = values[place] = readers[place]()
                 if value in productions:
                     found += productions[value]
-            if self._always or len(self._by_value) > 1:
-                found = sorted(self._always + found, key=self._order.__getitem__) if found else self._always
+            if not found:
+                found = candidates
+            elif candidates or len(self._by_value) > 1:
+                found = sorted(candidates + found, key=self._order.__getitem__)
             candidates = found
         result: list[Production] = []
         for production in candidates:
-            bound = self._try(self._tests[production], values)
+            attempt, extra = self._attempts[production]
+            bound = attempt(values, readers, extra)
             if bound is not None:
                 production.bound = bound
                 result.append(production)
@@ -126,44 +131,63 @@ class Matcher:
 
     def matches(self, production: Production) -> bool:
         """Tells whether one production matches now; if so, it keeps what it bound."""
-        bound = self._try(self._tests[production], [_UNREAD] * len(self._readers))
+        attempt, extra = self._attempts[production]
+        bound = attempt([UNREAD] * len(self._readers), self._readers, extra)
         if bound is None:
             return False
         production.bound = bound
         return True
 
-    def _try(self, tests: tuple[Test, ...], values: list[Any]) -> Bindings | None:
-        bound: Bindings = {}
-        for op, place, value, target in tests:
-            if op < CALL:
-                text = values[place]
-                if text is _UNREAD:
-                    text = values[place] = self._readers[place]()
-                if op == IS:
-                    if text != value:
-                        return None
-                elif text is MISSING:
-                    return None
-                elif op == BIND:
-                    bound[value] = text
-                elif op == NOT:
-                    if text == value:
-                        return None
-                elif op == EMPTY:
-                    if not text:
-                        return None
-                elif value not in bound or (text == bound[value]) != (op == SAME):
-                    return None
-            elif op == CALL:
-                if not calls(value, target, bound):
-                    return None
-            elif not _dynamic(value, target, bound):
-                return None
-        return bound
+
+Shape = tuple[str, int, Any]
+Attempt = Callable[[list[Any], list[Callable[[], Any]], list[Any]], Bindings | None]
+"""Tries one production: takes the values read so far, the readers, and its conditions with their objects."""
+UNREAD: Any = object()
 
 
-def _dynamic(condition: Condition, target: Any, bound: Bindings) -> bool:
-    """Tests a slot whose name is itself in a variable (`?s:1`)."""
+def shape(test: Test) -> Shape:
+    """Returns what the code for a test depends on; productions of equal shape share their code."""
+    op, _, _, value = test.condition
+    return op, test.place, None if test.place < 0 or op == "empty" else value
+
+
+@lru_cache(maxsize=4096)
+def compile_attempt(tests: tuple[Shape, ...]) -> Attempt:
+    """Writes and compiles the function that tries a production: straight code, each reading done once and only if needed."""
+    lines = ["def attempt(v, r, extra):"]
+    last = ["    b = {" + ", ".join(f"{value!r}: t{place}" for op, place, value in tests if op == "bind" and place >= 0) + "}"]
+    read: set[int] = set()
+    for number, (op, place, value) in enumerate(tests):
+        if place < 0:
+            last.append(f"    if not holds(extra[{number}], b): return None")
+            continue
+        if place not in read:
+            read.add(place)
+            lines += [f"    t{place} = v[{place}]", f"    if t{place} is UNREAD: t{place} = v[{place}] = r[{place}]()"]
+        if op == "is":
+            lines.append(f"    if t{place} != {value!r}: return None")
+        elif op == "empty":
+            lines.append(f"    if not t{place}: return None")
+        else:
+            missing = f"t{place} is MISSING"
+            if op == "bind":
+                lines.append(f"    if {missing}: return None")
+            elif op == "not":
+                lines.append(f"    if {missing} or t{place} == {value!r}: return None")
+            else:
+                wrong = "!=" if op == "same" else "=="
+                lines.append(f"    if {missing}: return None")
+                last.append(f"    if {value!r} not in b or t{place} {wrong} b[{value!r}]: return None")
+    space: dict[str, Any] = {"UNREAD": UNREAD, "MISSING": MISSING, "holds": _holds}
+    exec("\n".join([*lines, *last, "    return b"]), space)
+    return space["attempt"]
+
+
+def _holds(extra: tuple[Condition, Any], bound: Bindings) -> bool:
+    """Tests what straight code cannot: a modeller's function, or a slot whose name is itself in a variable (`?s:1`)."""
+    condition, target = extra
+    if condition.op == "call":
+        return calls(condition.value, target, bound)
     key = bound.get(str(condition.key)[1:], MISSING)
     found = MISSING if key is MISSING else look_up(target, int(key) if str(key).isdecimal() else key)
     if found is MISSING:
@@ -176,4 +200,3 @@ def _dynamic(condition: Condition, target: Any, bound: Bindings) -> bool:
     if wanted is MISSING:
         return False
     return (text == wanted) == (condition.op in ("is", "same"))
-

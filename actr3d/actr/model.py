@@ -194,8 +194,9 @@ class Model:
                     break
             if sch.trace is not None:
                 self._trace_change(sch.trace, key, value)
-            if self.log:
-                setattr(self.log, key, value)
+            log = own["log"]
+            if log is not logs.dummy and log:
+                setattr(log, key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):

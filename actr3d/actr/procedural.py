@@ -3,18 +3,34 @@
 from __future__ import annotations
 
 import inspect
+import random
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model
 from actr3d.actr.production import Production
 from actr3d.actr.profile import find_profile
+from actr3d.actr.scheduler import Event
 from actr3d.actr.utility import ProceduralSubModule
 from actr3d.errors import ProductionException, did_you_mean
 
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
+
+
+LAST = -1000
+"""The priority of matching again after firing: everything else that happens at that moment comes first."""
+
+
+def pick(numbers: random.Random, options: list[Production]) -> Production:
+    """Draws one of several; where there is only one, it uses up random numbers just as a choice among one does."""
+    if len(options) > 1:
+        return numbers.choice(options)
+    while numbers.getrandbits(1):
+        pass
+    return options[0]
 
 
 class ProductionSystem(Model):
@@ -31,6 +47,7 @@ class ProductionSystem(Model):
     _auto_run_start = False
     _matcher: Matcher | None = None
 
+    _process: Event
     _productions: list[Production]
     _initializers: list[Production]
     _context: dict[str, Any]
@@ -48,7 +65,7 @@ class ProductionSystem(Model):
             spec = inspect.getfullargspec(func)
             if spec.varargs is None and spec.varkw is None and len(spec.args) == len(spec.defaults or ()):
                 own["_productions" if spec.args else "_initializers"].append(Production(self, name, func))
-        self.sch.add(self._process_productions)
+        own["_process"] = self.sch.add(self._process_productions)
 
     # -- the cycle
 
@@ -62,7 +79,7 @@ class ProductionSystem(Model):
             if not matching:
                 yield self._top.changes
                 continue
-            choice = self.random.choice(matching)
+            choice = pick(self.random, matching)
             self._select(choice)
             yield self._duration()
             self._fire(choice)
@@ -111,7 +128,8 @@ class ProductionSystem(Model):
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "select", {"production": choice.name})
-        self.log.production = choice.name
+        if self.log is not dummy:
+            self.log.production = choice.name
 
     def _duration(self) -> float:
         time = self.production_time
@@ -121,7 +139,8 @@ class ProductionSystem(Model):
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": dict(choice.bound or {})})
-        self.log.production = None
+        if self.log is not dummy:
+            self.log.production = None
         choice.fire()
 
     def _add_production(self, production: Production) -> None:
@@ -165,10 +184,14 @@ class ACTR(ProductionSystem):
         """Matches, chooses the best, waits, matches again, fires; then lets everything else happen first."""
         self._begin()
         adaptors = self._adaptors
+        sch = self.sch
+        process = self._process
+        matcher = self._matcher
+        assert matcher is not None
         while True:
             if self.production_match_delay > 0:
                 yield self.production_match_delay
-            matching = self._match()
+            matching = matcher.matching()
             choice = self._choose(matching) if matching else None
             if choice is None:
                 yield self._top.changes
@@ -177,18 +200,23 @@ class ACTR(ProductionSystem):
                 adaptor.selecting(choice)
             self._select(choice)
             yield self._duration()
-            assert self._matcher is not None
-            if not self._matcher.matches(choice):
+            if not matcher.matches(choice):
                 self._abandon(choice)
                 continue
             for adaptor in adaptors:
                 adaptor.firing(choice)
             self._fire(choice)
-            yield {"delay": 0, "priority": -1000}
+            if sch.idle_now():
+                process.priority = LAST
+            else:
+                yield {"delay": 0, "priority": LAST}
 
     def _choose(self, matching: list[Production]) -> Production | None:
         """Returns one of those with the highest utility, or None where that is below the threshold."""
-        utilities = [self.get_activation(p) for p in matching]
+        if self._adaptors or type(self).get_activation is not ACTR.get_activation:
+            utilities: list[float] = [self.get_activation(p) for p in matching]
+        else:
+            utilities = [p.base_utility for p in matching]
         best = max(utilities)
         trace = self.sch.trace
         if trace is not None and trace.all:
@@ -200,7 +228,7 @@ class ACTR(ProductionSystem):
             for adaptor in self._adaptors:
                 adaptor.below_threshold()
             return None
-        return self.random.choice([p for p, u in zip(matching, utilities, strict=True) if u == best])
+        return pick(self.random, [p for p, u in zip(matching, utilities, strict=True) if u == best])
 
     def _trace_conflict(self, matching: list[Production], utilities: list[float]) -> None:
         trace = self.sch.trace

@@ -77,14 +77,7 @@ class Production:
 
     def body_of(self, statements: Sequence[ast.stmt]) -> Body:
         """Makes a function of some of the body's statements."""
-        return compile_body(
-            statements,
-            name=self.name,
-            filename=self.original_func.__code__.co_filename,
-            bound=self.variables,
-            context=self.context,
-            file=self.original_func.__globals__,
-        )
+        return compile_body(statements, func=self.original_func, name=self.name, bound=self.variables, context=self.context)
 
     @cached_property
     def _body(self) -> Body:

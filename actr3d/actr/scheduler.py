@@ -12,12 +12,18 @@ from typing import Any, cast
 
 from actr3d.actr import logger
 from actr3d.actr.limits import RunLimits
-from actr3d.clock import EventQueue, microseconds, seconds
+from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
 from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
+NEVER = 1 << 62
+"""A time that does not come [us]."""
 STANDSTILL = 1_000_000
 """So many events without any time passing are an endless loop, not a model."""
+
+
+FAR = 1e12
+"""Delays up to here [s] need no further look."""
 
 
 class Trigger:
@@ -133,11 +139,14 @@ class Scheduler:
         Raises:
             SchedulerError: If the delay is negative or not a finite number.
         """
-        where = f"{event.describe()}: " if event is not None and not _is_delay(delay) else ""
-        wait = microseconds(delay, f"{where}a delay")
-        if wait < 0:
-            where = f"{event.describe()}: " if event is not None else ""
-            raise SchedulerError(f"{where}a delay must not be negative (got {delay!r} s)")
+        kind = type(delay)
+        if (kind is float or kind is int) and 0 <= delay < FAR:
+            wait = round(delay * MICROSECONDS)
+        else:
+            what = "a delay" if event is None else f"{event.describe()}: a delay"
+            wait = microseconds(delay, what)
+            if wait < 0:
+                raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
         if self.round_ms:
             wait = (wait + 500) // 1000 * 1000
         return self.now_us + wait
@@ -179,17 +188,17 @@ class Scheduler:
             self._advance(until)
 
     def _run_events(self, until: int | None) -> None:
-        heap = self.queue.heap
-        pop = self.queue.pop
+        queue = self.queue
+        heap = queue.heap
+        end = NEVER if until is None else until
         still = 0
         while not self.stop_flag:
-            while self._incoming:
-                func, delay, args, keys, priority = self._incoming.popleft()
-                self.add(func, delay, args, keys, priority)
+            if self._incoming:
+                self._take_incoming()
             if not heap:
                 break
             time = heap[0][0]
-            if until is not None and time > until:
+            if time > end:
                 break
             if time > self.now_us:
                 self._advance(time)
@@ -201,33 +210,45 @@ class Scheduler:
                         f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; "
                         f"the last was {heap[0][3].describe()}"
                     )
-            self._perform(pop())
-
-    def _advance(self, time: int) -> None:
-        self.now_us = time
-        logger.LOG.time = time / 1_000_000
-
-    def _perform(self, event: Event) -> None:
-        if event.cancelled:
-            return
-        if event.group:
-            for other in event.group:
-                other.cancelled = other is not event
-            event.group = ()
-        if event.generator is not None:
+            event = queue.pop()
+            if event.cancelled:
+                continue
+            if event.group:
+                for other in event.group:
+                    other.cancelled = other is not event
+                event.group = ()
+            generator = event.generator
+            if generator is None:
+                self._wait(event, event.call(*event.args, **event.keys))
+                continue
             try:
-                result = next(event.generator)
+                result = next(generator)
             except StopIteration:
                 self._finish(event)
-                return
+                continue
             if type(result) is float:
-                self.queue.push(self.after(result, event), event, event.priority)
+                queue.push(self.after(result, event), event, event.priority)
+            elif type(result) is Trigger:
+                result.waiting.append(event)
             else:
                 if result is None:
                     self._warn_of_none(event)
                 self._wait(event, result)
-        else:
-            self._wait(event, event.call(*event.args, **event.keys))
+
+    def _take_incoming(self) -> None:
+        """Schedules what other threads have asked for."""
+        while self._incoming:
+            func, delay, args, keys, priority = self._incoming.popleft()
+            self.add(func, delay, args, keys, priority)
+
+    def idle_now(self) -> bool:
+        """Tells whether nothing else is to happen before time passes, so that what comes last may come at once."""
+        heap = self.queue.heap
+        return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self._incoming
+
+    def _advance(self, time: int) -> None:
+        self.now_us = time
+        logger.LOG.time = time / MICROSECONDS
 
     def _finish(self, event: Event) -> None:
         event.done = True
@@ -279,7 +300,3 @@ class Scheduler:
                 frame.f_code.co_filename,
                 frame.f_lineno,
             )
-
-
-def _is_delay(delay: object) -> bool:
-    return isinstance(delay, (int, float)) and delay >= 0
