@@ -71,6 +71,10 @@ class Buffer(Model):
         elif trace.buffer:
             trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(value)})
 
+    def _trace_state(self, trace: Trace) -> None:
+        if trace.buffer:
+            trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(self.chunk)})
+
     def __getitem__(self, key: Any) -> Any:
         chunk = self.chunk
         if chunk is None:

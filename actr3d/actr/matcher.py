@@ -41,6 +41,15 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     return read_anything
 
 
+def is_recorded(target: Any, key: Any) -> bool:
+    """Tells whether every change of what a reading reads goes through the trace by itself."""
+    if isinstance(key, str) and "." in key:
+        return False
+    if isinstance(target, Buffer):
+        return type(target).__getitem__ is Buffer.__getitem__
+    return isinstance(target, Model) and key in vars(target) and type(target).__getitem__ is Model.__getitem__
+
+
 class Test(NamedTuple):
     """A condition with the number of the reading it looks at; -1 where it looks at the object itself."""
 
@@ -64,6 +73,8 @@ class Matcher:
         self._order: dict[Production, int] = {}
         self._always: list[Production] = []
         self._by_value: dict[int, dict[str, list[Production]]] = {}
+        self._unrecorded: dict[str, Callable[[], Any]] = {}
+        self._seen: dict[str, Any] = {}
 
     def build(self, productions: Sequence[Production]) -> None:
         """Takes in all productions of the system, in their order."""
@@ -101,8 +112,23 @@ class Matcher:
         place = self._places.get((name, key))
         if place is None:
             place = self._places[name, key] = len(self._readers)
-            self._readers.append((lambda: is_empty(target)) if key is None else reader_of(target, key))
+            reader = (lambda: is_empty(target)) if key is None else reader_of(target, key)
+            self._readers.append(reader)
+            if not is_recorded(target, key):
+                self._unrecorded[f"{name}=None" if key is None else f"{name}.{key}"] = reader
         return place
+
+    def observed(self) -> dict[str, Any]:
+        """Returns what has changed, since it was last asked, of what productions look at and no model's change records:
+        attributes of plain objects, dotted paths, and properties. None stands for what is not there.
+        """
+        changed: dict[str, Any] = {}
+        for label, reader in self._unrecorded.items():
+            value = reader()
+            value = None if value is MISSING else value
+            if self._seen.get(label, UNREAD) != value:
+                changed[label] = self._seen[label] = value
+        return changed
 
     def matching(self) -> list[Production]:
         """Returns the productions that match now, in order; each keeps what it bound."""

@@ -38,6 +38,9 @@ class Retrieval:
     time: float
     """When it was made [s]."""
     pattern: str
+    """As it was written."""
+    compiled: Pattern
+    """With the values that its variables had."""
     modules: tuple[str, ...]
     """The activation modules, in the order of each candidate's parts."""
     threshold: float | None
@@ -50,6 +53,23 @@ class Retrieval:
     chosen: Chunk | None = None
     latency: float | None = None
     """How long the retrieval or its failure takes [s]."""
+
+    def to_data(self) -> dict[str, Any]:
+        """Returns the request as plain values, for the trace and for explanations."""
+        chosen = next((i for i, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
+        return {
+            "pattern": self.pattern,
+            "asked": " ".join(map(str, self.compiled.conditions)),
+            "threshold": self.threshold,
+            "require_new": self.require_new,
+            "finsts": [str(chunk) for chunk in self.marked],
+            "excluded": [str(chunk) for chunk in self.excluded],
+            "modules": list(self.modules),
+            "partial": self.compiled.partial is not None,
+            "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in self.candidates],
+            "chosen": chosen,
+            "latency": self.latency,
+        }
 
 
 class Memory(Model):
@@ -202,6 +222,7 @@ class Memory(Model):
         record = self._last = Retrieval(
             time=self.now(),
             pattern=str(pattern),
+            compiled=compiled,
             modules=tuple(type(a).__name__ for a in self.adaptors),
             threshold=self.threshold,
             require_new=require_new,
@@ -214,11 +235,13 @@ class Memory(Model):
             adaptor.matched(matches)
         best = self._weigh(matches, record, partial)
         if not best:
+            record.latency = self.maximum_time if self.threshold is None else self._time(self.threshold)
             self._note_request(record)
             self.fail(number)
             return
         choice = self.random.choice(best)
         record.chosen = choice
+        record.latency = self._time(self._strength(record, cast("Any", choice).activation))
         self._note_request(record)
         self.recall(choice, matches=matches, request_number=number)
 
@@ -244,17 +267,7 @@ class Memory(Model):
         """Records a request with all its candidates, where that is wanted."""
         trace = self.sch.trace
         if trace is not None and trace.all:
-            data = {
-                "pattern": record.pattern,
-                "threshold": record.threshold,
-                "require_new": record.require_new,
-                "finsts": [str(chunk) for chunk in record.marked],
-                "excluded": [str(chunk) for chunk in record.excluded],
-                "modules": list(record.modules),
-                "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in record.candidates],
-                "chosen": None if record.chosen is None else str(record.chosen),
-            }
-            trace.emit(self.sch.now_us, self._path, "request", data)
+            trace.emit(self.sch.now_us, self._path, "request", record.to_data())
 
     def _note_end(self, data: dict[str, Any]) -> None:
         trace = self.sch.trace
@@ -264,8 +277,6 @@ class Memory(Model):
     def fail(self, request_number: int) -> Iterator[float]:
         """Lets a request fail, after its time."""
         time = self.maximum_time if self.threshold is None else self._time(self.threshold)
-        if self._last is not None:
-            self._last.latency = time
         yield time
         if request_number != self._request_count:
             return
@@ -278,8 +289,6 @@ class Memory(Model):
         """Brings a chunk to the buffer, after its time."""
         self.finst.add(chunk)
         time = self._time(chunk.activation)
-        if self._last is not None:
-            self._last.latency = time
         yield time
         if request_number != self._request_count:
             return

@@ -147,6 +147,9 @@ class Model:
                 self._take_in(key, value)
         if self._profile is None and parent is not None:
             self._profile = parent._profile
+        limits = RunLimits.current()
+        if parent is None and limits is not None and limits.trace is not None:
+            self._attach_trace(limits.trace)
 
     def _become_top(self) -> None:
         own = self.__dict__
@@ -160,8 +163,6 @@ class Model:
         sch.seed = seed
         own["random"] = random.Random(seed)
         own["parent"] = None
-        if limits is not None and limits.trace is not None:
-            self._attach_trace(limits.trace)
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         """Looks at what the class brings, before its objects come to life; for subclasses."""
@@ -287,9 +288,10 @@ class Model:
 
     def _trace_state(self, trace: Trace) -> None:
         """Records the present value of every attribute, so that a trace which starts late can be read from its start."""
-        for key, value in list(self.__dict__.items()):
-            if key[0] != "_" and key not in UNWATCHED and (isinstance(value, Chunk) or value is None or type(value) in PLAIN_TYPES):
-                self._trace_change(trace, key, value)
+        if trace.all:
+            state = {key: value for key, value in self.__dict__.items() if key[0] != "_" and key not in UNWATCHED}
+            plain = {key: value for key, value in state.items() if value is None or type(value) in PLAIN_TYPES}
+            trace.emit(self.sch.now_us, self._path, "state", plain)
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         if trace.all:

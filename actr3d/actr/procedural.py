@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.logger import dummy
@@ -15,6 +16,7 @@ from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
 from actr3d.actr.utility import ProceduralSubModule
 from actr3d.errors import ProductionException, did_you_mean
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
@@ -46,6 +48,8 @@ class ProductionSystem(Model):
     """How long matching takes, as a part of that [s]."""
     _auto_run_start = False
     _matcher: Matcher | None = None
+    _chosen: Production | None = None
+    """The production that is about to fire."""
 
     _process: Event
     _productions: list[Production]
@@ -120,11 +124,34 @@ class ProductionSystem(Model):
                     )
 
     def _match(self) -> list[Production]:
-        assert self._matcher is not None
-        return self._matcher.matching()
+        """Returns the productions that match now; a trace learns what they looked at beyond buffers and modules."""
+        matcher = self._matcher
+        assert matcher is not None
+        matching = matcher.matching()
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            seen = matcher.observed()
+            if seen:
+                trace.emit(self.sch.now_us, self._path, "observe", seen)
+            self._trace_conflict(matching)
+        return matching
+
+    def _trace_conflict(self, matching: list[Production]) -> None:
+        """Records which productions match; an agent that knows utilities records them when it has computed them."""
+        assert self.sch.trace is not None
+        self.sch.trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": {p.name: p.base_utility for p in matching}})
+
+    def _adaptor_names(self) -> list[str]:
+        """Returns the names of the modules that add to utilities."""
+        return []
+
+    def _utility_parts(self, production: Production) -> dict[str, float | None]:
+        """Returns what each of these adds now; None for what is drawn only at a choice."""
+        return {}
 
     def _select(self, choice: Production) -> None:
         """Notes which production will fire."""
+        self.__dict__["_chosen"] = choice
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "select", {"production": choice.name})
@@ -136,6 +163,7 @@ class ProductionSystem(Model):
         return (time() if callable(time) else time) - self.production_match_delay
 
     def _fire(self, choice: Production) -> None:
+        self.__dict__["_chosen"] = None
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": dict(choice.bound or {})})
@@ -172,6 +200,9 @@ class ACTR(ProductionSystem):
     production_threshold: Any = None
     """The least utility a production needs to fire; a number, a function without arguments, or None for none."""
 
+    _weighed: Mapping[Production, list[float]] = MappingProxyType({})
+    """What each module added to the utilities at the latest choice."""
+
     def __init__(self, log: Any = None, **attrs: Any) -> None:
         self._adaptors: list[ProceduralSubModule] = []
         super().__init__(log, **attrs)
@@ -191,7 +222,7 @@ class ACTR(ProductionSystem):
         while True:
             if self.production_match_delay > 0:
                 yield self.production_match_delay
-            matching = matcher.matching()
+            matching = matcher.matching() if sch.trace is None else self._match()
             choice = self._choose(matching) if matching else None
             if choice is None:
                 yield self._top.changes
@@ -213,14 +244,16 @@ class ACTR(ProductionSystem):
 
     def _choose(self, matching: list[Production]) -> Production | None:
         """Returns one of those with the highest utility, or None where that is below the threshold."""
-        if self._adaptors or type(self).get_activation is not ACTR.get_activation:
+        if type(self).get_activation is not ACTR.get_activation:
             utilities: list[float] = [self.get_activation(p) for p in matching]
+        elif self._adaptors:
+            utilities = self._weigh(matching)
         else:
             utilities = [p.base_utility for p in matching]
-        best = max(utilities)
         trace = self.sch.trace
         if trace is not None and trace.all:
-            self._trace_conflict(matching, utilities)
+            self._trace_utilities(matching, utilities)
+        best = max(utilities)
         threshold = self.production_threshold
         if callable(threshold):
             threshold = threshold()
@@ -230,11 +263,53 @@ class ACTR(ProductionSystem):
             return None
         return pick(self.random, [p for p, u in zip(matching, utilities, strict=True) if u == best])
 
-    def _trace_conflict(self, matching: list[Production], utilities: list[float]) -> None:
+    def _weigh(self, matching: list[Production]) -> list[float]:
+        """Returns the utilities of productions, and keeps their parts: noise is drawn only here."""
+        weighed = {p: [adaptor.utility(p) for adaptor in self._adaptors] for p in matching}
+        self.__dict__["_weighed"] = weighed
+        utilities: list[float] = []
+        for production, parts in weighed.items():
+            utility = production.base_utility
+            for part in parts:
+                utility += part
+            utilities.append(utility)
+        return utilities
+
+    def _trace_conflict(self, matching: list[Production]) -> None:
+        if not matching:
+            super()._trace_conflict(matching)
+
+    def _trace_utilities(self, matching: list[Production], utilities: list[float]) -> None:
         trace = self.sch.trace
         assert trace is not None
-        found = {p.name: u for p, u in zip(matching, utilities, strict=True)}
-        trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": found})
+        data: dict[str, Any] = {"utilities": {p.name: u for p, u in zip(matching, utilities, strict=True)}}
+        if self._weighed:
+            names = self._adaptor_names()
+            data["parts"] = {p.name: dict(zip(names, parts, strict=True)) for p, parts in self._weighed.items()}
+            data["drawn"] = [adaptor.name for adaptor in self._adaptors if adaptor.draws]
+        trace.emit(self.sch.now_us, self._path, "conflict", data)
+
+    def _trace_state(self, trace: Trace) -> None:
+        super()._trace_state(trace)
+        if trace.all:
+            for production in self._productions:
+                for name, value in self._utility_parts(production).items():
+                    if value is not None:
+                        data = {"production": production.name, "part": name, "value": value}
+                        trace.emit(self.sch.now_us, self._path, "utility", data)
+
+    def _adaptor_names(self) -> list[str]:
+        return [adaptor.name for adaptor in self._adaptors]
+
+    def _utility_parts(self, production: Production) -> dict[str, float | None]:
+        drawn = self._weighed.get(production) if self._chosen is not None else None
+        parts: dict[str, float | None] = {}
+        for number, adaptor in enumerate(self._adaptors):
+            if adaptor.draws:
+                parts[adaptor.name] = None if drawn is None else drawn[number]
+            else:
+                parts[adaptor.name] = adaptor.utility(production)
+        return parts
 
     def _duration(self) -> float:
         time = self.production_time
@@ -245,6 +320,7 @@ class ACTR(ProductionSystem):
         return max(0, time - self.production_match_delay)
 
     def _abandon(self, choice: Production) -> None:
+        self.__dict__["_chosen"] = None
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "changed", {"production": choice.name})

@@ -48,6 +48,11 @@ class ProceduralSubModule(Model):
         """Returns this module's part of a production's utility."""
         return 0
 
+    @property
+    def draws(self) -> bool:
+        """Whether its part is drawn anew at each choice, so that it cannot be told at other times."""
+        return False
+
     def below_threshold(self) -> None:
         """Is told that no production's utility reached the threshold."""
 
@@ -71,6 +76,10 @@ class PMNoise(ProceduralSubModule):
 
     def utility(self, prod: Any) -> float:
         return prod.baseNoise + self.logisticNoise(self.noise)
+
+    @property
+    def draws(self) -> bool:
+        return self.noise != 0
 
     def logisticNoise(self, s: float) -> float:  # noqa: N802 - Python ACT-R's name
         """Draws logistic noise of scale `s`."""
