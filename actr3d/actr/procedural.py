@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from actr3d.actr.checks import check_system
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model
@@ -96,8 +97,10 @@ class ProductionSystem(Model):
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
-        self._matcher = Matcher(self._context)
-        self._matcher.build(self._productions)
+        check_system(self)
+        matcher = Matcher(self._context)
+        matcher.build(self._productions)
+        self.__dict__["_matcher"] = matcher
 
     def _calc_context(self) -> None:
         context: dict[str, Any] = {}
