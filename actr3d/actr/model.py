@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from types import ModuleType
 from typing import Any, cast
 
@@ -53,14 +53,16 @@ class MethodWrapper:
 class GeneratorWrapper(MethodWrapper):
     """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
 
-    def __call__(self, *args: Any, **keys: Any) -> Event | None:
-        return self.obj.sch.add(self.steps, args=args, keys=keys)
+    def __call__(self, *args: Any, **keys: Any) -> Event:
+        return self.obj.sch.begin(self._steps(args, keys), self.func)
 
-    def steps(self, *args: Any, **keys: Any) -> Iterator[Any]:
+    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
         """Runs the method, waking whoever waits for its begin or end."""
-        self.obj.sch.trigger(self.begins)
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
         yield from self.func(self.obj, *args, **keys)
-        self.obj.sch.trigger(self.ends)
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)
 
 
 class Model:

@@ -53,6 +53,7 @@ class Event:
         args: Sequence[Any] = (),
         keys: Mapping[str, Any] | None = None,
         priority: float = 0,
+        generator: GeneratorType[Any, Any, Any] | None = None,
     ) -> None:
         self.call = call
         self.args = args
@@ -62,9 +63,7 @@ class Event:
         self.cancelled = False
         self.done = False
         self.parents: list[Event] = []
-        self.generator: GeneratorType[Any, Any, Any] | None = None
-        if isgeneratorfunction(call) or isgeneratorfunction(getattr(type(call), "__call__", None)):
-            self.generator = call(*args, **self.keys)
+        self.generator = generator
 
     def __repr__(self) -> str:
         return f"<Event {self.describe()}>"
@@ -129,8 +128,17 @@ class Scheduler:
         if thread_safe:
             self._incoming.append((func, delay, args, keys, priority))
             return None
-        event = Event(func, args, keys, priority)
+        generator = None
+        if isgeneratorfunction(func) or isgeneratorfunction(getattr(type(func), "__call__", None)):
+            generator = func(*args, **(keys or {}))
+        event = Event(func, args, keys, priority, generator)
         self.queue.push(self.after(delay, event), event, priority)
+        return event
+
+    def begin(self, generator: GeneratorType[Any, Any, Any], call: Callable[..., Any]) -> Event:
+        """Lets a generator, which `call` has made, run from now on."""
+        event = Event(call, generator=generator)
+        self.queue.push(self.now_us, event)
         return event
 
     def after(self, delay: float, event: Event | None = None) -> int:
