@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import inspect
 import linecache
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,7 @@ from actr3d.actr.memory import Memory
 from actr3d.actr.model import MethodWrapper, Model
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.pattern import Condition
-from actr3d.actr.sources import function_node, place
+from actr3d.actr.sources import function_node
 from actr3d.actr.vocabulary import slots_given
 from actr3d.errors import ModelWarning, did_you_mean
 
@@ -33,18 +34,24 @@ SURE = 0.8
 """How near a name must be to another (0 to 1) to be taken for a slip."""
 
 
-def check_system(system: ProductionSystem) -> None:
-    """Checks an agent's class, unless that has been done."""
+def check_rules(system: ProductionSystem) -> bool:
+    """Checks an agent's class before it acts, unless that has been done; tells whether it has not."""
     if type(system) in _CHECKED:
-        return
+        return False
     _CHECKED.add(type(system))
     for production in system._productions:
         _check_contradictions(production)
         _check_patterns(production)
-        _check_slots(production)
     for production in (*system._initializers, *system._productions):
         _check_body(production)
-    _check_methods(type(system))
+    _check_classes(system)
+    return True
+
+
+def check_names(system: ProductionSystem) -> None:
+    """Checks names of slots and parameters, once the methods without parameters have set things up."""
+    for production in system._productions:
+        _check_slots(production)
     _check_parameters(system)
 
 
@@ -119,8 +126,8 @@ def _check_slots(production: Production) -> None:
         else:
             hint = ""
         if hint:
-            what = "no chunk is ever given" if isinstance(target, Buffer) else f"'{condition.name}' has no"
-            say(f"production '{production.name}': {what} a slot '{key}'{hint}", production.original_func)
+            what = "no chunk is ever given a slot" if isinstance(target, Buffer) else f"'{condition.name}' has no attribute"
+            say(f"production '{production.name}': {what} '{key}'{hint}", production.original_func)
 
 
 # -- bodies
@@ -133,12 +140,18 @@ def _check_body(production: Production) -> None:
         return
     known = {*production.variables, *production.assigned}
     for part in ast.walk(node):
-        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute):
-            if isinstance(_resolve(part.value, production.context), MethodWrapper):
-                text = ast.unparse(part.value)
-                say(f"'{text}' without brackets does nothing; did you mean '{text}()'?", production.original_func, part.lineno)
-        elif isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
+        if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
             _check_call(production, part, part.func, known)
+    _check_brackets(node, production.original_func, production.context)
+
+
+def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapping[str, Any]) -> None:
+    """Finds statements that name a method and do not call it."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute):
+            if isinstance(_resolve(part.value, names), MethodWrapper):
+                text = ast.unparse(part.value)
+                say(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
 
 
 def _resolve(node: ast.expr, context: Mapping[str, Any]) -> Any:
@@ -179,24 +192,38 @@ def _check_call(production: Production, call: ast.Call, func: ast.Attribute, kno
 # -- classes
 
 
-def _check_methods(kind: type) -> None:
+def _check_classes(system: ProductionSystem) -> None:
+    """Checks the methods of an agent's class and of its modellers' own modules."""
+    for part in (system, *system.get_children()):
+        for klass in type(part).__mro__:
+            functions = [member for member in vars(klass).values() if inspect.isfunction(member)]
+            if functions and _is_modellers(klass) and (klass is type(system) or klass not in _CHECKED):
+                _CHECKED.add(klass)
+                _check_names_of_methods(klass, functions[0])
+                for func in functions:
+                    node = function_node(func)
+                    if node is not None and node.args.args:
+                        _check_brackets(node, func, {node.args.args[0].arg: part})
+
+
+def _check_names_of_methods(klass: type, func: Callable[..., Any]) -> None:
     """Finds methods that a later one of the same name in the same class has replaced."""
-    for klass in kind.__mro__:
-        functions = [member for member in vars(klass).values() if inspect.isfunction(member)]
-        if not functions or klass.__module__.startswith("actr3d."):
-            continue
-        node = _class_node(klass, functions[0])
-        seen: dict[str, ast.FunctionDef] = {}
-        for part in node.body if node is not None else ():
-            if isinstance(part, ast.FunctionDef):
-                before = seen.get(part.name)
-                if before is not None and not part.decorator_list:
-                    say(
-                        f"class {klass.__name__} has two methods '{part.name}', in lines {before.lineno} and {part.lineno}; only the second counts",
-                        functions[0],
-                        part.lineno,
-                    )
-                seen[part.name] = part
+    node = _class_node(klass, func)
+    seen: dict[str, int] = {}
+    for part in node.body if node is not None else ():
+        if isinstance(part, ast.FunctionDef):
+            if part.name in seen and not part.decorator_list:
+                say(
+                    f"class {klass.__name__} has two methods '{part.name}', in lines {seen[part.name]} and {part.lineno}; "
+                    "only the second counts",
+                    func,
+                    part.lineno,
+                )
+            seen[part.name] = part.lineno
+
+
+def _is_modellers(klass: type) -> bool:
+    return klass is not object and not klass.__module__.startswith("actr3d.")
 
 
 def _class_node(klass: type, func: Callable[..., Any]) -> ast.ClassDef | None:
@@ -226,23 +253,25 @@ def _check_parameters(system: ProductionSystem) -> None:
     from actr3d.actr.procedural import ACTR
 
     known = {name for klass in ACTR.__mro__ for name in vars(klass) if name.startswith("production_")} | {"profile"}
-    _check_names(system, f"class {type(system).__name__}", known, _methods(system))
+    _check_attributes(system, system, f"class {type(system).__name__}", known)
     for part in system.get_children():
-        if type(part).__module__.startswith("actr3d."):
+        if not _is_modellers(type(part)):
             parameters = set(inspect.signature(type(part).__init__).parameters) - {"self"}
-            _check_names(part, f"'{part.name}'", parameters, _methods(system))
+            _check_attributes(system, part, f"'{part.name}'", parameters)
 
 
-def _methods(system: ProductionSystem) -> Callable[..., Any]:
-    """Returns any method of the agent, for its file and line."""
-    every = [*system._initializers, *system._productions]
-    return every[0].original_func if every else type(system).__init__
-
-
-def _check_names(part: Model, what: str, known: set[str], func: Callable[..., Any]) -> None:
+def _check_attributes(system: ProductionSystem, part: Model, what: str, known: set[str]) -> None:
     for name, value in vars(part).items():
         if name[0] == "_" or name in known or isinstance(value, (MethodWrapper, Model)) or name in vars(Model):
             continue
         hint = did_you_mean(name, known, 0.85)
-        if hint and not hasattr(type(part).__mro__[0], f"_{name}"):
-            say(f"{what} has an attribute '{name}', which is no parameter{hint} ({place(func)})", func)
+        if hint:
+            filename, line = _place_of_class(type(system))
+            warnings.warn_explicit(f"{what} has an attribute '{name}', which is no parameter{hint}", ModelWarning, filename, line, registry={})
+
+
+def _place_of_class(klass: type) -> tuple[str, int]:
+    """Returns the file and the line of a class's definition."""
+    filename = getattr(sys.modules.get(klass.__module__), "__file__", None) or "<model>"
+    lines = [node.lineno for node in _classes("".join(linecache.getlines(filename))) if node.name == klass.__name__]
+    return filename, lines[-1] if lines else 1

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.checks import check_system
+from actr3d.actr.checks import check_names, check_rules
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model
@@ -92,12 +92,14 @@ class ProductionSystem(Model):
     def _begin(self) -> None:
         """Fixes what productions can see by name, and carries out the methods without parameters."""
         self._calc_context()
+        unchecked = check_rules(self)
         for production in self._initializers:
             production.bound = {}
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
-        check_system(self)
+        if unchecked:
+            check_names(self)
         matcher = Matcher(self._context)
         matcher.build(self._productions)
         self.__dict__["_matcher"] = matcher
