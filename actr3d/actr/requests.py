@@ -1,0 +1,63 @@
+"""The record of one request to declarative memory: what was asked, who stood for it, what came of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.pattern import Pattern
+
+
+@dataclass(slots=True)
+class Candidate:
+    """A chunk that matched a request, and how it stood."""
+
+    chunk: Chunk
+    parts: tuple[float, ...]
+    """What each activation module added, in the memory's order."""
+    partial: float
+    """What mismatches cost (0 or less)."""
+    activation: float
+    """The sum."""
+
+
+@dataclass(slots=True)
+class Retrieval:
+    """One request and what came of it."""
+
+    time: float
+    """When it was made [s]."""
+    pattern: str
+    """As it was written."""
+    compiled: Pattern
+    """With the values that its variables had."""
+    modules: tuple[str, ...]
+    """The activation modules, in the order of each candidate's parts."""
+    threshold: float | None
+    require_new: bool
+    marked: list[Chunk]
+    """What had been retrieved lately (finsts)."""
+    excluded: list[Chunk] = field(default_factory=list[Chunk])
+    """Matching chunks that were left out for being marked."""
+    candidates: list[Candidate] = field(default_factory=list[Candidate])
+    chosen: Chunk | None = None
+    latency: float | None = None
+    """How long the retrieval or its failure takes [s]."""
+
+    def to_data(self) -> dict[str, Any]:
+        """Returns the request as plain values, for the trace and for explanations."""
+        chosen = next((i for i, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
+        return {
+            "pattern": self.pattern,
+            "asked": " ".join(map(str, self.compiled.conditions)),
+            "threshold": self.threshold,
+            "require_new": self.require_new,
+            "finsts": [str(chunk) for chunk in self.marked],
+            "excluded": [str(chunk) for chunk in self.excluded],
+            "modules": list(self.modules),
+            "partial": self.compiled.partial is not None,
+            "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in self.candidates],
+            "chosen": chosen,
+            "latency": self.latency,
+        }
