@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from actr3d.actr.activation import DMBaseLevel, DMFixed, DMNoise, DMSalience, DMSpreading, MemorySubModule
+from actr3d.actr.activation import DMBaseLevel, DMFixed, DMNoise, MemorySubModule
 from actr3d.actr.association import DMAssociate, DMInhibition
 from actr3d.actr.blending import BlendingMemory
 from actr3d.actr.buffer import Buffer
@@ -19,6 +19,7 @@ from actr3d.actr.modules.timer import Timer
 from actr3d.actr.modules.vision import Vision
 from actr3d.actr.partial import Partial
 from actr3d.actr.procedural import ACTR, ProductionSystem
+from actr3d.actr.spreading import DMSalience, DMSpreading
 from actr3d.actr.utility import PMPGC, PMTD, PMNew, PMNoise, PMPGCMixedWeighted, PMPGCSuccessWeighted, ProceduralSubModule
 
 __all__ = [

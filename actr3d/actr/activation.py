@@ -7,14 +7,11 @@ say of it.
 from __future__ import annotations
 
 import math
-import warnings
 from typing import TYPE_CHECKING, Any, Final
 
-from actr3d.actr.chunk import Chunk, as_text
-from actr3d.actr.pattern import Pattern
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.utility import logistic_noise
-from actr3d.errors import ChunkError, ModelWarning
+from actr3d.errors import ChunkError
 
 if TYPE_CHECKING:
     from actr3d.actr.memory import Memory
@@ -68,10 +65,16 @@ class DMNoise(MemorySubModule):
         self.baseNoise = baseNoise
 
     def create(self, chunk: Any, **keys: Any) -> None:
-        chunk.baseNoise = self.logisticNoise(self.baseNoise)
+        # A chunk added before there is a model (in a class's body) gets its base noise when it is first looked at, from
+        # that model's own random numbers.
+        if self.parent is not None and self.parent._is_converted():
+            chunk.baseNoise = self.logisticNoise(self.baseNoise)
 
     def activation(self, chunk: Any) -> float:
-        return chunk.baseNoise + self.logisticNoise(self.noise)
+        base: float | None = getattr(chunk, "baseNoise", None)
+        if base is None:
+            base = chunk.baseNoise = self.logisticNoise(self.baseNoise)
+        return base + self.logisticNoise(self.noise)
 
     def logisticNoise(self, s: float) -> float:  # noqa: N802 - Python ACT-R's name
         """Draws logistic noise of scale `s`."""
@@ -109,7 +112,7 @@ class DMBaseLevel(MemorySubModule):
     Source: Anderson & Lebiere (1998); hybrid form: Petrov (2006).
     """
 
-    def __init__(self, memory: Memory | None, decay: float | None = 0.5, limit: int | None | _ByProfile = BY_PROFILE) -> None:
+    def __init__(self, memory: Memory | None, decay: float | None = 0.5, limit: int | _ByProfile | None = BY_PROFILE) -> None:
         MemorySubModule.__init__(self, memory)
         self.decay = decay
         self._limit = limit
@@ -126,29 +129,24 @@ class DMBaseLevel(MemorySubModule):
         self._limit = value
 
     def create(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
-        now = self.now()
-        # Python ACT-R counts a chunk's life from when it was added, even where it is said to be older.
-        chunk.creation = now - time if self.rules.optimized_learning else now
-        chunk.times = [now - time]
+        # Both are kept, because a chunk that is added in a class's body does not know yet which profile it will live by.
+        chunk.creation = self.now()
+        chunk.first = self.now() - time
+        chunk.times = [chunk.first]
         chunk.count = 1
         if baselevel is not None and baselevel != "calculate":
             chunk.baselevel = baselevel
-        if self.rules.optimized_learning:  # Python ACT-R keeps the first time until there is a second
-            self._forget_times(chunk)
 
     def merge(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
         chunk.times.append(self.now() - time)
         chunk.count += 1
-        self._forget_times(chunk)
-        if baselevel == "calculate":
-            vars(chunk).pop("baselevel", None)
-        elif baselevel is not None:
-            chunk.baselevel = baselevel
-
-    def _forget_times(self, chunk: Any) -> None:
         limit = self.limit
         if limit is not None and len(chunk.times) > limit:
             chunk.times = chunk.times[-limit:] if limit else []
+        if baselevel == "calculate":
+            chunk.__dict__.pop("baselevel", None)
+        elif baselevel is not None:
+            chunk.baselevel = baselevel
 
     def activation(self, chunk: Any) -> float:
         fixed = getattr(chunk, "baselevel", None)
@@ -157,105 +155,49 @@ class DMBaseLevel(MemorySubModule):
         d = self.decay
         if d is None:
             return 0
-        youngest = self.rules.youngest_age
+        rules = self.rules
         now = self.now()
-        ages = [now - time for time in chunk.times]
-        total = sum([math.pow(max(age, youngest), -d) for age in ages])
-        forgotten = chunk.count - len(ages)
-        if forgotten > 0 and self.limit is not None:
-            total += _forgotten(forgotten, now - chunk.creation, ages[0] if ages else 0.0, d, youngest)
-        return math.log(total)
+        times: list[float] | None = getattr(chunk, "times", None)
+        if times is None:
+            raise ChunkError(f"DMBaseLevel has not met chunk '{chunk}': add it with memory.add, after the module is made")
+        limit = self.limit
+        if rules.optimized_learning and limit == 0:
+            times = []  # Python ACT-R counts the first time exactly until there is a second
+        youngest = rules.youngest_age
+        total = 0.0
+        for time in times:
+            total += math.pow(max(now - time, youngest), -d)
+        forgotten = chunk.count - len(times)
+        if forgotten > 0 and limit is not None:
+            latest = now - times[0] if times else None
+            if rules.optimized_learning:
+                latest = None if latest is None else max(latest, youngest)
+                total += _forgotten(forgotten, max(now - chunk.first, youngest), latest, d, youngest)
+            else:  # it also counts a chunk's life from when it was added, even where it is said to be older
+                total += _forgotten(forgotten, now - chunk.creation, latest, d, youngest)
+        return math.log(total) if total > 0 else -math.inf
 
 
-def _forgotten(count: int, oldest: float, latest: float, d: float, youngest: float) -> float:
+def _forgotten(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
     """Returns what references whose times are not kept add up to, if they were spread evenly.
 
     Args:
         count: How many they are, n - k.
         oldest: The age of the first reference, t_n [s].
-        latest: The age of the oldest kept one, t_k [s]; 0 for none kept.
+        latest: The age of the oldest kept one, t_k [s]; None for none kept, which are then spread up to now.
         d: The decay.
-        youngest: The least age that counts [s].
+        youngest: What an age counts as where there is no number for it: 0, or less than 0 [s].
     """
-    if oldest < youngest and (oldest <= latest or youngest >= 0.05):
-        oldest = youngest
-    if oldest <= latest:
-        return count * math.pow(oldest, -d)
+    if latest is None:
+        latest = 0.0 if d < 1 else youngest
+        oldest = oldest if oldest > 0 else youngest
+    elif min(oldest, latest) < 0 or (d >= 1 and min(oldest, latest) == 0):
+        oldest, latest = max(oldest, youngest), max(latest, youngest)
+    if oldest == latest:
+        return count * math.pow(max(oldest, youngest), -d)
     if d == 1:
-        return count * (math.log(oldest / latest) if latest > 0 else 1.0) / (oldest - latest)
+        return count * math.log(oldest / latest) / (oldest - latest)
     return count / (1 - d) * (math.pow(oldest, 1 - d) - math.pow(latest, 1 - d)) / (oldest - latest)
-
-
-class DMSpreading(MemorySubModule):
-    """Spreading activation: what is in the buffers makes related chunks active.
-
-    In Python ACT-R, each slot value of a buffer's chunk that also stands in the chunk adds
-    `weight[buffer] * (strength - ln(occurrences in memory + 1))`. In ACT-R 7 the weight is divided among the values that
-    can name a chunk, and S_ji = strength - ln((1 + slots_j) / slots_ji), which counts 0 where it is negative.
-
-    Args:
-        memory: The memory.
-        buffers: The sources.
-
-    Source: Anderson & Lebiere (1998), equation 3.5; ACT-R 7 reference manual, spreading activation.
-    """
-
-    def __init__(self, memory: Memory, *buffers: Any) -> None:
-        MemorySubModule.__init__(self, memory)
-        self.strength: float = 1
-        self.buffers = buffers
-        self.weight: dict[Any, float] = dict.fromkeys(buffers, 1)
-        self.slots: dict[Any, int] = {}
-        self._warned: set[Any] = set()
-
-    def create(self, chunk: Any, **keys: Any) -> None:
-        for value in chunk.values():
-            self.slots[value] = self.slots.get(value, 0) + 1
-
-    def activation(self, chunk: Any) -> float:
-        total = 0.0
-        values: list[Any] = list(chunk.values())
-        for buffer in self.buffers:
-            source: Chunk | None = buffer.chunk
-            if source is not None:
-                total += self._spread(source, values, self.weight[buffer])
-        return total
-
-    def _spread(self, source: Chunk, values: list[Any], weight: float) -> float:
-        if not self.rules.spread_by_slots:
-            total = 0.0
-            for value in source.values():
-                if value in values:
-                    total += weight * (self.strength - math.log(self.slots.get(value, 0) + 1))
-            return total
-        sources = [value for value in source.values() if names_a_chunk(value)]
-        return sum([weight / len(sources) * self._association(value, values) for value in sources if value in values])
-
-    def _association(self, value: Any, values: list[Any]) -> float:
-        strength = self.strength - math.log((1 + self.slots.get(value, 0)) / values.count(value))
-        if strength >= 0:
-            return strength
-        if value not in self._warned:
-            self._warned.add(value)
-            warnings.warn(
-                f"the fan of '{value}' is so large that it would inhibit: S_ji = {strength:.3f} counts as 0; "
-                f"raise DMSpreading.strength (now {self.strength:g})",
-                ModelWarning,
-                stacklevel=2,
-            )
-        return 0.0
-
-
-def names_a_chunk(value: Any) -> bool:
-    """Tells whether a slot's value can name a chunk: text that is neither a number nor None, True or False."""
-    text = as_text(value)
-    if text in ("None", "True", "False"):
-        return False
-    try:
-        float(text)
-    except ValueError:
-        return True
-    return False
 
 
 class DMFixed(MemorySubModule):
@@ -272,46 +214,4 @@ class DMFixed(MemorySubModule):
         chunk.fixed += fixed
 
     def activation(self, chunk: Any) -> float:
-        return chunk.fixed
-
-
-class DMSalience(MemorySubModule):
-    """Makes rare values active: a value adds its weight times its information in bits, among the chunks of a context."""
-
-    def __init__(self, memory: Memory) -> None:
-        MemorySubModule.__init__(self, memory)
-        self.histogram: dict[Any, dict[Any, float]] = {}
-        self.weight: dict[Any, float] = {}
-        self.memory = memory
-
-    def weights(self, **weights: float) -> None:
-        """Says how much each slot counts; `_1=2` is the slot numbered 1."""
-        named = {int(k[1:]) if k[0] == "_" else k: float(w) for k, w in weights.items()}
-        self.weight = dict(named)
-        self.histogram = {slot: {} for slot in named}
-
-    def context(self, pattern: Any) -> None:
-        """Counts values among the chunks that match a pattern.
-
-        Raises:
-            ChunkError: If none does.
-        """
-        compiled = Pattern(pattern)
-        chunks = [chunk for chunk in self.memory.dm if compiled.match(chunk) is not None]
-        if not chunks:
-            raise ChunkError(f"DMSalience.context: no chunk matches '{pattern}'")
-        share = 1.0 / len(chunks)
-        for slot, counts in self.histogram.items():
-            counts.clear()
-            for chunk in chunks:
-                value = chunk.get(slot)
-                counts[value] = counts.get(value, 0) + share
-
-    def activation(self, chunk: Any) -> float:
-        total = 0.0
-        for slot, counts in self.histogram.items():
-            value = chunk.get(slot)
-            if value not in counts:
-                raise ChunkError(f"DMSalience: no chunk of the context has '{value}' in slot '{slot}'; give a context that '{chunk}' belongs to")
-            total += math.log(1.0 / counts[value], 2) * self.weight[slot]
-        return total
+        return getattr(chunk, "fixed", self.default)

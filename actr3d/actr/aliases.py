@@ -33,7 +33,7 @@ _PARTS: dict[str, tuple[str, ...]] = {
     "runner": ("actr3d.actr.sweep",),
     "display": ("actr3d.actr.display",),
     "actr.buffer": ("actr3d.actr.buffer", "actr3d.actr.chunk"),
-    "actr.dm": ("actr3d.actr.memory", "actr3d.actr.activation", "actr3d.actr.association", "actr3d.actr.blending", "actr3d.actr.partial"),
+    "actr.dm": tuple(f"actr3d.actr.{part}" for part in ("memory", "activation", "association", "blending", "partial", "spreading")),
     "actr.pm": ("actr3d.actr.utility",),
     "actr.core": ("actr3d.actr.procedural",),
     "actr.compile": ("actr3d.actr.compilation",),

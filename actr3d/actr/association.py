@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.activation import DMBaseLevel, MemorySubModule
+from actr3d.actr.activation import BY_PROFILE, DMBaseLevel, MemorySubModule, _ByProfile
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.profile import PYTHON_ACTR
+from actr3d.actr.spreading import countable
+from actr3d.errors import ChunkError
 
 if TYPE_CHECKING:
     from actr3d.actr.memory import Memory
@@ -28,7 +30,9 @@ class DMAssociate(MemorySubModule):
         limit: As in `DMBaseLevel`.
     """
 
-    def __init__(self, memory: Memory, buffer: Any, weight: float = 1, decay: float | None = 0.5, limit: int | None = None) -> None:
+    def __init__(
+        self, memory: Memory, buffer: Any, weight: float = 1, decay: float | None = 0.5, limit: int | _ByProfile | None = BY_PROFILE
+    ) -> None:
         MemorySubModule.__init__(self, memory)
         self._buffer = buffer
         self._links: dict[tuple[Any, Any], Any] = {}
@@ -40,9 +44,10 @@ class DMAssociate(MemorySubModule):
         self._link(pre, post).baselevel = baselevel
 
     def _link(self, pre: Any, post: Any) -> Any:
-        link = self._links.get((pre, post))
+        pair = countable(pre), countable(post)
+        link = self._links.get(pair)
         if link is None:
-            link = self._links[pre, post] = _Link()
+            link = self._links[pair] = _Link()
             self._time().create(link)
         return link
 
@@ -58,8 +63,9 @@ class DMAssociate(MemorySubModule):
         base = self._time()
         for pre in context.values():
             for post in chunk.values():
-                if (pre, post) in self._links:
-                    base.merge(self._links[pre, post])
+                known = self._links.get((countable(pre), countable(post)))
+                if known is not None:
+                    base.merge(known)
                 else:
                     self._link(pre, post)
 
@@ -71,7 +77,7 @@ class DMAssociate(MemorySubModule):
         total = 0.0
         for pre in context.values():
             for post in chunk.values():
-                link = self._links.get((pre, post))
+                link = self._links.get((countable(pre), countable(post)))
                 if link is not None:
                     total += base.activation(link)
         return total * self.weight
@@ -100,7 +106,11 @@ class DMInhibition(MemorySubModule):
         chunk.mostRecentTime = self.now()
 
     def activation(self, chunk: Any) -> float:
-        age = self.now() - chunk.mostRecentTime
-        if age <= 0:
-            age = self.rules.youngest_age
-        return -math.log(1 + math.pow(age, -self.decayScale) / self.timeScale)
+        latest: float | None = getattr(chunk, "mostRecentTime", None)
+        if latest is None:
+            raise ChunkError(f"DMInhibition has not met chunk '{chunk}': add it with memory.add, after the module is made")
+        age = self.now() - latest
+        try:
+            return -math.log(1 + math.pow(age, -self.decayScale) / self.timeScale)
+        except ValueError:  # no number for an age of 0, nor for most ages below
+            return -math.log(1 + math.pow(self.rules.youngest_age, -self.decayScale) / self.timeScale)

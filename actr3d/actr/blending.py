@@ -25,11 +25,11 @@ class BlendingMemory(Memory):
     """t; None for the profile's."""
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
-        slots = set(chunk)
         numeric = [slot for slot in sorted(chunk, key=str) if _number(chunk[slot]) is not None]
-        if numeric:
+        if numeric or self.rules.blend_by_noise:
             blend: Any = Chunk(chunk)
             blend.activation = self._match_score(matches) if self.rules.blend_by_noise else chunk.activation
+            slots = set(chunk)
             self._mix(blend, numeric, [match for match in matches if set(match) == slots])
             chunk = blend
         yield from Memory.recall(self, chunk, matches, request_number)
@@ -37,9 +37,10 @@ class BlendingMemory(Memory):
     def _mix(self, blend: Chunk, numeric: Sequence[Any], matches: Sequence[Any]) -> None:
         """Sets the numeric slots of a blend."""
         t = self._temperature()
-        # exp is taken relative to the largest only where it would overflow, so that sums round as they always did.
+        # exp is taken relative to the largest only where it would leave the range of numbers, so that sums round as they
+        # always did.
         largest = max(match.activation for match in matches) / t
-        shift = largest if largest > 700 else 0.0
+        shift = largest if abs(largest) > 600 and math.isfinite(largest) else 0.0
         sums = dict.fromkeys(numeric, 0.0)
         total = 0.0
         for match in matches:
@@ -52,7 +53,8 @@ class BlendingMemory(Memory):
                 sums[slot] += value * weight
             total += weight
         for slot in numeric:
-            blend[slot] = sums[slot] / total
+            if total > 0:  # else no chunk has any activation at all, and the most active one's values stay
+                blend[slot] = sums[slot] / total
 
     def _temperature(self) -> float:
         if self.temperature is not None:
@@ -70,8 +72,10 @@ class BlendingMemory(Memory):
 
     def _match_score(self, matches: Sequence[Any]) -> float:
         """Returns ln sum exp A."""
-        largest = max(match.activation for match in matches)
-        return largest + math.log(sum([math.exp(match.activation - largest) for match in matches]))
+        largest: float = max(match.activation for match in matches)
+        if not math.isfinite(largest):
+            return largest
+        return largest + math.log(math.fsum(math.exp(match.activation - largest) for match in matches))
 
 
 def _number(value: Any) -> float | None:

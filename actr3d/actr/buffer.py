@@ -57,13 +57,23 @@ class Buffer(Model):
         return len(self) == 0
 
     def _harvest(self) -> None:
-        """Gives a chunk that is about to leave to declarative memory, where the agent's profile asks for it (ACT-R 7)."""
-        profile = self._profile
-        if profile is not None and profile.harvest and self.chunk and self.parent is not None:
-            for part in self.parent.get_children():
-                collect = getattr(part, "_collect", None)
-                if collect is not None:
-                    collect(self.chunk)
+        """Gives a chunk that is about to leave to the nearest declarative memory that collects such chunks (ACT-R 7).
+
+        A retrieved chunk goes back to the memory it came from; any other to every such memory of the agent.
+        """
+        chunk = self.chunk
+        if not chunk:
+            return
+        above = self.parent
+        while above is not None:
+            memories = [m for m in above.__dict__.get("_harvesters", ()) if m.parent is above]
+            if memories:
+                for memory in [m for m in memories if m._buffer is self] or memories:
+                    memory._collect(chunk)
+                return
+            if above._profile is not None and not above._profile.harvest:
+                return
+            above = above.parent
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         if key != "chunk":

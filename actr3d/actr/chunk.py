@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from actr3d.errors import ChunkError, did_you_mean
 
@@ -103,13 +103,20 @@ class Chunk(dict[Any, Any]):
         """Returns a chunk with the same slots, known to no memory."""
         return Chunk(self)
 
-    # A chunk that lies in a declarative memory tells it of every change, because the memory finds chunks by their
-    # slots; for all others `_store` is None.
-    _store: ChunkStore | None = None
+    # A chunk that lies in declarative memories tells them of every change, because they find chunks by their slots; for
+    # all others `_stores` is empty. A copy lies in none.
+    _stores: tuple[ChunkStore, ...] = ()
 
     def _changed(self) -> None:
-        if self._store is not None:
-            self._store.forget_order()
+        for store in self._stores:
+            store.forget_order()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_stores"}
+
+    def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
+        self.update(other)
+        return self
 
     def __setitem__(self, key: Any, value: Any) -> None:
         dict.__setitem__(self, key, value)

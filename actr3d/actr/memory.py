@@ -3,73 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, cast
 
 from actr3d.actr.activation import MemorySubModule
+from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
+from actr3d.actr.keywords import check_keywords
 from actr3d.actr.model import Model
 from actr3d.actr.partial import Partial
 from actr3d.actr.pattern import Pattern
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
+from actr3d.actr.requests import Candidate, Retrieval
+from actr3d.actr.saying import warn_modeller
 from actr3d.actr.store import ChunkStore
 from actr3d.errors import ChunkError
-
-
-@dataclass(slots=True)
-class Candidate:
-    """A chunk that matched a request, and how it stood."""
-
-    chunk: Chunk
-    parts: tuple[float, ...]
-    """What each activation module added, in the memory's order."""
-    partial: float
-    """What mismatches cost (0 or less)."""
-    activation: float
-    """The sum."""
-
-
-@dataclass(slots=True)
-class Retrieval:
-    """One request and what came of it."""
-
-    time: float
-    """When it was made [s]."""
-    pattern: str
-    """As it was written."""
-    compiled: Pattern
-    """With the values that its variables had."""
-    modules: tuple[str, ...]
-    """The activation modules, in the order of each candidate's parts."""
-    threshold: float | None
-    require_new: bool
-    marked: list[Chunk]
-    """What had been retrieved lately (finsts)."""
-    excluded: list[Chunk] = field(default_factory=list[Chunk])
-    """Matching chunks that were left out for being marked."""
-    candidates: list[Candidate] = field(default_factory=list[Candidate])
-    chosen: Chunk | None = None
-    latency: float | None = None
-    """How long the retrieval or its failure takes [s]."""
-
-    def to_data(self) -> dict[str, Any]:
-        """Returns the request as plain values, for the trace and for explanations."""
-        chosen = next((i for i, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
-        return {
-            "pattern": self.pattern,
-            "asked": " ".join(map(str, self.compiled.conditions)),
-            "threshold": self.threshold,
-            "require_new": self.require_new,
-            "finsts": [str(chunk) for chunk in self.marked],
-            "excluded": [str(chunk) for chunk in self.excluded],
-            "modules": list(self.modules),
-            "partial": self.compiled.partial is not None,
-            "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in self.candidates],
-            "chosen": chosen,
-            "latency": self.latency,
-        }
 
 
 class Memory(Model):
@@ -101,12 +50,12 @@ class Memory(Model):
         Model.__init__(self)
         self._buffer = buffer
         self._profile = None if profile is None else find_profile(profile, "Memory.profile")
-        self._latency_given = latency is not None
-        self.dm = ChunkStore()
+        self.dm: ChunkStore = ChunkStore()
         self.error = False
         self.busy = False
         self.adaptors: list[MemorySubModule] = []
         self.latency: float = self.rules.latency if latency is None else latency
+        self._latency_given = latency is not None
         self.threshold = threshold
         self.maximum_time = maximum_time
         self.partials: list[Partial] = []
@@ -120,12 +69,22 @@ class Memory(Model):
         """The numbers this memory goes by: its own profile, else its agent's."""
         return self._profile or PYTHON_ACTR
 
-    def start(self) -> None:
-        """Takes over the agent's profile, where none was given."""
-        if self._profile is None and self.parent is not None and self.parent._profile is not None:
-            self._profile = self.parent._profile
-            if not self._latency_given:
-                self.__dict__["latency"] = self._profile.latency
+    def _follow(self, profile: Profile | None) -> None:
+        """Takes over the agent's profile, where none was given, and tells buffers to hand over what leaves them."""
+        super()._follow(profile)
+        if not self._latency_given:
+            self.__dict__["latency"] = self.rules.latency
+        if self.rules.harvest and self.parent is not None:
+            harvesters: list[Memory] = self.parent.__dict__.setdefault("_harvesters", [])
+            if self not in harvesters:
+                harvesters.append(self)
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        if key == "dm" and not isinstance(value, ChunkStore):
+            value = ChunkStore(value)  # a modeller's own list of chunks
+        elif key == "latency":
+            self.__dict__["_latency_given"] = True
+        super().__setattr__(key, value)
 
     # -- what is known
 
@@ -146,7 +105,16 @@ class Memory(Model):
         """
         if self.error:
             self.error = False
-        new = Chunk(chunk, self._bound())
+        if keys:
+            check_keywords(keys, self.adaptors)
+        if isinstance(chunk, Buffer) and chunk.chunk is None:
+            raise ChunkError(f"memory '{self.name}': buffer '{chunk.name}' is empty, so there is no chunk to add")
+        new: Any = Chunk(chunk, self._bound())
+        self._keep(new, keys)
+        new.record = record
+
+    def _keep(self, new: Chunk, keys: Mapping[str, Any]) -> None:
+        """Takes a chunk in, or strengthens the equal one that is known already."""
         known = self.dm.equal_to(new)
         if known is not None:
             for adaptor in self.adaptors:
@@ -155,12 +123,10 @@ class Memory(Model):
             for adaptor in self.adaptors:
                 adaptor.create(new, **keys)
             self.dm.keep(new)
-        new.record = record
 
     def _collect(self, chunk: Chunk) -> None:
-        """Takes in a chunk that left a buffer (ACT-R 7)."""
-        if self.rules.harvest:
-            self.add(Chunk(chunk))
+        """Takes in a chunk that left a buffer (ACT-R 7); unlike `add`, this does not take back that a request failed."""
+        self._keep(Chunk(chunk), {})
 
     def _bound(self) -> dict[str, Any] | None:
         sch = self.__dict__.get("sch")
@@ -178,7 +144,8 @@ class Memory(Model):
         return found
 
     def _pattern(self, pattern: Any, partial: Partial | None) -> Pattern:
-        return Pattern([pattern] if isinstance(pattern, Mapping) else pattern, self._bound(), partial)
+        patterns: object = [cast("object", pattern)] if isinstance(pattern, Mapping) else pattern
+        return Pattern(patterns, self._bound(), partial)
 
     def _matching(self, pattern: Pattern) -> list[Chunk]:
         """Returns the matching chunks in order, looking only at those that have the rarest of the slots asked for."""
@@ -247,17 +214,23 @@ class Memory(Model):
 
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
+        own = self._own_activation()
         for chunk in cast("list[Any]", matches):
-            parts = self._parts(chunk)
+            parts: tuple[float, ...] = (own(chunk),) if own is not None else self._parts(chunk)
             cost: float = chunk._partial if partial is not None else 0.0
-            chunk.activation = sum(parts) + cost if partial is not None else sum(parts)
+            chunk.activation = total(parts) + cost if partial is not None else total(parts)
             record.candidates.append(Candidate(chunk, parts, cost, chunk.activation))
-        if not matches:
-            return []
-        best: float = max(candidate.activation for candidate in record.candidates)
-        if self.threshold is not None and self._strength(record, best) < self.threshold:
+            if chunk.activation != chunk.activation:
+                warn_modeller(f"memory '{self.name}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
+        best: float = max((c.activation for c in record.candidates if c.activation == c.activation), default=math.nan)
+        if best != best or (self.threshold is not None and self._strength(record, best) < self.threshold):
             return []
         return [candidate.chunk for candidate in record.candidates if candidate.activation == best]
+
+    def _own_activation(self) -> Callable[[Any], float] | None:
+        """Returns a modeller's own `get_activation`, where there is one."""
+        method: Any = self.get_activation
+        return None if getattr(method, "func", getattr(method, "__func__", None)) is Memory.get_activation else method
 
     def _strength(self, record: Retrieval, best: float) -> float:
         """Returns the activation that the threshold is compared with, and that sets the time."""
@@ -301,9 +274,10 @@ class Memory(Model):
     def _time(self, activation: float) -> float:
         """Returns F exp(-A), at most the maximum time [s]."""
         try:
-            return min(self.latency * math.exp(-activation), self.maximum_time)
+            time = min(self.latency * math.exp(-activation), self.maximum_time) if self.latency else 0.0
         except OverflowError:
-            return self.maximum_time
+            time = self.maximum_time
+        return round(time * 1000) / 1000 if self.rules.whole_milliseconds else time
 
     # -- activation
 
@@ -311,7 +285,7 @@ class Memory(Model):
         """Returns what each activation module adds to a chunk's activation now."""
         parts = tuple([adaptor.activation(chunk) for adaptor in self.adaptors])
         if self.record_all_chunks or getattr(chunk, "record", None) is True:
-            self.log[str(chunk)] = sum(parts)
+            self.log[str(chunk)] = total(parts)
         return parts
 
     def get_activation(self, chunk: Any) -> float:
@@ -320,14 +294,22 @@ class Memory(Model):
         Raises:
             ChunkError: If the memory holds no such chunk.
         """
-        if not isinstance(chunk, Chunk) or chunk._store is not self.dm:  # pyright: ignore[reportPrivateUsage]
+        if not self.dm.holds(chunk):
             wanted = Chunk(chunk, self._bound())
             known = self.dm.equal_to(wanted)
             if known is None:
                 raise ChunkError(f"memory '{self.name}' holds no chunk '{wanted}'")
             chunk = known
-        return sum(self._parts(chunk))
+        return total(self._parts(chunk))
 
     def add_adaptor(self, a: MemorySubModule) -> None:
         """Takes in an activation module; done by the module itself."""
         self.adaptors.append(a)
+
+
+def total(parts: Iterable[float]) -> float:
+    """Adds numbers up one by one; `sum` rounds otherwise from Python 3.12 on, and the same model is to give the same numbers."""
+    result: float = 0
+    for part in parts:
+        result += part
+    return result

@@ -38,6 +38,10 @@ class MethodWrapper:
         """What `yield` on the method itself waits for."""
         return self.ends
 
+    @property
+    def _profile(self) -> Profile | None:
+        return self.obj._profile
+
     def __call__(self, *args: Any, **keys: Any) -> Any:
         if self.begins.waiting:
             self.obj.sch.trigger(self.begins)
@@ -128,8 +132,10 @@ class Model:
         if parent is not None:
             parent._ensure_converted()
             own["sch"], own["log"], own["random"], own["parent"] = parent.sch, logs.dummy, parent.random, parent
+            self._follow(parent._profile)
         else:
             self._become_top()
+            self._follow(None)
         self._convert_info(objects, methods)
         for name, obj in objects.items():
             if isinstance(obj, Model):
@@ -147,8 +153,6 @@ class Model:
         for key, value in list(own.items()):
             if key[0] != "_" and key != "parent" and isinstance(value, Model) and not value._converted:
                 self._take_in(key, value)
-        if self._profile is None and parent is not None:
-            self._profile = parent._profile
         limits = RunLimits.current()
         if parent is None and limits is not None and limits.trace is not None:
             self._attach_trace(limits.trace)
@@ -165,6 +169,11 @@ class Model:
         sch.seed = seed
         own["random"] = random.Random(seed)
         own["parent"] = None
+
+    def _follow(self, profile: Profile | None) -> None:
+        """Goes by the numbers of its parent, unless it has been given its own; for subclasses to act upon."""
+        if self._profile is None:
+            self.__dict__["_profile"] = profile
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         """Looks at what the class brings, before its objects come to life; for subclasses."""
@@ -220,8 +229,11 @@ class Model:
         value._forget_path()
         if not value._converted:
             value._convert(self)
-        elif value.sch is not self.sch:
-            value._join(self.sch, self.random)
+        else:
+            if value.sch is not self.sch:
+                value._join(self.sch, self.random)
+            for part in value._tree():
+                part._follow(part.parent._profile if part.parent is not None else None)
 
     def _join(self, sch: Scheduler, numbers: random.Random) -> None:
         """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
@@ -231,6 +243,7 @@ class Model:
             time, priority, _, event = self.sch.queue.heap[0]
             self.sch.queue.pop()
             sch.queue.push(max(time, sch.now_us), event, -priority)
+        sch.round_ms = sch.round_ms or self.sch.round_ms
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.chunk import Slot, as_text
+from actr3d.actr.profile import PYTHON_ACTR
+from actr3d.actr.saying import warn_modeller
 
 if TYPE_CHECKING:
     from actr3d.actr.memory import Memory
@@ -25,13 +27,16 @@ class Partial:
         self._memory = memory
         self.limit = limit
         self.strength = strength
-        self.sims: dict[tuple[str, str], float] = {}
+        self.sims: dict[tuple[Any, Any], float] = {}
+        self._texts: dict[tuple[str, str], float] = {}
         memory.partials.append(self)
 
     def similarity(self, a: Any, b: Any, value: float) -> None:
         """Says how similar two values are, in both directions; 0 is the same, less is less similar."""
-        self.sims[as_text(a), as_text(b)] = value
-        self.sims[as_text(b), as_text(a)] = value
+        self.sims[a, b] = value
+        self.sims[b, a] = value
+        self._texts[as_text(a), as_text(b)] = value
+        self._texts[as_text(b), as_text(a)] = value
 
     def request(self, pattern: Any) -> None:
         """Asks the memory with these similarities."""
@@ -39,7 +44,13 @@ class Partial:
 
     def match(self, key: Slot, a: str, b: str) -> float:
         """Returns what finding `b` where `a` was asked for adds to activation (0 or less)."""
-        return self.strength * self.sims.get((a, b), self.limit)
+        similarity = self.sims.get((a, b))
+        if similarity is None and (a, b) in self._texts:
+            if self._memory.rules is PYTHON_ACTR:  # patterns compare text, and it looks text up among numbers
+                warn_modeller(f"what is said of the similarity of {a} and {b} is not found, for patterns compare text: write '{a}', '{b}'")
+            else:
+                similarity = self._texts[a, b]
+        return self.strength * (self.limit if similarity is None else similarity)
 
     def negated(self, key: Slot, value: str) -> float | None:
         """Returns what finding just what was not wanted adds; None where that rules the chunk out (not in ACT-R 7)."""

@@ -264,9 +264,15 @@ class Pattern:
         return text == value or (self.partial is not None and self._forgives(obj, key, value, text, negated=False))
 
     def _forgives(self, obj: Any, key: Slot, wanted: Any, found: str, negated: bool) -> bool:
-        """Charges a mismatch to `obj._partial`, and tells whether it may be forgiven at all."""
-        cost = self.partial.negated(key, wanted) if negated else self.partial.match(key, wanted, found)
-        if cost is None:
+        """Charges a mismatch to `obj._partial`, and tells whether it may be forgiven at all.
+
+        A modeller's own `match` may know nothing of the values (a KeyError, or None): that is no match.
+        """
+        ask = getattr(self.partial, "negated", None) if negated else self.partial.match
+        if ask is None:
             return False
-        obj._partial += cost
+        try:
+            obj._partial += ask(key, wanted) if negated else ask(key, wanted, found)
+        except (AttributeError, TypeError, KeyError):
+            return False
         return True

@@ -59,11 +59,12 @@ class ProductionSystem(Model):
     _top: Model
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
-        wanted = objects.get("profile")
-        if wanted is not None:
-            self._profile = find_profile(wanted, f"{type(self).__name__}.profile")
-            self.sch.round_ms = self.sch.round_ms or self._profile.whole_milliseconds
         own = self.__dict__
+        wanted = own.get("profile") or objects.get("profile")
+        if wanted is not None:
+            objects["profile"] = wanted
+            own["_profile"] = find_profile(wanted, f"{type(self).__name__}.profile")
+            self.sch.round_ms = self.sch.round_ms or own["_profile"].whole_milliseconds
         own["_productions"] = []
         own["_initializers"] = []
         for name, func in methods.items():

@@ -1,117 +1,63 @@
-"""Requests for chunks: a pattern with the values its variables have, found through the memory's indexes.
-
-Most requests name plain slots; those are answered from the index of the rarest value asked for. Whatever else a
-pattern may say (functions, dotted paths, similar values) is left to `Pattern`.
-"""
+"""The record of one request to declarative memory: what was asked, who stood for it, what came of it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from dataclasses import dataclass, field
 from typing import Any
 
-from actr3d.actr.chunk import Chunk, Slot, as_text
-from actr3d.actr.pattern import parse
-from actr3d.actr.store import ChunkStore
+from actr3d.actr.chunk import Chunk
+from actr3d.actr.pattern import Pattern
 
 
-@lru_cache(maxsize=4096)
-def _plan(text: str) -> tuple[tuple[Slot, str, str], ...] | None:
-    """Reads a request's text; None where it names slots that only `Pattern` can find."""
-    tests = parse(text)
-    for slot, _, _ in tests:
-        if isinstance(slot, str) and (slot[0] == "?" or "." in slot):
-            return None
-    return tests
+@dataclass(slots=True)
+class Candidate:
+    """A chunk that matched a request, and how it stood."""
+
+    chunk: Chunk
+    parts: tuple[float, ...]
+    """What each activation module added, in the memory's order."""
+    partial: float
+    """What mismatches cost (0 or less)."""
+    activation: float
+    """The sum."""
 
 
-class Request:
-    """A request that names plain slots only.
+@dataclass(slots=True)
+class Retrieval:
+    """One request and what came of it."""
 
-    Args:
-        tests: What is asked, as (slot, sign, word); see `pattern.parse`.
-        bound: The variables that have a value.
-    """
+    time: float
+    """When it was made [s]."""
+    pattern: str
+    """As it was written."""
+    compiled: Pattern
+    """With the values that its variables had."""
+    modules: tuple[str, ...]
+    """The activation modules, in the order of each candidate's parts."""
+    threshold: float | None
+    require_new: bool
+    marked: list[Chunk]
+    """What had been retrieved lately (finsts)."""
+    excluded: list[Chunk] = field(default_factory=list[Chunk])
+    """Matching chunks that were left out for being marked."""
+    candidates: list[Candidate] = field(default_factory=list[Candidate])
+    chosen: Chunk | None = None
+    latency: float | None = None
+    """How long the retrieval or its failure takes [s]."""
 
-    __slots__ = ("differ", "equal", "present", "same", "unequal")
-    partial = None
-
-    def __init__(self, tests: Sequence[tuple[Slot, str, str]], bound: Mapping[str, Any] | None) -> None:
-        self.equal: list[tuple[Slot, str]] = []
-        self.unequal: list[tuple[Slot, str]] = []
-        self.present: dict[str, Slot] = {}
-        self.same: list[tuple[Slot, str]] = []
-        self.differ: list[tuple[Slot, str]] = []
-        for slot, sign, word in tests:
-            if sign == "is":
-                self.equal.append((slot, word))
-            elif sign == "not":
-                self.unequal.append((slot, word))
-            elif bound is not None and word in bound:
-                value = bound[word]
-                text = value if type(value) is str else as_text(value)
-                (self.equal if sign == "?" else self.unequal).append((slot, text))
-            elif sign == "!?":
-                self.differ.append((slot, word))
-            elif word in self.present:
-                self.same.append((slot, word))
-            else:
-                self.present[word] = slot
-
-    def __str__(self) -> str:
-        words = [f"{slot}:{text}" for slot, text in self.equal]
-        words += [f"{slot}:!{text}" for slot, text in self.unequal]
-        words += [f"{slot}:?{name}" for name, slot in self.present.items()]
-        words += [f"{slot}:?{name}" for slot, name in self.same]
-        return " ".join([*words, *(f"{slot}:!?{name}" for slot, name in self.differ)])
-
-    def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order they came."""
-        found: list[Chunk] | None = None
-        for slot, text in self.equal:
-            chunks = store.with_value(slot, text)
-            if found is None or len(chunks) < len(found):
-                found = chunks
-                if not chunks:
-                    return []
-        if found is None:
-            found = store
-            for slot in [*self.present.values(), *(slot for slot, _ in self.unequal)]:
-                holders = store.with_slot(slot)
-                if len(holders) < len(found):
-                    found = holders
-        return [chunk for chunk in found if self._fits(chunk)]
-
-    def _fits(self, chunk: Chunk) -> bool:
-        for slot, text in self.equal:
-            value = chunk.get(slot, _NOTHING)
-            if value != text and (type(value) is str or value is _NOTHING or as_text(value) != text):
-                return False
-        for slot in self.present.values():
-            if slot not in chunk:
-                return False
-        return not (self.unequal or self.same or self.differ) or self._fits_rest(chunk)
-
-    def _fits_rest(self, chunk: Chunk) -> bool:
-        for slot, text in self.unequal:
-            if slot not in chunk or as_text(chunk[slot]) == text:
-                return False
-        for slot, name in (*self.same, *self.differ):
-            if slot not in chunk or name not in self.present:
-                return False
-        if any(as_text(chunk[slot]) != as_text(chunk[self.present[name]]) for slot, name in self.same):
-            return False
-        return all(as_text(chunk[slot]) != as_text(chunk[self.present[name]]) for slot, name in self.differ)
-
-
-_NOTHING = object()
-
-
-def plain_request(text: str, bound: Mapping[str, Any] | None) -> Request | None:
-    """Returns a request that names plain slots only; None where its text says more.
-
-    Raises:
-        PatternException: If the text is no pattern.
-    """
-    tests = _plan(text)
-    return None if tests is None else Request(tests, bound)
+    def to_data(self) -> dict[str, Any]:
+        """Returns the request as plain values, for the trace and for explanations."""
+        chosen = next((i for i, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
+        return {
+            "pattern": self.pattern,
+            "asked": " ".join(map(str, self.compiled.conditions)),
+            "threshold": self.threshold,
+            "require_new": self.require_new,
+            "finsts": [str(chunk) for chunk in self.marked],
+            "excluded": [str(chunk) for chunk in self.excluded],
+            "modules": list(self.modules),
+            "partial": self.compiled.partial is not None,
+            "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in self.candidates],
+            "chosen": chosen,
+            "latency": self.latency,
+        }

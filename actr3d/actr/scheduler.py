@@ -68,6 +68,12 @@ class Event:
     def __repr__(self) -> str:
         return f"<Event {self.describe()}>"
 
+    def in_milliseconds(self) -> bool:
+        """Tells whether the model whose method this is goes by whole milliseconds."""
+        owner = getattr(self.call, "__self__", self.call)
+        profile = getattr(owner, "_profile", None)
+        return profile is not None and profile.whole_milliseconds
+
     def describe(self) -> str:
         """Names the call, and for a generator the line it stands at."""
         name = getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call))
@@ -91,7 +97,7 @@ class Scheduler:
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
         self.stop_flag = False
         self.round_ms = False
-        """Whether delays are whole milliseconds, as in ACT-R 7."""
+        """Whether there are models whose events happen at whole milliseconds, as in ACT-R 7."""
         self.limits: RunLimits | None = RunLimits.current()
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
@@ -155,8 +161,8 @@ class Scheduler:
             wait = microseconds(delay, what)
             if wait < 0:
                 raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
-        if self.round_ms:
-            wait = (wait + 500) // 1000 * 1000
+        if self.round_ms and wait > 0 and event is not None and event.in_milliseconds():
+            return max(self.now_us, round((self.now_us + wait) / 1000) * 1000)
         return self.now_us + wait
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:

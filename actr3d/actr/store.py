@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterable
 from typing import Any, SupportsIndex
 
 from actr3d.actr.chunk import Chunk, Slot, as_text
 
 Postings = dict[str, list[Chunk]]
+PLAIN = frozenset({str, int, float, bool, type(None)})
+"""The types of value that chunks are indexed by; any other may change by itself, and is compared one by one."""
 
 
 def _mutator(name: str) -> Callable[..., Any]:
@@ -35,12 +38,16 @@ class ChunkStore(list[Chunk]):
         super().__init__(chunks)
         self._slots: dict[Slot, Postings] = {}
         self._holders: dict[Slot, list[Chunk]] = {}
-        self._equals: dict[frozenset[Any], list[Chunk]] | None = None
+        self._changeable: set[Slot] = set()
+        """The indexed slots in which some chunk has a value that is not plain."""
+        self._equals: dict[frozenset[Any] | None, list[Chunk]] | None = None
+        """Chunks with the same items; under None those that hold a value which is not plain."""
 
     def forget_order(self) -> None:
         """Throws the indexes away: chunks came, went or changed."""
         self._slots.clear()
         self._holders.clear()
+        self._changeable.clear()
         self._equals = None
 
     extend = _mutator("extend")
@@ -57,42 +64,57 @@ class ChunkStore(list[Chunk]):
     __imul__ = _mutator("__imul__")
 
     def __deepcopy__(self, memo: dict[int, Any]) -> ChunkStore:
-        import copy
+        copied = memo[id(self)] = ChunkStore()
+        list.extend(copied, [copy.deepcopy(chunk, memo) for chunk in self])
+        return copied
 
-        return ChunkStore([copy.deepcopy(chunk, memo) for chunk in self])
+    def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
+        return (ChunkStore, (list(self),))
 
     def keep(self, chunk: Chunk) -> None:
         """Appends a chunk and enters it in the indexes there are."""
         list.append(self, chunk)
-        chunk._store = self  # pyright: ignore[reportPrivateUsage]
+        self._adopt(chunk)
         for slot, postings in self._slots.items():
-            if slot in chunk:
-                postings.setdefault(as_text(chunk[slot]), []).append(chunk)
+            self._post(chunk, slot, postings)
         for slot, holders in self._holders.items():
             if slot in chunk:
                 holders.append(chunk)
         if self._equals is not None:
             self._equals.setdefault(_likeness(chunk), []).append(chunk)
 
+    def holds(self, chunk: object) -> bool:
+        """Tells whether a chunk is known to lie in here itself, not only one that is equal to it."""
+        return isinstance(chunk, Chunk) and any(store is self for store in chunk._stores)
+
     def equal_to(self, chunk: Chunk) -> Chunk | None:
         """Returns the first chunk with the same slots and equal values."""
+        likeness = _likeness(chunk)
+        if likeness is None:
+            return next((known for known in self if known == chunk), None)
         if self._equals is None:
             self._equals = {}
             for known in self:
                 self._adopt(known)
                 self._equals.setdefault(_likeness(known), []).append(known)
-        return next((known for known in self._equals.get(_likeness(chunk), ()) if known == chunk), None)
+        alike = self._equals.get(likeness)
+        changeable = [known for known in self._equals.get(None, ()) if known == chunk]
+        if alike and changeable:
+            return next(known for known in self if known == chunk)
+        return alike[0] if alike else changeable[0] if changeable else None
 
     def with_value(self, slot: Slot, text: str) -> list[Chunk]:
-        """Returns, in order, the chunks whose value in `slot` reads as `text`; not to be changed by the caller."""
+        """Returns, in order, all chunks whose value in `slot` reads as `text`, maybe among others that have the slot.
+
+        The list is not to be changed by the caller.
+        """
         postings = self._slots.get(slot)
         if postings is None:
             postings = self._slots[slot] = {}
             for chunk in self:
                 self._adopt(chunk)
-                if slot in chunk:
-                    postings.setdefault(as_text(chunk[slot]), []).append(chunk)
-        return postings.get(text, [])
+                self._post(chunk, slot, postings)
+        return self.with_slot(slot) if slot in self._changeable else postings.get(text, [])
 
     def with_slot(self, slot: Slot) -> list[Chunk]:
         """Returns, in order, the chunks that have the slot at all; not to be changed by the caller."""
@@ -105,16 +127,23 @@ class ChunkStore(list[Chunk]):
                     holders.append(chunk)
         return holders
 
+    def _post(self, chunk: Chunk, slot: Slot, postings: Postings) -> None:
+        """Enters a chunk in the index of one slot."""
+        if slot in chunk:
+            value = chunk[slot]
+            if type(value) not in PLAIN:
+                self._changeable.add(slot)
+            postings.setdefault(as_text(value), []).append(chunk)
+
     def _adopt(self, chunk: Chunk) -> None:
-        chunk._store = self  # pyright: ignore[reportPrivateUsage]
+        """Makes a chunk tell this store of its changes."""
+        if not self.holds(chunk):
+            chunk._stores = (*chunk._stores, self)
 
-    def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
-        return (ChunkStore, (list(self),))
 
-
-def _likeness(chunk: Chunk) -> frozenset[Any]:
-    """Returns a key that equal chunks share: their items, or only their slots where a value cannot be hashed."""
-    try:
-        return frozenset(chunk.items())
-    except TypeError:
-        return frozenset(chunk)
+def _likeness(chunk: Chunk) -> frozenset[Any] | None:
+    """Returns a key that equal chunks share, their items; None where a value is not plain."""
+    for value in chunk.values():
+        if type(value) not in PLAIN:
+            return None
+    return frozenset(chunk.items())
