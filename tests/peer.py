@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import collections
 import collections.abc
+import importlib
 import itertools
 import random
 import runpy
@@ -17,10 +18,7 @@ import types
 from pathlib import Path
 from typing import Any
 
-import python_actr
-import python_actr.actr.compile
-import python_actr.logger
-import python_actr.model
+peer: Any = importlib.import_module("python_actr")
 
 
 def seeded(seed: int) -> types.SimpleNamespace:
@@ -36,12 +34,15 @@ def seeded(seed: int) -> types.SimpleNamespace:
 
 def prepare(seed: int) -> None:
     """Seeds python_actr, and makes those parts run that ask for names which Python no longer has."""
-    peer: Any = python_actr
     peer.model.random = seeded(seed)
     peer.logger.random = random.Random(0)  # a log's file name must not draw from the program's random numbers
     # Compiled productions are named after addresses; here after their number.
     compiled = itertools.count(1)
-    peer.actr.compile.id = lambda production: next(compiled)
+
+    def number(_: object) -> int:
+        return next(compiled)
+
+    importlib.import_module("python_actr.actr.compile").__dict__["id"] = number
     python: Any = collections
     python.Callable = collections.abc.Callable
     random.seed(seed)
@@ -50,10 +51,9 @@ def prepare(seed: int) -> None:
 def alias_ccm() -> None:
     """Lets a model file import python_actr under its older names."""
     lib: Any = types.ModuleType("ccm.lib")
-    lib.actr = python_actr.actr
-    known: Any = python_actr
-    known.lib = lib
-    sys.modules.update({"ccm": python_actr, "ccm.lib": lib, "ccm.lib.actr": python_actr.actr})
+    lib.actr = peer.actr
+    peer.lib = lib
+    sys.modules.update({"ccm": peer, "ccm.lib": lib, "ccm.lib.actr": peer.actr})
 
 
 def main() -> None:
