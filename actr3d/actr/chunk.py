@@ -33,8 +33,8 @@ class PlaceName(str):
         made.slot = slot
         return made
 
-    def __getnewargs__(self) -> tuple[str, str | None]:
-        return str(self), self.slot
+    def __reduce__(self) -> Any:
+        return PlaceName, (str(self), self.slot)
 
 
 def as_text(value: object) -> str:
