@@ -16,6 +16,27 @@ PLAIN = (str, float, int, bool)
 """The types of attribute that a chunk takes over from an object."""
 
 
+class PlaceName(str):
+    """The name that a model has from its place in the tree, and not from its author.
+
+    A chunk made of such an object has in its slot `name` what it has in python_actr 1.9.5, which printed output shows.
+
+    Args:
+        name: The attribute's name.
+        slot: What a chunk shows instead; None for no such slot.
+    """
+
+    slot: str | None
+
+    def __new__(cls, name: str, slot: str | None) -> PlaceName:
+        made = super().__new__(cls, name)
+        made.slot = slot
+        return made
+
+    def __reduce__(self) -> Any:
+        return PlaceName, (str(self), self.slot)
+
+
 def as_text(value: object) -> str:
     """Returns a slot's value as patterns compare it: text as it is, floats as `%g`, anything else by `repr`."""
     if isinstance(value, str):
@@ -55,6 +76,15 @@ def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any
     raise ChunkError(f"chunk '{text}': '?{name}' is not bound{did_you_mean(name, known)} ({among})")
 
 
+def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns what a chunk takes over from an object: its public attributes that are text or numbers."""
+    slots = {key: value for key, value in attributes.items() if type(value) in PLAIN and key[0] != "_"}
+    name = attributes.get("name")
+    if isinstance(name, PlaceName) and name.slot is not None:
+        slots["name"] = name.slot
+    return slots
+
+
 class Chunk(dict[Any, Any]):
     """A set of slots and their values.
 
@@ -79,7 +109,7 @@ class Chunk(dict[Any, Any]):
         if isinstance(contents, Mapping):
             dict.update(self, cast("Mapping[Any, Any]", contents))
         elif hasattr(contents, "__dict__") and not isinstance(contents, type):
-            dict.update(self, {key: value for key, value in vars(contents).items() if type(value) in PLAIN and key[0] != "_"})
+            dict.update(self, object_slots(vars(contents)))
         else:
             try:
                 dict.update(self, cast("Any", contents))

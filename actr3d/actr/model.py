@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any, cast
 
 from actr3d.actr import logger as logs
-from actr3d.actr.chunk import Chunk
+from actr3d.actr.chunk import Chunk, PlaceName
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.scheduler import Event, Scheduler, Trigger
@@ -125,7 +125,8 @@ class Model:
         own = self.__dict__
         own["_converted"] = True
         own["changes"] = Trigger("changes")
-        own.setdefault("name", type(self).name)
+        if "name" not in own:
+            self._call(type(self).name)
         parent = own.get("parent") or parent
         methods, objects = class_members(type(self))
         objects = copy_objects(objects)
@@ -139,7 +140,8 @@ class Model:
         self._convert_info(objects, methods)
         for name, obj in objects.items():
             if isinstance(obj, Model):
-                obj.__dict__["name"] = name
+                if type(obj) is not Model or "name" not in obj.__dict__:
+                    obj._call(name)
                 if not obj._converted:
                     obj._convert(self)
                 self._adopted(name, obj)
@@ -177,6 +179,17 @@ class Model:
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         """Looks at what the class brings, before its objects come to life; for subclasses."""
+
+    def _call(self, name: str, shown: bool = False) -> None:
+        """Names the model after its place in the tree.
+
+        Args:
+            name: The attribute's name.
+            shown: Whether a chunk made of the model has the name too; python_actr 1.9.5 calls objects of classes of
+                their own «top» there, and those of Model itself by the name under which they join a running tree.
+        """
+        slot = name if shown or self._converted else None if type(self) is Model else "top"
+        self.__dict__["name"] = PlaceName(name, slot)
 
     def _adopted(self, name: str, child: Model) -> None:
         self.__dict__.setdefault("_children", {})[name] = child
@@ -224,7 +237,7 @@ class Model:
         if value.__dict__.get("parent") is not None:
             return
         value.parent = self
-        value.name = key
+        value._call(key, shown=type(value) is Model)
         self._adopted(key, value)
         value._forget_path()
         if not value._converted:

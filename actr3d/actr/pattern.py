@@ -225,6 +225,9 @@ class Pattern:
         self.conditions = conditions(patterns, bound)
         self.partial = partial
 
+    def __repr__(self) -> str:
+        return f"<Pattern {' '.join(str(condition) for condition in self.conditions)}>"
+
     def match(self, obj: Any) -> Bindings | None:
         """Returns the variables that a match binds (maybe none), or None for no match.
 
