@@ -1,7 +1,8 @@
 """Turns the body of a production into a function of what the production has bound.
 
 A body sees, nearest first: its bound variables and whatever it assigns itself; the attributes of its agent and of the
-agent's ancestors; the globals of its own file. What it assigns becomes visible to `?name` in the texts it passes on.
+agent's ancestors; the names of a function that the agent's class is written in; the globals of its own file. What it
+assigns becomes visible to `?name` in the texts it passes on.
 Lines keep their numbers, so that a traceback shows the modeller's own file.
 """
 
@@ -11,171 +12,78 @@ import ast
 import builtins
 import copy
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, cast
+from types import CellType, FunctionType
+from typing import Any
 
+from actr3d.actr.rebinding import BOUND, Rebinder, stored_names, used_names
 from actr3d.errors import ProductionException
 
-BOUND = "__bound__"
 Body = Callable[[dict[str, Any]], None]
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
-_COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
 class Scope(dict[str, Any]):
-    """What a body has bound; what is not bound here is looked up further out."""
+    """What a body has bound; what is not bound here is looked up further out.
 
-    def __init__(self, bound: Mapping[str, Any], context: Mapping[str, Any], file: Mapping[str, Any]) -> None:
+    Args:
+        bound: What the patterns bound.
+        context: What the agent and its ancestors offer by name.
+        func: The modeller's function; it knows the names around it and the globals of its file.
+    """
+
+    def __init__(self, bound: Mapping[str, Any], context: Mapping[str, Any], func: Callable[..., Any]) -> None:
         super().__init__(bound)
-        self.__dict__["outer"] = (context, file, vars(builtins))
+        self.__dict__["outer"] = context, func
 
     def __missing__(self, key: str) -> Any:
-        for names in self.__dict__["outer"]:
+        context, func = self.__dict__["outer"]
+        if key in context:
+            return context[key]
+        cell = cells(func).get(key)
+        if cell is not None:
+            return cell.cell_contents
+        for names in (func.__globals__, vars(builtins)):
             if key in names:
                 return names[key]
         raise NameError(f"name '{key}' is not defined", name=key)
+
+    def __delitem__(self, key: str) -> None:
+        if key not in self:
+            raise NameError(f"name '{key}' is not defined", name=key)
+        super().__delitem__(key)
 
     def bind(self, key: str, value: Any) -> Any:
         """Binds a name, and returns its value."""
         self[key] = value
         return value
 
-
-def stored_names(nodes: Iterable[ast.AST]) -> set[str]:
-    """Returns the names that statements assign in their own scope, whatever the form of assignment."""
-    names: set[str] = set()
-    loose: set[str] = set()
-    for node in nodes:
-        _collect(node, names, loose)
-    return names - loose
+    def bind_all(self, names: Mapping[str, Any]) -> bool:
+        """Binds several names, and returns True."""
+        self.update(names)
+        return True
 
 
-def _collect(node: ast.AST, names: set[str], loose: set[str], inner: bool = False) -> None:
-    """Adds to `names` what a node assigns, and to `loose` what it declares global; `inner` is inside a comprehension."""
-    if isinstance(node, ast.Name) and isinstance(node.ctx, (ast.Store, ast.Del)) and not inner:
-        names.add(node.id)
-    elif isinstance(node, ast.NamedExpr):
-        names.add(node.target.id)
-        _collect(node.value, names, loose, inner)
-        return
-    elif isinstance(node, (ast.Global, ast.Nonlocal)):
-        loose.update(node.names)
-    elif isinstance(node, (ast.Import, ast.ImportFrom)):
-        names.update((alias.asname or alias.name).split(".")[0] for alias in node.names)
-    elif isinstance(node, (ast.ExceptHandler, ast.MatchAs, ast.MatchStar)) and node.name:
-        names.add(node.name)
-    elif isinstance(node, ast.MatchMapping) and node.rest:
-        names.add(node.rest)
-    elif isinstance(node, _SCOPES):
-        if not isinstance(node, ast.Lambda):
-            names.add(node.name)
-        return
-    for child in ast.iter_child_nodes(node):
-        _collect(child, names, loose, inner or isinstance(node, _COMPREHENSIONS))
-
-
-def used_names(nodes: Iterable[ast.AST]) -> set[str]:
-    """Returns every name that is read or assigned anywhere in the nodes."""
-    return {part.id for node in nodes for part in ast.walk(node) if isinstance(part, ast.Name)}
-
-
-class _Rebinder(ast.NodeTransformer):
-    """Makes every use of an assigned name a use of the bound variables, so that they always hold its newest value."""
-
-    def __init__(self, stored: set[str]) -> None:
-        self.stored = stored
-
-    def _item(self, name: str, ctx: ast.expr_context, at: ast.AST) -> ast.Subscript:
-        item = ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(name), ctx)
-        return ast.fix_missing_locations(ast.copy_location(item, at))
-
-    def _sync(self, names: Iterable[str], at: ast.AST) -> list[ast.stmt]:
-        """Statements that bind names which Python could only assign plainly."""
-        out: list[ast.stmt] = []
-        for name in names:
-            if name in self.stored:
-                assign = ast.Assign([self._item(name, ast.Store(), at)], ast.Name(name, ast.Load()))
-                out.append(ast.fix_missing_locations(ast.copy_location(assign, at)))
-        return out
-
-    def visit_Name(self, node: ast.Name) -> ast.expr:  # noqa: N802
-        return self._item(node.id, node.ctx, node) if node.id in self.stored else node
-
-    def visit_NamedExpr(self, node: ast.NamedExpr) -> ast.expr:  # noqa: N802
-        if node.target.id not in self.stored:
-            return cast("ast.expr", self.generic_visit(node))
-        call = ast.Call(
-            ast.Attribute(ast.Name(BOUND, ast.Load()), "bind", ast.Load()),
-            [ast.Constant(node.target.id), cast("ast.expr", self.visit(node.value))],
-            [],
-        )
-        return ast.fix_missing_locations(ast.copy_location(call, node))
-
-    def _inside(self, node: Any, hidden: set[str]) -> Any:
-        """Visits a nested scope, leaving alone the names that are its own."""
-        before, self.stored = self.stored, self.stored - hidden
-        self.generic_visit(node)
-        self.stored = before
-        return node
-
-    def _parameters(self, args: ast.arguments) -> set[str]:
-        every = [*args.posonlyargs, *args.args, *args.kwonlyargs, args.vararg, args.kwarg]
-        return {a.arg for a in every if a is not None}
-
-    def visit_Lambda(self, node: ast.Lambda) -> Any:  # noqa: N802
-        return self._inside(node, self._parameters(node.args))
-
-    def _definition(self, node: Any, hidden: set[str]) -> list[ast.stmt]:
-        name = node.name
-        return [self._inside(node, hidden), *self._sync([name], node)]
-
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> Any:  # noqa: N802
-        return self._definition(node, self._parameters(node.args) | stored_names(node.body))
-
-    def visit_ClassDef(self, node: ast.ClassDef) -> Any:  # noqa: N802
-        return self._definition(node, stored_names(node.body))
-
-    def _comprehension(self, node: Any) -> Any:
-        targets = {n.id for g in node.generators for n in ast.walk(g.target) if isinstance(n, ast.Name)}
-        return self._inside(node, targets)
-
-    visit_ListComp = visit_SetComp = visit_DictComp = visit_GeneratorExp = _comprehension
-
-    def visit_Import(self, node: ast.Import | ast.ImportFrom) -> Any:  # noqa: N802
-        return [node, *self._sync([(a.asname or a.name).split(".")[0] for a in node.names], node)]
-
-    visit_ImportFrom = visit_Import
-
-    def visit_ExceptHandler(self, node: ast.ExceptHandler) -> Any:  # noqa: N802
-        self.generic_visit(node)
-        if node.name:
-            node.body[:0] = self._sync([node.name], node)
-        return node
-
-    def visit_match_case(self, node: ast.match_case) -> Any:
-        names = stored_names([node.pattern])
-        self.generic_visit(node)
-        node.body[:0] = self._sync(sorted(names), node.body[0])
-        return node
+def cells(func: Callable[..., Any]) -> dict[str, CellType]:
+    """Returns the variables of the functions around `func` that it uses, by name."""
+    return dict(zip(func.__code__.co_freevars, func.__closure__ or (), strict=True))
 
 
 def compile_body(
     statements: Sequence[ast.stmt],
     *,
     name: str,
-    filename: str,
+    func: Callable[..., Any],
     bound: Iterable[str],
     context: Mapping[str, Any],
-    file: dict[str, Any],
 ) -> Body:
     """Makes a function of a body's statements.
 
     Args:
         statements: The body, as parsed; it is left as it is.
         name: The production's name, which tracebacks show.
-        filename: The modeller's file.
+        func: The modeller's function that the body is taken from: its file's globals and the variables around it stay live.
         bound: The variables that the patterns bind.
         context: What the agent and its ancestors offer by name; fixed from here on.
-        file: The globals of the modeller's file; live.
 
     Returns:
         A function that takes the bound variables. Where the body assigns names, these must be a `Scope`.
@@ -183,34 +91,64 @@ def compile_body(
     Raises:
         ProductionException: If the body contains `yield`, or cannot be compiled.
     """
-    for node in statements:
-        for part in _own_nodes(node):
-            if isinstance(part, (ast.Yield, ast.YieldFrom, ast.Await)):
-                raise ProductionException(
-                    f"{filename}:{part.lineno}: production '{name}' yields; a production acts at once: "
-                    "let it call a generator method, which may wait"
-                )
+    filename = func.__code__.co_filename
+    _check(statements, name, filename)
     stored = stored_names(statements)
     used = used_names(statements)
-    body = [cast("ast.stmt", copy.deepcopy(node)) for node in statements]
+    around = cells(func)
+    body = [copy.deepcopy(node) for node in statements]
+    mangler = _Mangler(func)
+    body = [mangler.visit(node) for node in body]
     if stored:
-        rebinder = _Rebinder(stored)
-        body = [part for node in body for part in _as_list(rebinder.visit(node))]
+        body = Rebinder(stored).body(body)
     taken = [n for n in bound if n in used and n not in stored]
-    given = sorted(n for n in used & context.keys() if n not in stored and n not in taken)
+    seen = [*context, *(n for n in around if n not in context)]
+    given = [n for n in seen if n in used and n not in stored and n not in taken]
     first = statements[0]
-    prologue = [ast.Assign([ast.Name(n, ast.Store())], ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(n), ast.Load())) for n in taken]
+    items = {n: ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(n), ast.Load()) for n in taken}
+    prologue = [ast.Assign([ast.Name(n, ast.Store())], item) for n, item in items.items()]
     inner = _function("__production__", [BOUND], [*prologue, *body], first)
     outer = _function("__make__", given, [inner, ast.Return(ast.Name("__production__", ast.Load()))], first)
     module = ast.fix_missing_locations(ast.Module([outer], []))
     space: dict[str, Any] = {}
     try:
-        exec(compile(module, filename, "exec", dont_inherit=True), file, space)
+        exec(compile(module, filename, "exec", dont_inherit=True), func.__globals__, space)
     except SyntaxError as error:
         raise ProductionException(f"{filename}:{error.lineno or first.lineno}: production '{name}': {error.msg}") from error
-    made = space["__make__"](*(context[n] for n in given))
-    made.__code__ = made.__code__.replace(co_name=name, co_qualname=name)
-    return made
+    made: FunctionType = space["__make__"](*(context.get(n) for n in given))
+    code = made.__code__.replace(co_name=name, co_qualname=name)
+    here = dict(zip(code.co_freevars, made.__closure__ or (), strict=True))
+    closure = tuple(cell if n in context else around.get(n, cell) for n, cell in here.items())
+    return FunctionType(code, func.__globals__, name, None, closure)
+
+
+def _check(statements: Iterable[ast.stmt], name: str, filename: str) -> None:
+    """Raises an error where a body waits."""
+    for node in statements:
+        for part in _own_nodes(node):
+            if isinstance(part, (ast.Yield, ast.YieldFrom, ast.Await)):
+                word = "awaits" if isinstance(part, ast.Await) else "yields"
+                raise ProductionException(
+                    f"{filename}:{part.lineno}: production '{name}' {word}; a production acts at once: "
+                    "let it call a generator method, which may wait"
+                )
+
+
+class _Mangler(ast.NodeTransformer):
+    """Gives private attributes (`self.__x`) the name that Python gives them in the methods of the same class."""
+
+    def __init__(self, func: Callable[..., Any]) -> None:
+        path = func.__qualname__.split(".")
+        self.owner = path[-2].lstrip("_") if len(path) > 1 and path[-2] != "<locals>" else ""
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        self.generic_visit(node)
+        if self.owner and node.attr.startswith("__") and not node.attr.endswith("__"):
+            node.attr = f"_{self.owner}{node.attr}"
+        return node
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
+        return node  # a class inside has a name of its own
 
 
 def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:
@@ -219,10 +157,6 @@ def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:
     if not isinstance(node, _SCOPES):
         for child in ast.iter_child_nodes(node):
             yield from _own_nodes(child)
-
-
-def _as_list(result: Any) -> list[ast.stmt]:
-    return cast("list[ast.stmt]", result) if isinstance(result, list) else [result]
 
 
 def _function(name: str, parameters: Sequence[str], body: list[Any], at: ast.AST) -> ast.FunctionDef:

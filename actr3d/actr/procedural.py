@@ -75,6 +75,8 @@ class ProductionSystem(Model):
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
+        for production in self._productions:
+            production.share_globals()
         self._matcher = Matcher(self._context)
         self._matcher.build(self._productions)
 

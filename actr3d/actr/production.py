@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.bodies import Body, Scope, compile_body, stored_names
+from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, Condition, conditions
-from actr3d.actr.sources import function_node, place
+from actr3d.actr.rebinding import stored_names
+from actr3d.actr.sources import assigned_globals, function_node, place
 from actr3d.errors import PatternException, ProductionException, did_you_mean
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Production:
             raise PatternException(f"production '{name}' ({self.place}): {error}") from None
         self.bound: Bindings | None = None
         """What the last match bound."""
-        self.context: Mapping[str, Any] = {}
+        self.context: dict[str, Any] = {}
         """What the body sees by name; set when the system begins."""
 
     @property
@@ -80,19 +81,24 @@ class Production:
         return compile_body(
             statements,
             name=self.name,
-            filename=self.original_func.__code__.co_filename,
+            func=self.original_func,
             bound=self.variables,
             context=self.context,
-            file=self.original_func.__globals__,
         )
 
     @cached_property
     def _body(self) -> Body:
         return self.body_of(self.node.body)
 
+    def share_globals(self) -> None:
+        """Makes what the body declares global, and an initializer has assigned, a global of the modeller's file."""
+        func = self.original_func
+        for name in assigned_globals(func) & self.context.keys():
+            func.__globals__[name] = self.context.pop(name)
+
     def scope(self, bound: Bindings) -> Bindings:
         """Returns the bound variables in the form the body asks for."""
-        return Scope(bound, self.context, self.original_func.__globals__) if self.assigned else bound
+        return Scope(bound, self.context, self.original_func) if self.assigned else bound
 
     def fire(self) -> None:
         """Carries out the body, with what the last match bound."""
