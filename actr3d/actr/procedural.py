@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model
-from actr3d.actr.production import Production
+from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.utility import ProceduralSubModule
 from actr3d.errors import ProductionException, did_you_mean
 
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
+
+
+FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
+"""Parameters that may be functions without arguments, which are no productions then."""
 
 
 class ProductionSystem(Model):
@@ -44,10 +47,13 @@ class ProductionSystem(Model):
         own = self.__dict__
         own["_productions"] = []
         own["_initializers"] = []
+        for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
+            if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
+                objects[name] = methods.pop(name)
         for name, func in methods.items():
-            spec = inspect.getfullargspec(func)
-            if spec.varargs is None and spec.varkw is None and len(spec.args) == len(spec.defaults or ()):
-                own["_productions" if spec.args else "_initializers"].append(Production(self, name, func))
+            patterns = defaults_of(func)
+            if patterns is not None:
+                own["_productions" if patterns else "_initializers"].append(Production(self, name, func))
         self.sch.add(self._process_productions)
 
     # -- the cycle

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, Condition, conditions
 from actr3d.actr.rebinding import stored_names
-from actr3d.actr.sources import assigned_globals, function_node, place
+from actr3d.actr.sources import assigned_globals, function_node, has_source, place
 from actr3d.errors import PatternException, ProductionException, did_you_mean
 
 if TYPE_CHECKING:
@@ -36,8 +36,7 @@ class Production:
         self.system = system
         self.name = name
         self.original_func = func
-        spec = inspect.getfullargspec(func)
-        patterns: dict[str, Any] = dict(zip(spec.args, spec.defaults or (), strict=True))
+        patterns = defaults_of(func) or {}
         self.base_utility = patterns.pop("utility", 0)
         self.pattern_specs = patterns
         self.keys = list(patterns)
@@ -60,10 +59,13 @@ class Production:
         """The syntax tree of the modeller's method."""
         node = function_node(self.original_func)
         if node is None:
-            raise ProductionException(
-                f"production '{self.name}': its source is not to be had ({self.place}); load the model from a file, "
-                "or its text with actr3d.actr.load_text"
-            )
+            if self.original_func.__name__ == "<lambda>":
+                reason = f"it is a lambda ({self.place}); write it with def"
+            elif has_source(self.original_func):
+                reason = f"its source is not to be had ({self.place}): the file has changed since it was loaded; load it again"
+            else:
+                reason = f"its source is not to be had ({self.place}); load the model from a file, or its text with actr3d.actr.load_text"
+            raise ProductionException(f"production '{self.name}': {reason}")
         return node
 
     @cached_property
@@ -121,6 +123,17 @@ class Production:
 
     def __repr__(self) -> str:
         return f"<Production {self.name}>"
+
+
+def defaults_of(func: Callable[..., Any]) -> dict[str, Any] | None:
+    """Returns the parameters of a function with their defaults, or None where one has none: then it is no production."""
+    spec = inspect.getfullargspec(func)
+    if spec.varargs is not None or spec.varkw is not None or len(spec.args) != len(spec.defaults or ()):
+        return None
+    named = spec.kwonlydefaults or {}
+    if len(spec.kwonlyargs) != len(named):
+        return None
+    return {**dict(zip(spec.args, spec.defaults or (), strict=True)), **named}
 
 
 def condition_text(condition: Condition) -> str:

@@ -35,6 +35,11 @@ def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
         return None
 
 
+def has_source(func: Callable[..., Any]) -> bool:
+    """Tells whether the file of a function can be read at all."""
+    return bool(linecache.getlines(func.__code__.co_filename, func.__globals__))
+
+
 def place(func: Callable[..., Any]) -> str:
     """Returns `file:line` of a function's definition."""
     return f"{func.__code__.co_filename}:{func.__code__.co_firstlineno}"
