@@ -28,7 +28,8 @@ def ran(body: str, seconds: float = 0.3) -> list[Any]:
 
 
 def test_one_line_production() -> None:
-    assert ran("class Agent(ACTR):\n  goal = Buffer()\n  def init(): goal.set('a')\n  def p(goal='a'): goal.set('b'); out.append(1)\n") == [1]
+    body = "class Agent(ACTR):\n  goal = Buffer()\n  def init(): goal.set('a')\n  def p(goal='a'): goal.set('b'); out.append(1)\n"
+    assert ran(body) == [1]
 
 
 def test_signature_on_several_lines_with_brackets_in_patterns() -> None:
@@ -146,7 +147,7 @@ def test_productions_of_a_base_class_see_their_own_files_globals(tmp_path: Path,
         "from rules_of_old import *\nimport rules_of_old\nword = 'new file'\nclass New(Old):\n    def q(goal='b'):\n"
         "        seen.append(word)\n        goal.clear()\n"
     )
-    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     module: Any = importlib.import_module("rules_of_new")
     module.New().run(0.3)
     assert module.seen == ["base file", "new file"]
@@ -228,7 +229,7 @@ def test_a_file_that_changed_after_it_was_loaded_is_said_plainly(tmp_path: Path,
     path = tmp_path / "changed_since.py"
     text = HEAD + "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"
     path.write_text(text)
-    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     module: Any = importlib.import_module("changed_since")
     path.write_text("# a new first line\n" + text)
     with pytest.raises(ProductionException, match=r"changed_since\.py:5.*changed"):
@@ -248,7 +249,8 @@ def test_a_plain_function_as_time_or_threshold(name: str) -> None:
     for given in ("lambda: 0.2", "value"):
         body = (
             f"def value(): return 0.2\nclass Agent(ACTR):\n    goal = Buffer()\n    {name} = {given}\n"
-            "    def init():\n        goal.set('a')\n    def p(goal='a', utility=0.2):\n        out.append(self.now())\n        goal.clear()\n"
+            "    def init():\n        goal.set('a')\n"
+            "    def p(goal='a', utility=0.2):\n        out.append(self.now())\n        goal.clear()\n"
         )
         assert ran(body) == [0.2 if name == "production_time" else 0.05]
 
@@ -273,7 +275,7 @@ def test_names_of_tests_stay_live_in_classes_written_in_functions() -> None:
     seen: list[str] = []
 
     class Agent(ACTR):
-        def init():  # pyright: ignore  # noqa: N805
+        def init():  # pyright: ignore
             seen.append("init")
 
     Agent().run(0.1)

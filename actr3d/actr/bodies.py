@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import CellType, FunctionType
 from typing import Any
 
-from actr3d.actr.rebinding import BOUND, Rebinder, stored_names, used_names
+from actr3d.actr.rebinding import BOUND, Names, Rebinder, stored_names, used_names
 from actr3d.errors import ProductionException
 
 Body = Callable[[dict[str, Any]], None]
@@ -75,6 +75,7 @@ def compile_body(
     func: Callable[..., Any],
     bound: Iterable[str],
     context: Mapping[str, Any],
+    more_bound: bool = False,
 ) -> Body:
     """Makes a function of a body's statements.
 
@@ -84,9 +85,11 @@ def compile_body(
         func: The modeller's function that the body is taken from: its file's globals and the variables around it stay live.
         bound: The variables that the patterns bind.
         context: What the agent and its ancestors offer by name; fixed from here on.
+        more_bound: Whether a function among the patterns may bind more variables, so that any name may be one.
 
     Returns:
-        A function that takes the bound variables. Where the body assigns names, these must be a `Scope`.
+        A function that takes the bound variables. Where the body assigns names, or with `more_bound`, these must be a
+        `Scope`.
 
     Raises:
         ProductionException: If the body contains `yield`, or cannot be compiled.
@@ -99,6 +102,8 @@ def compile_body(
     body = [copy.deepcopy(node) for node in statements]
     mangler = _Mangler(func)
     body = [mangler.visit(node) for node in body]
+    if more_bound:
+        stored |= used - Names(statements).declared_global
     if stored:
         body = Rebinder(stored).body(body)
     taken = [n for n in bound if n in used and n not in stored]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from actr3d.errors import ChunkError, did_you_mean
 
@@ -73,9 +73,8 @@ class Chunk(dict[Any, Any]):
             for slot, value in parse_slots(contents):
                 dict.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
             return
-        inner = getattr(contents, "chunk", None)
-        if isinstance(inner, Chunk):  # a buffer
-            contents = inner
+        if hasattr(contents, "_chunk_of_buffer"):
+            contents = cast("Any", contents)._chunk_of_buffer()
         if isinstance(contents, Mapping):
             dict.update(self, cast("Mapping[Any, Any]", contents))
         elif hasattr(contents, "__dict__") and not isinstance(contents, type):
@@ -111,6 +110,9 @@ class Chunk(dict[Any, Any]):
         if self._store is not None:
             self._store.forget_order()
 
+    def __getstate__(self) -> dict[str, Any] | None:
+        return {name: value for name, value in vars(self).items() if name != "_store"} or None
+
     def __setitem__(self, key: Any, value: Any) -> None:
         dict.__setitem__(self, key, value)
         self._changed()
@@ -122,6 +124,10 @@ class Chunk(dict[Any, Any]):
     def update(self, *args: Any, **keys: Any) -> None:
         dict.update(self, *args, **keys)
         self._changed()
+
+    def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
+        self.update(other)
+        return self
 
     def setdefault(self, key: Any, default: Any = None) -> Any:
         value = dict.setdefault(self, key, default)

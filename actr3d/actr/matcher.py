@@ -10,7 +10,7 @@ from typing import Any
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import as_text
 from actr3d.actr.model import Model
-from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, is_empty, look_up
+from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, get_attribute, is_empty, look_up, slot_named
 from actr3d.actr.production import Production
 
 Value = str | Missing | bool | None
@@ -37,7 +37,7 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
 
         def read_attribute() -> str | Missing:
-            value = getattr(target, key, MISSING)
+            value = get_attribute(target, key)
             return value if type(value) is str or value is MISSING else as_text(value)
 
         return read_attribute
@@ -165,7 +165,7 @@ class Matcher:
 def _dynamic(condition: Condition, target: Any, bound: Bindings) -> bool:
     """Tests a slot whose name is itself in a variable (`?s:1`)."""
     key = bound.get(str(condition.key)[1:], MISSING)
-    found = MISSING if key is MISSING else look_up(target, int(key) if str(key).isdecimal() else key)
+    found = MISSING if key is MISSING else look_up(target, slot_named(key))
     if found is MISSING:
         return False
     text = as_text(found)

@@ -74,6 +74,11 @@ class Production:
         return [condition.value for condition in self.conditions if condition.op == "bind"]
 
     @cached_property
+    def more_bound(self) -> bool:
+        """Whether a function among the patterns may bind variables too."""
+        return any(condition.op == "call" for condition in self.conditions)
+
+    @cached_property
     def assigned(self) -> set[str]:
         """The names that the body assigns."""
         return stored_names(self.node.body)
@@ -86,6 +91,7 @@ class Production:
             func=self.original_func,
             bound=self.variables,
             context=self.context,
+            more_bound=self.more_bound,
         )
 
     @cached_property
@@ -100,7 +106,7 @@ class Production:
 
     def scope(self, bound: Bindings) -> Bindings:
         """Returns the bound variables in the form the body asks for."""
-        return Scope(bound, self.context, self.original_func) if self.assigned else bound
+        return Scope(bound, self.context, self.original_func) if self.assigned or self.more_bound else bound
 
     def fire(self) -> None:
         """Carries out the body, with what the last match bound."""
