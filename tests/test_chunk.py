@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import operator
 import pickle
 from collections.abc import Callable
 from typing import Any
@@ -138,12 +139,12 @@ def test_copies_know_no_memory() -> None:
 
 def test_every_way_of_changing_a_chunk_in_memory_is_noticed() -> None:
     changes: list[tuple[Callable[[Any], Any], str, str]] = [
-        (lambda c: c.__setitem__("a", "2"), "a:2", "a:1"),
+        (lambda c: operator.setitem(c, "a", "2"), "a:2", "a:1"),
         (lambda c: c.update(a="2"), "a:2", "a:1"),
-        (lambda c: c.__ior__({"a": "2"}), "a:2", "a:1"),
+        (lambda c: operator.ior(c, {"a": "2"}), "a:2", "a:1"),
         (lambda c: c.setdefault("new", "3"), "new:3", "a:2"),
         (lambda c: c.pop("a"), "b:1", "a:1"),
-        (lambda c: c.__delitem__("a"), "b:1", "a:1"),
+        (lambda c: operator.delitem(c, "a"), "b:1", "a:1"),
         (lambda c: c.popitem(), "a:1", "b:1"),
         (lambda c: c.clear(), "", "a:1"),
     ]

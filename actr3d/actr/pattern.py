@@ -224,7 +224,7 @@ def holds_empty(target: Any, name: str | None) -> bool:
 def calls(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindings) -> bool:
     """Asks a modeller's function; only a result equal to False means no, and so does an error that a missing slot causes."""
     try:
-        return not (function(target, bindings) == False)  # noqa: E712 - None means yes
+        return function(target, bindings) != False  # noqa: E712 - None means yes
     except (AttributeError, TypeError, KeyError):
         return False
 
