@@ -52,6 +52,16 @@ class Buffer(Model):
         self._harvest()
         self.chunk = None
 
+    def _chunk_of_buffer(self) -> Chunk:
+        """Returns the chunk, for making another of it.
+
+        Raises:
+            ChunkError: If the buffer is empty.
+        """
+        if self.chunk is None:
+            raise ChunkError(f"buffer '{self.name}' is empty: there is no chunk to take from it")
+        return self.chunk
+
     def isEmpty(self) -> bool:  # noqa: N802 - Python ACT-R's name
         """Tells whether there is no chunk, or one without slots."""
         return len(self) == 0

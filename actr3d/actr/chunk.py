@@ -103,9 +103,8 @@ class Chunk(dict[Any, Any]):
             for slot, value in parse_slots(contents):
                 dict.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
             return
-        inner = getattr(contents, "chunk", None)
-        if isinstance(inner, Chunk):  # a buffer
-            contents = inner
+        if hasattr(contents, "_chunk_of_buffer"):
+            contents = cast("Any", contents)._chunk_of_buffer()
         if isinstance(contents, Mapping):
             dict.update(self, cast("Mapping[Any, Any]", contents))
         elif hasattr(contents, "__dict__") and not isinstance(contents, type):
@@ -141,8 +140,8 @@ class Chunk(dict[Any, Any]):
         for store in self._stores:
             store.forget_order()
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name != "_stores"}
+    def __getstate__(self) -> dict[str, Any] | None:
+        return {name: value for name, value in vars(self).items() if name != "_stores"} or None
 
     def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
         self.update(other)

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import as_text
 from actr3d.actr.model import Model
-from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, is_empty, look_up
+from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, get_attribute, is_empty, look_up, slot_named
 from actr3d.actr.production import Production
+
 
 def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     """Returns a function that reads a slot of an object as text, in the quickest way for that kind of object."""
@@ -29,7 +30,7 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
 
         def read_attribute() -> str | Missing:
-            value = getattr(target, key, MISSING)
+            value = get_attribute(target, key)
             return value if type(value) is str or value is MISSING else as_text(value)
 
         return read_attribute
@@ -215,7 +216,7 @@ def _holds(extra: tuple[Condition, Any], bound: Bindings) -> bool:
     if condition.op == "call":
         return calls(condition.value, target, bound)
     key = bound.get(str(condition.key)[1:], MISSING)
-    found = MISSING if key is MISSING else look_up(target, int(key) if str(key).isdecimal() else key)
+    found = MISSING if key is MISSING else look_up(target, slot_named(key))
     if found is MISSING:
         return False
     text = as_text(found)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import random
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
@@ -12,7 +11,7 @@ from actr3d.actr.checks import check_names, check_rules
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model
-from actr3d.actr.production import Production
+from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
 from actr3d.actr.utility import ProceduralSubModule
@@ -22,6 +21,9 @@ from actr3d.trace import Trace
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
 
+
+FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
+"""Parameters that may be functions without arguments, which are no productions then."""
 
 LAST = -1000
 """The priority of matching again after firing: everything else that happens at that moment comes first."""
@@ -67,10 +69,13 @@ class ProductionSystem(Model):
             self.sch.round_ms = self.sch.round_ms or own["_profile"].whole_milliseconds
         own["_productions"] = []
         own["_initializers"] = []
+        for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
+            if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
+                objects[name] = methods.pop(name)
         for name, func in methods.items():
-            spec = inspect.getfullargspec(func)
-            if spec.varargs is None and spec.varkw is None and len(spec.args) == len(spec.defaults or ()):
-                own["_productions" if spec.args else "_initializers"].append(Production(self, name, func))
+            patterns = defaults_of(func)
+            if patterns is not None:
+                own["_productions" if patterns else "_initializers"].append(Production(self, name, func))
         own["_process"] = self.sch.add(self._process_productions)
 
     # -- the cycle
@@ -99,6 +104,8 @@ class ProductionSystem(Model):
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
+        for production in self._productions:
+            production.share_globals()
         if unchecked:
             check_names(self)
         matcher = Matcher(self._context)
