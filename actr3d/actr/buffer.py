@@ -26,7 +26,8 @@ class Buffer(Model):
         """
         sch = self.__dict__.get("sch")
         new = Chunk(chunk, sch.bound if sch is not None else None)
-        self._harvest()
+        if sch is not None and sch.harvests:
+            self._harvest()
         self.chunk = new
 
     def modify(self, **args: Any) -> None:

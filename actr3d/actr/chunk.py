@@ -98,7 +98,9 @@ class Chunk(dict[Any, Any]):
     """
 
     def __init__(self, contents: object, bound: Mapping[str, Any] | None = None) -> None:
-        super().__init__()
+        if type(contents) is Chunk:
+            dict.update(self, cast("Chunk", contents))
+            return
         if isinstance(contents, str):
             for slot, value in parse_slots(contents):
                 dict.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)

@@ -7,7 +7,7 @@ import inspect
 import random
 from collections.abc import Callable, Generator, Iterator
 from types import ModuleType
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from actr3d.actr import logger as logs
 from actr3d.actr.chunk import Chunk, PlaceName
@@ -21,6 +21,16 @@ UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
 """Attributes that hold the tree together; setting them is not a change that productions could see."""
 
 Method = Callable[..., Any]
+Option = TypeVar("Option")
+
+
+def pick(numbers: random.Random, options: list[Option]) -> Option:
+    """Draws one of several; where there is only one, it uses up random numbers just as a choice among one does."""
+    if len(options) > 1:
+        return numbers.choice(options)
+    while numbers.getrandbits(1):
+        pass
+    return options[0]
 
 
 class MethodWrapper:

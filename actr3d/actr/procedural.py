@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from actr3d.actr.checks import check_names, check_rules
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
-from actr3d.actr.model import Method, MethodWrapper, Model
+from actr3d.actr.model import Method, MethodWrapper, Model, pick
 from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
@@ -27,15 +26,6 @@ FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
 
 LAST = -1000
 """The priority of matching again after firing: everything else that happens at that moment comes first."""
-
-
-def pick(numbers: random.Random, options: list[Production]) -> Production:
-    """Draws one of several; where there is only one, it uses up random numbers just as a choice among one does."""
-    if len(options) > 1:
-        return numbers.choice(options)
-    while numbers.getrandbits(1):
-        pass
-    return options[0]
 
 
 class ProductionSystem(Model):

@@ -6,7 +6,7 @@ import copy
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from inspect import isgeneratorfunction
+from inspect import CO_GENERATOR
 from numbers import Real
 from types import GeneratorType
 from typing import Any, cast
@@ -117,6 +117,10 @@ class Scheduler:
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
         self.stop_flag = False
+        self.step = 0
+        """How many events have happened."""
+        self.harvests = False
+        """Whether there is a memory that collects what leaves buffers, as in ACT-R 7."""
         self.round_ms = False
         """Whether there are models whose events happen at whole milliseconds, as in ACT-R 7."""
         self.limits: RunLimits | None = RunLimits.current()
@@ -156,9 +160,7 @@ class Scheduler:
         if thread_safe:
             self._incoming.append((func, delay, args, keys, priority))
             return None
-        generator = None
-        if isgeneratorfunction(func) or isgeneratorfunction(getattr(type(func), "__call__", None)):
-            generator = func(*args, **(keys or {}))
+        generator = func(*args, **(keys or {})) if _makes_generator(func) else None
         event = Event(func, args, keys, priority, generator)
         self.queue.push(self.after(delay, event), event, priority)
         return event
@@ -261,6 +263,7 @@ class Scheduler:
                         f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; "
                         f"the last was {heap[0][3].describe()}"
                     )
+            self.step += 1
             event = queue.pop()
             if event.cancelled:
                 continue
@@ -377,3 +380,9 @@ def _each(choices: Sequence[Any]) -> Iterator[Any]:
             yield from _each(cast("Sequence[Any]", choice))
         else:
             yield choice
+
+
+def _makes_generator(func: Callable[..., Any]) -> bool:
+    """Tells whether a call gives a generator, also of a callable object."""
+    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)
+    return code is not None and bool(code.co_flags & CO_GENERATOR)

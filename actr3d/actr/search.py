@@ -1,6 +1,6 @@
-"""Requests for chunks: a pattern with the values its variables have, found through the memory's indexes.
+"""Searches a memory for chunks: a pattern with the values its variables have, answered from the indexes.
 
-Most requests name plain slots; those are answered from the index of the rarest value asked for. Whatever else a
+Most searches name plain slots; those are answered from the index of the rarest value asked for. Whatever else a
 pattern may say (functions, dotted paths, similar values) is left to `Pattern`.
 """
 
@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from actr3d.actr.chunk import Chunk, Slot, as_text
-from actr3d.actr.pattern import parse
+from actr3d.actr.pattern import Pattern, parse
 from actr3d.actr.store import ChunkStore
+
+if TYPE_CHECKING:
+    from actr3d.actr.partial import Partial
 
 
 @lru_cache(maxsize=4096)
@@ -25,18 +28,29 @@ def _plan(text: str) -> tuple[tuple[Slot, str, str], ...] | None:
     return tests
 
 
-class Request:
-    """A request that names plain slots only.
+class Search(Protocol):
+    """What a memory is asked for."""
+
+    partial: Partial | None
+    """What mismatches cost, where similar values may match."""
+
+    def among(self, store: ChunkStore) -> list[Chunk]:
+        """Returns the chunks that match, in the order they came."""
+        ...
+
+
+class PlainSearch:
+    """A search that names plain slots only.
 
     Args:
         tests: What is asked, as (slot, sign, word); see `pattern.parse`.
         bound: The variables that have a value.
     """
 
-    __slots__ = ("differ", "equal", "present", "same", "unequal")
-    partial = None
+    __slots__ = ("differ", "equal", "partial", "present", "same", "unequal")
 
     def __init__(self, tests: Sequence[tuple[Slot, str, str]], bound: Mapping[str, Any] | None) -> None:
+        self.partial = None
         self.equal: list[tuple[Slot, str]] = []
         self.unequal: list[tuple[Slot, str]] = []
         self.present: dict[str, Slot] = {}
@@ -107,11 +121,46 @@ class Request:
 _NOTHING = object()
 
 
-def plain_request(text: str, bound: Mapping[str, Any] | None) -> Request | None:
-    """Returns a request that names plain slots only; None where its text says more.
+class PatternSearch:
+    """Any other search.
+
+    Args:
+        pattern: What is asked for; a mapping stands for its slots and values.
+        bound: The variables that have a value.
+        partial: What mismatches cost, where similar values may match.
 
     Raises:
-        PatternException: If the text is no pattern.
+        PatternException: If a text is no pattern.
     """
-    tests = _plan(text)
-    return None if tests is None else Request(tests, bound)
+
+    def __init__(self, pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> None:
+        self.partial = partial
+        self._pattern = Pattern([cast("object", pattern)] if isinstance(pattern, Mapping) else pattern, bound, partial)
+
+    def __str__(self) -> str:
+        return " ".join(map(str, self._pattern.conditions))
+
+    def among(self, store: ChunkStore) -> list[Chunk]:
+        """Returns the chunks that match, in the order they came."""
+        chunks: list[Chunk] = store
+        for op, _, slot, value in self._pattern.conditions:
+            if op in ("call", "empty") or (isinstance(slot, str) and (slot[:1] == "?" or "." in slot)):
+                continue
+            fewer = store.with_value(slot, value) if op == "is" and self.partial is None else store.with_slot(slot)
+            if len(fewer) < len(chunks):
+                chunks = fewer
+        match = self._pattern.match
+        return [chunk for chunk in chunks if match(chunk) is not None]
+
+
+def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> Search:
+    """Returns the quickest search for a pattern.
+
+    Raises:
+        PatternException: If a text is no pattern.
+    """
+    if partial is None and type(pattern) is str:
+        tests = _plan(pattern)
+        if tests is not None:
+            return PlainSearch(tests, bound)
+    return PatternSearch(pattern, bound, partial)
