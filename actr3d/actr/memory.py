@@ -179,11 +179,13 @@ class Memory(Model):
         for adaptor in self.adaptors:
             adaptor.matched(matches)
         best = self._weigh(matches, record, partial)
+        trace = self.sch.trace
         if best:
             choice: Any = pick(self.random, best)
             record.chosen = choice
             record.latency = self._time(self._strength(record, choice.activation))
-            self._note_request(record)
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "request", record.to_data())
             if type(self).recall is Memory.recall and self.sch.idle_now():
                 # The same as below, but for an event that would do nothing else at this very moment.
                 self.finst.add_after(choice)
@@ -192,17 +194,20 @@ class Memory(Model):
                 self.recall(choice, matches=matches, request_number=number)
         else:
             record.latency = self.maximum_time if self.threshold is None else self._time(self.threshold)
-            self._note_request(record)
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "request", record.to_data())
             self.fail(number)
 
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
         own = self._own_activation()
+        parts_of: Callable[[Any], tuple[float, ...]] = self._parts if own is None else lambda chunk: (own(chunk),)
+        nothing = own is None and not self.adaptors and not self.record_all_chunks
         candidates = record.candidates
         best = -math.inf
         for chunk in cast("list[Any]", matches):
-            parts: tuple[float, ...] = (own(chunk),) if own is not None else self._parts(chunk)
-            activation = total(parts)
+            parts: tuple[float, ...] = () if nothing and getattr(chunk, "record", None) is not True else parts_of(chunk)
+            activation = total(parts) if parts else 0
             cost: float = 0.0
             if partial is not None:
                 cost = chunk._partial
@@ -213,26 +218,18 @@ class Memory(Model):
                 best = activation
             elif activation != activation:
                 warn_modeller(f"memory '{self.name}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
-        if best == -math.inf and not any(candidate.activation == best for candidate in candidates):
-            return []
-        if self.threshold is not None and self._strength(record, best) < self.threshold:
+        if self.threshold is not None and (not candidates or self._strength(record, best) < self.threshold):
             return []
         return [candidate.chunk for candidate in candidates if candidate.activation == best]
 
     def _own_activation(self) -> Callable[[Any], float] | None:
         """Returns a modeller's own `get_activation`, where there is one."""
-        method: Any = self.get_activation
-        return None if getattr(method, "func", getattr(method, "__func__", None)) is Memory.get_activation else method
+        method: Any = self.__dict__["get_activation"]
+        return None if getattr(method, "func", None) is Memory.get_activation else method
 
     def _strength(self, record: Retrieval, best: float) -> float:
         """Returns the activation that the threshold is compared with, and that sets the time."""
         return best
-
-    def _note_request(self, record: Retrieval) -> None:
-        """Records a request with all its candidates, where that is wanted."""
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "request", record.to_data())
 
     def fail(self, request_number: int) -> Iterator[float]:
         """Lets a request fail, after its time."""

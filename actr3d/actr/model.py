@@ -208,30 +208,47 @@ class Model:
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
+        if key[0] == "_":
+            own[key] = value
+        elif key in UNWATCHED or isinstance(value, Model):
+            self._set_in_tree(key, value)
+        else:
+            own[key] = value
+            if "_converted" in own:
+                self._tell(key, value)
+
+    def _tell(self, key: str, value: Any) -> None:
+        """Wakes whoever waits for a change here or further up, and lets trace and log know."""
+        own = self.__dict__
+        sch: Scheduler = own["sch"]
+        part = own
+        while True:
+            if part["changes"].waiting:
+                sch.trigger(part["changes"], priority=-1)
+            above: Model | None = part["parent"]
+            if above is None or above is self:
+                break
+            part = above.__dict__
+        if sch.trace is not None:
+            self._trace_change(sch.trace, key, value)
+        log = own["log"]
+        if log is not logs.dummy and log:
+            setattr(log, key, value)
+
+    def _set_in_tree(self, key: str, value: Any) -> None:
+        """Sets an attribute that is a model, or one that holds the tree together."""
+        own = self.__dict__
         if key == "parent" and value is None and own.get("parent") is not None:
             siblings = own["parent"].__dict__.get("_children", {})
             for known in [name for name, part in siblings.items() if part is self]:
                 del siblings[known]
             self._forget_path()
         own[key] = value
-        public = key[0] != "_"
-        if public and isinstance(value, Model) and key != "parent":
+        if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
             self._take_in(key, value)
-        if public and self._converted and key not in UNWATCHED:
-            sch = self.sch
-            above: Model | None = self
-            while above is not None:
-                if above.changes.waiting:
-                    sch.trigger(above.changes, priority=-1)
-                above = above.parent
-                if above is self:
-                    break
-            if sch.trace is not None:
-                self._trace_change(sch.trace, key, value)
-            log = own["log"]
-            if log is not logs.dummy and log:
-                setattr(log, key, value)
+        if self._converted and key not in UNWATCHED:
+            self._tell(key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
