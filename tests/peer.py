@@ -62,6 +62,7 @@ def main() -> None:
     prepare(seed)
     alias_ccm()
     sys.argv = [file]
+    peer.logger.singleton_log.directory = file.removesuffix(".py")
     sys.path[0] = str(Path(file).resolve().parent)
     runpy.run_path(file, run_name="__main__")
 

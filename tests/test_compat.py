@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, version
@@ -25,6 +26,16 @@ def seeds(file: Path) -> list[int]:
 
 
 CASES = [pytest.param(file, seed, id=f"{file.stem}-{seed}") for file in FILES for seed in seeds(file)]
+
+
+def files_written(folder: Path) -> list[tuple[str, str]]:
+    """Returns what a program wrote into its folder, by the kind of file; of a table only that there is one.
+
+    Times are compared to the millisecond: here they are exact, in python_actr sums of floats.
+    """
+    files = [path for path in folder.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")]
+    texts = [(path.suffix, path.read_text(encoding="utf-8") if path.suffix == ".data" else "") for path in files]
+    return sorted((kind, re.sub(r"^time=(.*)$", lambda m: f"time={float(m[1]):.3f}", text, flags=re.MULTILINE)) for kind, text in texts)
 
 
 def printed(*arguments: str, folder: Path) -> str:
@@ -46,8 +57,13 @@ def test_the_peer_is_python_actr_1_9_5() -> None:
 
 @pytest.mark.parametrize(("file", "seed"), CASES)
 def test_prints_what_python_actr_prints(file: Path, seed: int, tmp_path: Path) -> None:
-    ours = printed("-m", "actr3d.cli", "run", str(file), "--seed", str(seed), folder=tmp_path)
-    peers = printed(str(HERE / "peer.py"), str(file), str(seed), folder=tmp_path)
+    programs: list[str] = []
+    for folder in (tmp_path / "ours", tmp_path / "peers"):  # a model's log goes into a folder beside its file
+        folder.mkdir()
+        programs.append(str(shutil.copy(file, folder)))
+    ours = printed("-m", "actr3d.cli", "run", programs[0], "--seed", str(seed), folder=tmp_path)
+    peers = printed(str(HERE / "peer.py"), programs[1], str(seed), folder=tmp_path)
     assert ours.splitlines() == peers.splitlines()
     assert ours == peers
+    assert files_written(tmp_path / "ours") == files_written(tmp_path / "peers")
     assert len(ours.splitlines()) > 3, f"{file.name} prints next to nothing: it shows nothing"

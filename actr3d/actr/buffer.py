@@ -75,7 +75,7 @@ class Buffer(Model):
         chunk = self.chunk
         if not chunk:
             return
-        above = self.parent
+        above: Model | None = self.__dict__.get("parent")  # a class's own buffer, filled before an agent runs, has none
         while above is not None:
             memories = [m for m in above.__dict__.get("_harvesters", ()) if m.parent is above]
             if memories:
