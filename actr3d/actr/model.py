@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import random
+import warnings
 from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any, cast
@@ -14,7 +15,7 @@ from actr3d.actr.chunk import Chunk
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.scheduler import Event, Scheduler, Trigger
-from actr3d.errors import SchedulerError
+from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
 UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
@@ -81,6 +82,8 @@ class Model:
     _auto_run_start = True
     _init_log: Any = None
     _profile: Profile | None = None
+    _setters: frozenset[str] = frozenset()
+    """The attributes that a class's own properties take care of."""
 
     # Given to every instance when it comes to life.
     changes: Trigger
@@ -122,6 +125,7 @@ class Model:
         own.setdefault("name", type(self).name)
         parent = own.get("parent") or parent
         methods, objects = class_members(type(self))
+        self._check_names({**objects, **methods})
         objects = copy_objects(objects)
         if parent is not None:
             parent._ensure_converted()
@@ -135,6 +139,8 @@ class Model:
                 if not obj._converted:
                     obj._convert(self)
                 self._adopted(name, obj)
+            if name in own and name not in UNWATCHED:
+                self._warn_of_loss(name, own[name], obj)
             own[name] = obj
         if self._convert_methods:
             for name, func in methods.items():
@@ -147,6 +153,26 @@ class Model:
                 self._take_in(key, value)
         if self._profile is None and parent is not None:
             self._profile = parent._profile
+
+    def _check_names(self, members: dict[str, Any]) -> None:
+        """Raises an error where a class gives one of the names that hold the tree together to something else."""
+        for name in ("changes", "log", "parent", "random", "sch"):
+            if name not in members:
+                continue
+            value = members[name]
+            usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
+            if not usable:
+                raise SchedulerError(f"{type(self).__name__}.{name}: the name '{name}' is taken by every model; use another")
+
+    def _warn_of_loss(self, name: str, before: Any, after: Any) -> None:
+        """Warns where what was set on the model is lost, because its class says otherwise."""
+        if not (type(before) in PLAIN_TYPES and before == after):
+            warnings.warn(
+                f"{type(self).__name__}.{name} was set to {traceable(before)!r}, but becomes {traceable(after)!r}, as its class says, "
+                "when the model comes to life; set it after the first run(0), or leave it out of the class",
+                ModelWarning,
+                stacklevel=2,
+            )
 
     def _become_top(self) -> None:
         own = self.__dict__
@@ -171,7 +197,14 @@ class Model:
 
     # -- changes
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        cls._setters = cls._setters | {name for name, member in vars(cls).items() if hasattr(type(member), "__set__")}
+
     def __setattr__(self, key: str, value: Any) -> None:
+        if self._setters and key in self._setters:
+            object.__setattr__(self, key, value)
+            return
         own = self.__dict__
         if key == "parent" and value is None and own.get("parent") is not None:
             siblings = own["parent"].__dict__.get("_children", {})
