@@ -303,6 +303,23 @@ def test_a_tree_that_came_to_life_joins_with_its_events() -> None:
     assert part.inner.random is world.random
 
 
+def test_a_joining_tree_brings_those_who_wait_for_a_name() -> None:
+    seen: list[float] = []
+
+    class Part(Model):
+        def start(self) -> Iterator[Any]:
+            yield "alarm"
+            seen.append(self.now())
+
+    part = Part()
+    part.run(0)
+    world: Any = Model()
+    world.part = part
+    world.sch.add(lambda: world.sch.trigger("alarm"), 2)
+    world.run()
+    assert seen == [2]
+
+
 def test_an_unknown_attribute_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="missing"):
         Model()["missing"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -233,7 +234,7 @@ class Agent(ACTR):
         out.append(self.now())
 """
     out = run(body, 20).out
-    gaps = [b - a for a, b in zip(out, out[1:], strict=False)]
+    gaps = [b - a for a, b in pairwise(out)]
     assert min(gaps) >= 0
     assert len(set(gaps)) > 50
 

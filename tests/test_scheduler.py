@@ -32,7 +32,7 @@ def test_simultaneous_events_come_by_priority_then_in_order() -> None:
     sch = Scheduler()
     order: list[str] = []
     for name, delay, priority in [("b", 1, 0), ("c", 1, 0), ("z", 1, -5), ("a", 1, 5), ("early", 0.5, -9), ("same", 0.9999999, 0)]:
-        sch.add(lambda name=name: order.append(name), delay, priority=priority)
+        sch.add(order.append, delay, args=[name], priority=priority)
     sch.run()
     assert order == ["early", "a", "b", "c", "same", "z"]
     assert sch.time == 1
@@ -190,7 +190,7 @@ def test_the_loser_of_a_tuple_leaves_nothing_behind() -> None:
         ({"priority": "high"}, r"a priority must be a number \(got 'high'\)"),
         (object, r"cannot wait for <class 'object'>; yield a number of seconds, a trigger or its name, a method"),
         ((1, object), r"cannot wait for <class 'object'>"),
-        ((), r"cannot wait for \(\); an empty tuple"),
+        ((), r"cannot wait for \(\); nothing is in it"),
         (1j, r"cannot wait for 1j"),
     ],
 )

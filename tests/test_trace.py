@@ -125,7 +125,8 @@ def test_data_are_what_they_were_then() -> None:
     model.goal.set({"list": values})
     model.values = values
     values.append(3)
-    model.goal.chunk["list"] = "changed"
+    chunk: Any = model.goal.chunk
+    chunk["list"] = "changed"
     assert trace.select("buffer")[-1].data == {"chunk": {"list": [1, [2]]}}
     assert trace.select("state", "top")[-1].data == {"values": [1, [2]]}
 

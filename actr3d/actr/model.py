@@ -199,7 +199,7 @@ class Model:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        cls._setters = cls._setters | {name for name, member in vars(cls).items() if hasattr(type(member), "__set__")}
+        cls._setters = cls._setters | {name for name, member in vars(cls).items() if has_setter(member)}
 
     def __setattr__(self, key: str, value: Any) -> None:
         if self._setters and key in self._setters:
@@ -260,6 +260,7 @@ class Model:
             time, priority, _, event = self.sch.queue.heap[0]
             self.sch.queue.pop()
             sch.queue.push(max(time, sch.now_us), event, -priority)
+        sch.take_waiting(self.sch)
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 
@@ -386,6 +387,11 @@ def traceable(value: Any) -> Any:
     return f"<{type(value).__name__}>" if " at 0x" in text else text
 
 
+def has_setter(member: object) -> bool:
+    """Tells whether a class's attribute takes care of being set, as properties do."""
+    return hasattr(type(member), "__set__")
+
+
 def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
     """Returns what a class and its ancestors below Model bring, in alphabetical order: methods, and other objects.
 
@@ -405,7 +411,7 @@ def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
             methods[name] = member
         elif isinstance(member, type) and issubclass(member, Model):
             objects[name] = member()
-        elif not isinstance(member, (property, staticmethod, classmethod)) and not hasattr(type(member), "__set__"):
+        elif not isinstance(member, (property, staticmethod, classmethod)) and not has_setter(cast("object", member)):
             objects[name] = member
     return methods, objects
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, Condition, conditions
 from actr3d.actr.rebinding import stored_names
-from actr3d.actr.sources import assigned_globals, function_node, has_source, place
+from actr3d.actr.sources import assigned_globals, function_node, has_file, place
 from actr3d.errors import PatternException, ProductionException, did_you_mean
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Production:
         if node is None:
             if self.original_func.__name__ == "<lambda>":
                 reason = f"it is a lambda ({self.place}); write it with def"
-            elif has_source(self.original_func):
+            elif has_file(self.original_func):
                 reason = f"its source is not to be had ({self.place}): the file has changed since it was loaded; load it again"
             else:
                 reason = f"its source is not to be had ({self.place}); load the model from a file, or its text with actr3d.actr.load_text"

@@ -29,7 +29,8 @@ class ImaginalModule(Model):
 
     def delay_time(self) -> float:
         """Returns how long the next change takes [s]."""
-        time: float = self.delay() if callable(self.delay) else self.delay
+        given: Any = self.delay
+        time = float(given() if callable(given) else given)
         return time if self.delay_sd is None else max(0.0, self.random.gauss(time, self.delay_sd))
 
     def set(self, chunk: Any) -> Iterator[float]:
