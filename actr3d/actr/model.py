@@ -199,12 +199,13 @@ class Model:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        cls._setters = cls._setters | {name for name, member in vars(cls).items() if has_setter(member)}
+        setters = {name for name, member in vars(cls).items() if has_setter(member)}
+        if setters:
+            cls._setters = cls._setters | setters
+            if "__setattr__" not in vars(cls):
+                type.__setattr__(cls, "__setattr__", set_with_properties)
 
     def __setattr__(self, key: str, value: Any) -> None:
-        if self._setters and key in self._setters:
-            object.__setattr__(self, key, value)
-            return
         own = self.__dict__
         if key == "parent" and value is None and own.get("parent") is not None:
             siblings = own["parent"].__dict__.get("_children", {})
@@ -385,6 +386,14 @@ def traceable(value: Any) -> Any:
         return f"<{getattr(value, '__qualname__', type(value).__name__)}>"
     text = repr(value)
     return f"<{type(value).__name__}>" if " at 0x" in text else text
+
+
+def set_with_properties(model: Model, key: str, value: Any) -> None:
+    """Sets an attribute of a model whose class has properties that can be set."""
+    if key in model._setters:  # pyright: ignore[reportPrivateUsage]
+        object.__setattr__(model, key, value)
+    else:
+        Model.__setattr__(model, key, value)
 
 
 def has_setter(member: object) -> bool:

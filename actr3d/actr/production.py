@@ -79,6 +79,11 @@ class Production:
         return any(condition.op == "call" for condition in self.conditions)
 
     @cached_property
+    def _looks_up(self) -> bool:
+        """Whether the body looks names up while it runs."""
+        return self.more_bound or bool(self.assigned)
+
+    @cached_property
     def assigned(self) -> set[str]:
         """The names that the body assigns."""
         return stored_names(self.node.body)
@@ -106,7 +111,7 @@ class Production:
 
     def scope(self, bound: Bindings) -> Bindings:
         """Returns the bound variables in the form the body asks for."""
-        return Scope(bound, self.context, self.original_func) if self.assigned or self.more_bound else bound
+        return Scope(bound, self.context, self.original_func) if self._looks_up else bound
 
     def fire(self) -> None:
         """Carries out the body, with what the last match bound."""

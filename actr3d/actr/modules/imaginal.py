@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.model import Model
@@ -29,8 +29,7 @@ class ImaginalModule(Model):
 
     def delay_time(self) -> float:
         """Returns how long the next change takes [s]."""
-        given: Any = self.delay
-        time = float(given() if callable(given) else given)
+        time: float = cast("Any", self.delay)() if callable(self.delay) else self.delay
         return time if self.delay_sd is None else max(0.0, self.random.gauss(time, self.delay_sd))
 
     def set(self, chunk: Any) -> Iterator[float]:
