@@ -17,6 +17,7 @@ from actr3d.actr import logger as logs
 from actr3d.actr.aliases import aliases
 from actr3d.actr.limits import EndOfRun, RunLimits
 from actr3d.actr.python2 import python_2_reason
+from actr3d.actr.sources import SOURCE
 from actr3d.errors import ModelFileError, did_you_mean
 
 
@@ -48,7 +49,7 @@ def compile_source(source: str, filename: str) -> Any:
     Raises:
         ModelFileError: If it is no Python 3; the message names the line, and says so where it is Python 2.
     """
-    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
+    linecache.cache[filename] = (len(source), None, io.StringIO(source).readlines(), filename)
     try:
         return compile(source, filename, "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -109,7 +110,7 @@ def run_text(
     """
     code = compile_source(source, filename)
     module = ModuleType("__main__")
-    module.__dict__.update(__file__=filename, __builtins__=__builtins__, **(names or {}))
+    module.__dict__.update({"__file__": filename, "__builtins__": __builtins__, SOURCE: source, **(names or {})})
     if prepare is not None:
         prepare(module)
     limits = limits or RunLimits()
@@ -151,7 +152,7 @@ def load_text(source: str, filename: str = "<model>") -> ModuleType:
     """
     code = compile_source(source, filename)
     module = ModuleType(f"actr3d_model_{abs(hash(filename))}")
-    module.__file__ = filename
+    module.__dict__.update({"__file__": filename, SOURCE: source})
     sys.modules[module.__name__] = module  # dataclasses and pickling look a class's module up
     with aliases():
         exec(code, module.__dict__)

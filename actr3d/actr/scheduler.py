@@ -200,6 +200,14 @@ class Scheduler:
                 event.priority = priority
             self.queue.push(self.now_us, event, event.priority)
 
+    def take_waiting(self, other: Scheduler) -> None:
+        """Takes over from another scheduler whoever waits there for a name, and what other threads have added."""
+        for name, trigger in other._named.items():
+            self._named.setdefault(name, Trigger(name)).waiting += trigger.waiting
+        self._incoming += other._incoming
+        other._named.clear()
+        other._incoming.clear()
+
     def stop(self) -> None:
         """Ends the run once the present event is over."""
         self.stop_flag = True
@@ -325,7 +333,7 @@ class Scheduler:
         elif isinstance(result, (list, tuple)):
             choices = list(_each(cast("Sequence[Any]", result)))
             if not choices:
-                raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; an empty {type(result).__name__} names nothing")
+                raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; nothing is in it")
             events = [copy.copy(event) for _ in choices]
             for alternative in events:
                 alternative.group = events
