@@ -14,6 +14,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
+from actr3d.clock import MICROSECONDS
+
 BASIC = (int, float, bool, str, tuple, list, dict)
 
 
@@ -21,7 +23,7 @@ class Log:
     """Where all log lines of a program go."""
 
     def __init__(self) -> None:
-        self.time = 0.0
+        self.time_us = 0
         self.do_screen = True
         self.do_html = False
         self.do_summary = False
@@ -39,7 +41,7 @@ class Log:
         """Forgets what was logged."""
         self.data: dict[str, Any] = {}
         self.rows: list[tuple[float, str, Any]] = []
-        self.time = 0.0
+        self.time_us = 0
         self._stem: str | None = None
 
     def __bool__(self) -> bool:
@@ -47,10 +49,15 @@ class Log:
         keeps = self.do_data or self.do_summary or self.do_html
         return bool(self.data or self.rows or (keeps and self.time > 0))
 
+    @property
+    def time(self) -> float:
+        """When the latest step of any run was [s]."""
+        return self.time_us / MICROSECONDS
+
     def set(self, key: str, value: Any) -> None:
         """Takes one line."""
         if key == "time":
-            self.time = value
+            self.time_us = round(value * MICROSECONDS)
         elif self.do_screen:
             print(f"{self.time:8.3f} {key} {value}")
         if self.do_data or self.do_summary:

@@ -11,8 +11,8 @@ from numbers import Real
 from types import GeneratorType
 from typing import Any, cast
 
-from actr3d.actr import logger
 from actr3d.actr.limits import RunLimits
+from actr3d.actr.logger import LOG
 from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
 from actr3d.errors import ModelWarning, SchedulerError, did_you_mean
 from actr3d.trace import Trace
@@ -165,6 +165,11 @@ class Scheduler:
         self.queue.push(self.after(delay, event), event, priority)
         return event
 
+    def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
+        """Schedules a plain call of the library's own, which returns None."""
+        event = Event(call, args)
+        self.queue.push(self.after(delay, event), event)
+
     def begin(self, generator: GeneratorType[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
         event = Event(call, generator=generator)
@@ -281,7 +286,11 @@ class Scheduler:
                 event.group = ()
             generator = event.generator
             if generator is None:
-                self._wait(event, event.call(*event.args, **event.keys))
+                result = event.call(*event.args, **event.keys)
+                if result is None:
+                    self._finish(event)
+                else:
+                    self._wait(event, result)
                 continue
             try:
                 result = next(generator)
@@ -310,7 +319,7 @@ class Scheduler:
 
     def _advance(self, time: int) -> None:
         self.now_us = time
-        logger.LOG.time = time / MICROSECONDS
+        LOG.time_us = time
 
     def _finish(self, event: Event) -> None:
         event.done = event.origin.done = True
