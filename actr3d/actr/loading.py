@@ -7,7 +7,7 @@ import linecache
 import random
 import sys
 import tokenize
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
@@ -64,7 +64,7 @@ def compile_source(source: str, filename: str) -> Any:
 
 
 @contextmanager
-def _as_main(module: ModuleType, folder: Path) -> Iterator[None]:
+def _as_main(module: ModuleType, folder: Path) -> Generator[None]:
     """Lets a module be the program: `__main__`, its folder first on the path, and its own helper modules gone afterwards."""
     main, path, known = sys.modules.get("__main__"), list(sys.path), set(sys.modules)
     sys.modules["__main__"] = module
@@ -113,8 +113,7 @@ def run_text(
     if prepare is not None:
         prepare(module)
     limits = limits or RunLimits()
-    restore = logs.settings()
-    logs.LOG.announce = False
+    restore = logs.begin()
     state = random.getstate()
     with ExitStack() as stack:
         stack.callback(random.setstate, state)
@@ -125,9 +124,9 @@ def run_text(
         if limits.seed is not None:
             random.seed(limits.seed)
         logs.LOG.source = filename
+        stack.callback(logs.finished)  # also where the program fails: what it logged until then is kept
         with suppress(EndOfRun):
             exec(code, module.__dict__)
-        logs.finished()
     return module
 
 

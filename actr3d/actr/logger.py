@@ -12,7 +12,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any
 
 BASIC = (int, float, bool, str, tuple, list, dict)
 
@@ -100,6 +100,11 @@ class DummyLog:
 class LogProxy:
     """A place in a log: `proxy.a.b = 3` and `proxy['x'] = 4` write lines named after the place; `proxy._ = 5` names the place itself."""
 
+    if TYPE_CHECKING:
+        _log: Log
+        _prefix: str
+        _items: dict[Any, LogProxy]
+
     def __init__(self, target: Log, prefix: str = "") -> None:
         own = self.__dict__
         own["_log"] = target
@@ -126,7 +131,7 @@ class LogProxy:
         self[key]._set(value)
 
     def __getitem__(self, key: Any) -> LogProxy:
-        items: dict[Any, LogProxy] = self._items
+        items = self._items
         if key not in items:
             items[key] = LogProxy(self._log, f"{self._prefix}[{key}]")
         return items[key]
@@ -181,7 +186,8 @@ def log_everything(model: Any, log: Any = None) -> None:
     if not hasattr(model, "log"):
         model.run(limit=0)
     model.log = log
-    for key, part in list(vars(model).items()):
+    attributes: dict[str, Any] = dict(vars(model))
+    for key, part in attributes.items():
         if key[0] != "_" and key != "parent" and hasattr(part, "get_children") and getattr(part, "parent", None) is model:
             log_everything(part, getattr(log, key))
 
@@ -203,12 +209,20 @@ def finished(flush: bool = True) -> None:
         print("end...")
 
 
-def settings() -> Callable[[], None]:
-    """Returns a function that puts the log back as it is now, with nothing in it."""
+def begin() -> Callable[[], None]:
+    """Begins a log for one program: empty, and set as at first unless a parameter sweep has set it.
+
+    Returns:
+        A function that puts back the log as it was before, with what was in it.
+    """
     before = dict(vars(LOG))
+    if LOG.locked:
+        LOG.reset()
+    else:
+        LOG.__init__()
 
     def restore() -> None:
-        vars(LOG).update(cast("dict[str, Any]", before))
-        LOG.reset()
+        vars(LOG).clear()
+        vars(LOG).update(before)
 
     return restore

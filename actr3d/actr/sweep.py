@@ -94,7 +94,7 @@ def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
             outer = RunLimits.current()
             seed = None if outer is None else outer.next_seed()
             limits = RunLimits(seed=seed, until=None if outer is None else outer.until)
-            restore = logs.settings()
+            restore = logs.begin()
             logs.log(data=True, screen=False, directory=str(path.with_suffix("") / _safe(name)))
             logs.LOG.locked = True
             try:
