@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from math import isfinite
+from typing import Any, NamedTuple, cast
 
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, did_you_mean
@@ -37,9 +38,26 @@ class TraceEvent(NamedTuple):
         return seconds(self.time_us)
 
     def to_json(self) -> str:
-        """Returns the event as one line of JSON; the same event always gives the same bytes."""
+        """Returns the event as one line of JSON; the same event always gives the same bytes.
+
+        Numbers that JSON does not have become the texts `inf`, `-inf` and `nan`.
+        """
         record = {"time": self.time, "source": self.source, "kind": self.kind, "data": self.data}
-        return json.dumps(record, default=repr, ensure_ascii=False)
+        try:
+            return json.dumps(record, default=repr, ensure_ascii=False, allow_nan=False)
+        except ValueError:
+            return json.dumps(_finite(record), default=repr, ensure_ascii=False, allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    """Returns a value with every number that JSON does not have as text."""
+    if isinstance(value, float) and not isfinite(value):
+        return str(value)
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in cast("dict[Any, Any]", value).items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in cast("list[Any]", value)]
+    return value
 
 
 class Trace:

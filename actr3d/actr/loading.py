@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import linecache
 import random
@@ -65,20 +66,27 @@ def compile_source(source: str, filename: str) -> Any:
 
 @contextmanager
 def _as_main(module: ModuleType, folder: Path) -> Generator[None]:
-    """Lets a module be the program: `__main__`, its folder first on the path, and its own helper modules gone afterwards."""
-    main, path, known = sys.modules.get("__main__"), list(sys.path), set(sys.modules)
+    """Lets a module be the program: `__main__`, alone in `sys.argv`, its folder first on the path; its helper modules go with it."""
+    main, path, argv, known = sys.modules.get("__main__"), list(sys.path), list(sys.argv), set(sys.modules)
+    importlib.invalidate_caches()  # helper modules may be newer than the last look into their folder
     sys.modules["__main__"] = module
     sys.path.insert(0, str(folder))
+    sys.argv[:] = [str(module.__file__)]
     try:
         yield
     finally:
-        sys.path[:] = path
+        sys.path[:], sys.argv[:] = path, argv
         if main is not None:
             sys.modules["__main__"] = main
         for name in set(sys.modules) - known:
-            file = getattr(sys.modules[name], "__file__", None)
-            if file is not None and Path(file).is_relative_to(folder) and not Path(file).is_relative_to(sys.prefix):
+            helper = sys.modules[name]
+            places = [getattr(helper, "__file__", None) or "", *getattr(helper, "__path__", ())]
+            if any(_is_in(place, folder) and not _is_in(place, Path(sys.prefix)) for place in places):
                 del sys.modules[name]
+
+
+def _is_in(place: str, folder: Path) -> bool:
+    return bool(place) and Path(place).is_relative_to(folder)
 
 
 def run_text(

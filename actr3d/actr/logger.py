@@ -46,7 +46,7 @@ class Log:
         if key == "time":
             self.time = value
         elif self.do_screen:
-            print(f"{self.time:8.3f} {key} {value}")
+            print(f"{self.time:8.3f} {key} {value}")  # noqa: T201 - the log's own output
         if self.do_data or self.do_summary:
             self.data[key] = value
         if self.do_html and key != "time":
@@ -55,10 +55,10 @@ class Log:
     def display_all(self) -> None:
         """Prints the last value of everything."""
         if self.time > 0:
-            print(f"Total time: {self.time:8.3f}")
+            print(f"Total time: {self.time:8.3f}")  # noqa: T201 - the log's own output
         for key in sorted(self.data):
             if key != "time":
-                print(f" {key} {self.data[key]}")
+                print(f" {key} {self.data[key]}")  # noqa: T201 - the log's own output
 
     def file(self, ending: str) -> Path:
         """Returns a new file's path in the log's directory, and makes the directory."""
@@ -186,13 +186,13 @@ def log_everything(model: Any, log: Any = None) -> None:
     if not hasattr(model, "log"):
         model.run(limit=0)
     model.log = log
-    attributes: dict[str, Any] = dict(vars(model))
+    attributes: dict[str, Any] = dict(model.__dict__)
     for key, part in attributes.items():
         if key[0] != "_" and key != "parent" and hasattr(part, "get_children") and getattr(part, "parent", None) is model:
             log_everything(part, getattr(log, key))
 
 
-def finished(flush: bool = True) -> None:
+def finished(flush: bool = True) -> None:  # noqa: ARG001 - as models call it
     """Writes what the log's settings ask for, and begins a new log."""
     from actr3d.actr.html import write_html
 
@@ -206,7 +206,7 @@ def finished(flush: bool = True) -> None:
             write_html(LOG.file(".html"), LOG.rows)
     LOG.reset()
     if LOG.announce:
-        print("end...")
+        print("end...")  # noqa: T201 - the log's own output
 
 
 def begin() -> Callable[[], None]:
