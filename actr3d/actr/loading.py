@@ -36,11 +36,23 @@ def read_source(path: Path) -> str:
         raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
     except OSError as error:
         raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-        return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+        return data.decode(encoding)
     except (SyntaxError, UnicodeDecodeError, LookupError) as error:
-        raise ModelFileError(f"'{path}' is no Python source: {error}") from None
+        raise ModelFileError(f"'{path}' is no Python source: {_why_no_text(data, error)}") from None
+
+
+def _why_no_text(data: bytes, error: Exception) -> str:
+    """Says what is wrong with a file's encoding; where it declares none, which line is no UTF-8."""
+    if "encoding declaration" in str(error) or getattr(error, "encoding", None) == "utf-8":
+        try:
+            data.decode("utf-8")
+        except UnicodeDecodeError as wrong:
+            line = data.count(b"\n", 0, wrong.start) + 1
+            return f"line {line} is no UTF-8; save it as UTF-8, or name its encoding in the first line (# -*- coding: latin-1 -*-)"
+    return str(error)
 
 
 def compile_source(source: str, filename: str) -> Any:
@@ -49,7 +61,7 @@ def compile_source(source: str, filename: str) -> Any:
     Raises:
         ModelFileError: If it is no Python 3; the message names the line, and says so where it is Python 2.
     """
-    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
+    linecache.cache[filename] = (len(source), None, [f"{line}\n" for line in source.split("\n")], filename)
     try:
         return compile(source, filename, "exec", dont_inherit=True)
     except SyntaxError as error:

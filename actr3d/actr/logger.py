@@ -201,7 +201,7 @@ def finished(flush: bool = True) -> None:  # noqa: ARG001 - as models call it
             LOG.display_all()
         if LOG.do_data:
             lines = [f"{key}={LOG.data[key]}\n" for key in sorted(LOG.data)]
-            LOG.file(".data").write_text("".join(lines), encoding="utf-8")
+            LOG.file(".data").write_text("".join(lines), encoding="utf-8", errors="backslashreplace")
         if LOG.do_html:
             write_html(LOG.file(".html"), LOG.rows)
     LOG.reset()
