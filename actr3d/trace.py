@@ -38,7 +38,10 @@ class TraceEvent(NamedTuple):
         return seconds(self.time_us)
 
     def to_json(self) -> str:
-        """Returns the event as one line of JSON; the same event always gives the same bytes."""
+        """Returns the event as one line of JSON; the same event always gives the same bytes.
+
+        Numbers that JSON does not have become the texts `inf`, `-inf` and `nan`.
+        """
         record = {"time": self.time, "source": self.source, "kind": self.kind, "data": self.data}
         try:
             return json.dumps(record, ensure_ascii=False, allow_nan=False)

@@ -115,7 +115,9 @@ class Production:
 
     def fire(self) -> None:
         """Carries out the body, with what the last match bound."""
-        bound = self.system.sch.bound = self.scope(self.bound or {})
+        sch = self.system.sch
+        bound = sch.bound = self.scope(self.bound or {})
+        sch.fired = self
         try:
             self._body(bound)
         except Exception as error:

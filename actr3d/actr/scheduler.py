@@ -113,6 +113,8 @@ class Scheduler:
         self.now_us = 0
         self.bound: dict[str, Any] | None = None
         """What the production that fired last had bound; `?name` in a chunk's text means these."""
+        self.fired: Any = None
+        """The production that fired last; errors name it."""
         self.trace: Trace | None = None
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
@@ -275,6 +277,7 @@ class Scheduler:
                     raise SchedulerError(
                         f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; "
                         f"the last was {heap[0][3].describe()}"
+                        + (f", the production that fired last '{self.fired.name}' ({self.fired.place})" if self.fired is not None else "")
                     )
             self.step += 1
             event = queue.pop()
