@@ -69,7 +69,7 @@ def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any
     Raises:
         ChunkError: If no production has bound it.
     """
-    if bound is not None and name in bound:
+    if bound and name in bound:
         return bound[name]
     known = sorted(str(key) for key in bound) if bound else []
     among = f"bound here: {', '.join('?' + k for k in known)}" if known else "no variable is bound here"
@@ -102,8 +102,9 @@ class Chunk(dict[Any, Any]):
             dict.update(self, cast("Chunk", contents))
             return
         if isinstance(contents, str):
+            put = super().__setitem__
             for slot, value in parse_slots(contents):
-                dict.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
+                put(slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
             return
         if hasattr(contents, "_chunk_of_buffer"):
             contents = cast("Any", contents)._chunk_of_buffer()

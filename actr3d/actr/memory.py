@@ -202,26 +202,27 @@ class Memory(Model):
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
         own = self._own_activation()
-        parts_of: Callable[[Any], tuple[float, ...]] = self._parts if own is None else lambda chunk: (own(chunk),)
-        nothing = own is None and not self.adaptors and not self.record_all_chunks
-        candidates = record.candidates
+        add = record.candidates.append
         best = -math.inf
+        winners: list[Chunk] = []
         for chunk in cast("list[Any]", matches):
-            parts: tuple[float, ...] = () if nothing and getattr(chunk, "record", None) is not True else parts_of(chunk)
+            parts = self._parts(chunk) if own is None else (own(chunk),)
             activation = total(parts) if parts else 0
             cost: float = 0.0
             if partial is not None:
                 cost = chunk._partial
                 activation += cost
             chunk.activation = activation
-            candidates.append(Candidate(chunk, parts, cost, activation))
+            add(Candidate(chunk, parts, cost, activation))
             if activation > best:
-                best = activation
+                best, winners = activation, [chunk]
+            elif activation == best:
+                winners.append(chunk)
             elif activation != activation:
                 warn_modeller(f"memory '{self.name}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
-        if self.threshold is not None and (not candidates or self._strength(record, best) < self.threshold):
+        if not winners or (self.threshold is not None and self._strength(record, best) < self.threshold):
             return []
-        return [candidate.chunk for candidate in candidates if candidate.activation == best]
+        return winners
 
     def _own_activation(self) -> Callable[[Any], float] | None:
         """Returns a modeller's own `get_activation`, where there is one."""

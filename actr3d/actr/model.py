@@ -249,25 +249,25 @@ class Model:
         else:
             own[key] = value
             if "_converted" in own:
-                self._tell(key, value)
+                # Wakes whoever waits for a change here or further up.
+                part = own
+                while True:
+                    changes: Trigger = part["changes"]
+                    if changes.waiting:
+                        own["sch"].trigger(changes, -1)
+                    above: Model | None = part["parent"]
+                    if above is None or above is self:
+                        break
+                    part = above.__dict__
+                if own["log"] is not logs.dummy or own["sch"].trace is not None:
+                    self._record(key, value)
 
-    def _tell(self, key: str, value: Any) -> None:
-        """Wakes whoever waits for a change here or further up, and lets trace and log know."""
-        own = self.__dict__
-        sch: Scheduler = own["sch"]
-        part = own
-        while True:
-            if part["changes"].waiting:
-                sch.trigger(part["changes"], priority=-1)
-            above: Model | None = part["parent"]
-            if above is None or above is self:
-                break
-            part = above.__dict__
-        if sch.trace is not None:
-            self._trace_change(sch.trace, key, value)
-        log = own["log"]
-        if log is not logs.dummy and log:
-            setattr(log, key, value)
+    def _record(self, key: str, value: Any) -> None:
+        """Lets trace and log know of a change."""
+        if self.sch.trace is not None:
+            self._trace_change(self.sch.trace, key, value)
+        if self.log:
+            setattr(self.log, key, value)
 
     def _set_in_tree(self, key: str, value: Any) -> None:
         """Sets an attribute that is a model, or one that holds the tree together."""
@@ -282,7 +282,10 @@ class Model:
             self._ensure_converted()
             self._take_in(key, value)
         if self._converted and key not in UNWATCHED:
-            self._tell(key, value)
+            for part in self._line():
+                if part.changes.waiting:
+                    self.sch.trigger(part.changes, priority=-1)
+            self._record(key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
@@ -321,6 +324,15 @@ class Model:
         sch.take_waiting(self.sch)
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
+
+    def _line(self) -> Iterator[Model]:
+        """Yields the model and its ancestors."""
+        part: Model | None = self
+        while part is not None:
+            yield part
+            part = part.__dict__.get("parent")
+            if part is self:
+                break
 
     def _tree(self) -> Iterator[Model]:
         """Yields the model and everything below it."""

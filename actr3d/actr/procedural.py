@@ -203,6 +203,11 @@ class ACTR(ProductionSystem):
     production_threshold: Any = None
     """The least utility a production needs to fire; a number, a function without arguments, or None for none."""
 
+    @property
+    def _indifferent(self) -> bool:
+        """Whether utilities are only what productions say of themselves."""
+        return not self._adaptors and type(self).get_activation is ACTR.get_activation
+
     _weighed: Mapping[Production, list[float]] = MappingProxyType({})
     """What each module added to the utilities at the latest choice."""
 
@@ -247,6 +252,8 @@ class ACTR(ProductionSystem):
 
     def _choose(self, matching: list[Production]) -> Production | None:
         """Returns one of those with the highest utility, or None where that is below the threshold."""
+        if len(matching) == 1 and self._indifferent and self.production_threshold is None and self.sch.trace is None:
+            return pick(self.random, matching)
         if type(self).get_activation is not ACTR.get_activation:
             utilities: list[float] = [self.get_activation(p) for p in matching]
         elif self._adaptors:
