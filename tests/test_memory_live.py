@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from living import near
 from peer import LIBRARIES, recording_buffer, seeded_agent, text_of
 
 Maker = Callable[[Any, Any, Any], Any]
@@ -34,7 +35,12 @@ MODULES: dict[str, Maker] = {
     "associate": associate(None),
     "salience": lambda library, memory, focus: library.DMSalience(memory),
 }
-COMBINED = [("noise", "base"), ("base", "spreading", "noise"), ("hybrid", "fixed", "associate"), ("base", "noise", "spreading", "fixed", "inhibition", "associate")]
+COMBINED = [
+    ("noise", "base"),
+    ("base", "spreading", "noise"),
+    ("hybrid", "fixed", "associate"),
+    ("base", "noise", "spreading", "fixed", "inhibition", "associate"),
+]
 
 
 def build(library: Any, seed: int, modules: tuple[str, ...], options: dict[str, Any], events: list[Any]) -> Any:
@@ -104,19 +110,19 @@ def check(seed: int, modules: tuple[str, ...], options: dict[str, Any]) -> None:
     assert len(activations) == len(peer_activations)
     for mine, theirs in zip(activations, peer_activations, strict=True):
         assert [text for text, _ in mine] == [text for text, _ in theirs]
-        assert [a for _, a in mine] == pytest.approx([a for _, a in theirs], rel=1e-12, abs=1e-12)
+        assert [a for _, a in mine] == near([a for _, a in theirs], rel=1e-12, abs=1e-12)
     assert len(events) == len(peer_events)
     for mine, theirs in zip(events, peer_events, strict=True):
         if len(mine) == 3:
             assert mine == theirs
             continue
-        assert mine[0] == pytest.approx(theirs[0], abs=1e-6)
+        assert mine[0] == near(theirs[0], abs=1e-6)
         if mine[1] is None or theirs[1] is None:
             assert mine[1] is theirs[1]
         else:
             assert list(mine[1]) == list(theirs[1])
             for value, other in zip(mine[1].values(), theirs[1].values(), strict=True):
-                assert value == (pytest.approx(other, rel=1e-12) if isinstance(other, float) else other)
+                assert value == (near(other, rel=1e-12) if isinstance(other, float) else other)
 
 
 @pytest.mark.parametrize("seed", range(4))

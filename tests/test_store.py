@@ -19,10 +19,8 @@ SLOTS: list[Any] = ["a", "b", 0, 1]
 slots = st.sampled_from(SLOTS)
 values = st.sampled_from(VALUES)
 contents = st.dictionaries(slots, values, max_size=4)
-steps = st.lists(
-    st.tuples(st.sampled_from(["keep", "append", "remove", "change", "delete", "slice", "grow", "reverse", "merge"]), st.integers(0, 50), contents),
-    max_size=25,
-)
+changes = st.sampled_from(["keep", "append", "remove", "change", "delete", "slice", "grow", "reverse", "merge"])
+steps = st.lists(st.tuples(changes, st.integers(0, 50), contents), max_size=25)
 
 
 def perform(store: ChunkStore, what: str, place: int, items: dict[Any, Any]) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from living import near
 from peer import LIBRARIES, model_file, recording_buffer
 
 Modules = Callable[[Any], dict[str, Any]]
@@ -49,10 +50,10 @@ def compare(mine: Any, theirs: Any) -> None:
     record, productions, after = mine
     peer_record, peer_productions, peer_after = theirs
     assert [name for name, _ in record] == [name for name, _ in peer_record]
-    assert [time for _, time in record] == pytest.approx([time for _, time in peer_record], abs=1e-6)
+    assert [time for _, time in record] == near([time for _, time in peer_record], abs=1e-6)
     assert len(productions) == len(peer_productions)
     for production, peer_production in zip(productions, peer_productions, strict=True):
-        assert production == pytest.approx(peer_production, rel=1e-9, abs=1e-9)
+        assert production == near(peer_production, rel=1e-9, abs=1e-9)
     assert after == peer_after
 
 
@@ -81,7 +82,7 @@ def test_compilation(seed: int) -> None:
     results: list[Any] = []
     compiled: list[int] = []
     for library in LIBRARIES:
-        events: list[tuple[float, Any]] = []
+        events: list[tuple[float, dict[Any, Any] | None]] = []
         goal = recording_buffer(library, events)
         agent = model_file("recalling").make(library, goal, noise=library.PMNoise(noise=1.5))()
         agent._ensure_converted()
