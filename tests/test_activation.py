@@ -70,7 +70,8 @@ def test_the_exact_form(times: list[int], d: float, profile: str) -> None:
     moments = sorted(time / 1_000_000 for time in times)
     read = 90.5
     youngest = 0.005 if profile == "python-actr" else 0.05
-    assert base_level(moments, read, profile, decay=d, limit=None) == near(exact([read - t for t in moments], d, youngest), rel=1e-9, abs=1e-9)
+    expected = exact([read - t for t in moments], d, youngest)
+    assert base_level(moments, read, profile, decay=d, limit=None) == near(expected, rel=1e-9, abs=1e-9)
 
 
 @settings(max_examples=60, deadline=None)

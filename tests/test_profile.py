@@ -42,6 +42,18 @@ def agent_of(level: str, kind: Any = Memory, memory: dict[str, Any] | None = Non
     return agent
 
 
+def exact_base_level(memory: Memory) -> DMBaseLevel:
+    return DMBaseLevel(memory, limit=None)
+
+
+def quarter_noise(memory: Memory) -> DMNoise:
+    return DMNoise(memory, noise=0.25)
+
+
+def double_partial(memory: Memory) -> Partial:
+    return Partial(memory, strength=2, limit=-1)
+
+
 @pytest.mark.parametrize("level", LEVELS)
 def test_base_level(level: str) -> None:
     agent = agent_of(level, base=DMBaseLevel)
@@ -81,7 +93,7 @@ def test_latency_and_whole_milliseconds(level: str) -> None:
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_a_negative_test_costs(level: str) -> None:
-    agent = agent_of(level, partial=lambda memory: Partial(memory, strength=2, limit=-1))
+    agent = agent_of(level, partial=double_partial)
     agent.memory.threshold = -10
     agent.memory.add("a:red b:1")
     agent.memory.request("a:!red b:1")
@@ -92,7 +104,7 @@ def test_a_negative_test_costs(level: str) -> None:
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_blending(level: str) -> None:
-    agent = agent_of(level, BlendingMemory, noise=lambda memory: DMNoise(memory, noise=0.25))
+    agent = agent_of(level, BlendingMemory, noise=quarter_noise)
     assert agent.memory._temperature() == near(0.353553, abs=1e-6)
     agent.memory.threshold = None
     agent.memory.add("v:1")
@@ -103,7 +115,7 @@ def test_blending(level: str) -> None:
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_the_buffer_is_cleared_at_the_request_and_harvested(level: str) -> None:
-    agent = agent_of(level, base=lambda memory: DMBaseLevel(memory, limit=None))
+    agent = agent_of(level, base=exact_base_level)
     agent.memory.add("known")
     agent.buffer.set("seen")
     agent.memory.request("known")
@@ -186,7 +198,7 @@ def test_the_profile_reaches_every_part_however_it_came() -> None:
     alone = Memory(Buffer())
     alone.add("a")
     assert alone.now() == 0  # it has come to life by itself
-    world.late: Any = Agent()
+    world.late = Agent()
     agents = [agent, world.late]
     for one in agents:
         memories = [one.inner.memory, one.parallel.store, one.derived]
@@ -290,6 +302,6 @@ def test_short_steps_of_a_run_add_up_under_act_r_7() -> None:
 def test_an_unknown_profile() -> None:
     with pytest.raises(ParameterError, match=r"Memory.profile: no profile 'actr-7'; use .*did you mean 'act-r-7'\?"):
         Memory(Buffer(), profile="actr-7")
-    with pytest.raises(ParameterError, match="Agent.profile: no profile 'lisp'"):
+    with pytest.raises(ParameterError, match=r"Agent.profile: no profile 'lisp'"):
         living("lisp")
     assert Memory(Buffer(), profile=ACT_R_7).latency == 1.0

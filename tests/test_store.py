@@ -42,9 +42,9 @@ def perform(store: ChunkStore, what: str, place: int, items: dict[Any, Any]) -> 
     elif what == "slice":
         store[place % len(store) :] = [chunk]
     elif what == "grow":  # a value that changes by itself, unseen
-        for value in known.values():
-            if isinstance(value, list):
-                value.append(place)
+        lists: list[Any] = [value for value in known.values() if isinstance(value, list)]
+        for value in lists:
+            value.append(place)
     elif what == "reverse":
         store.reverse()
     else:
