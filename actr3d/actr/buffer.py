@@ -26,7 +26,8 @@ class Buffer(Model):
         """
         sch = self.__dict__.get("sch")
         new = Chunk(chunk, sch.bound if sch is not None else None)
-        self._harvest()
+        if sch is not None and sch.harvests:
+            self._harvest()
         self.chunk = new
 
     def modify(self, **args: Any) -> None:
@@ -49,7 +50,9 @@ class Buffer(Model):
 
     def clear(self) -> None:
         """Empties the buffer."""
-        self._harvest()
+        sch = self.__dict__.get("sch")
+        if sch is not None and sch.harvests:
+            self._harvest()
         self.chunk = None
 
     def isEmpty(self) -> bool:  # noqa: N802 - Python ACT-R's name

@@ -75,6 +75,7 @@ class Memory(Model):
         if not self._latency_given:
             self.__dict__["latency"] = self.rules.latency
         if self.rules.harvest and self.parent is not None:
+            self.sch.harvests = True
             harvesters: list[Memory] = self.parent.__dict__.setdefault("_harvesters", [])
             if self not in harvesters:
                 harvesters.append(self)

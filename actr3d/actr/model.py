@@ -242,6 +242,7 @@ class Model:
             self.sch.queue.pop()
             sch.queue.push(max(time, sch.now_us), event, -priority)
         sch.round_ms = sch.round_ms or self.sch.round_ms
+        sch.harvests = sch.harvests or self.sch.harvests
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 
