@@ -27,7 +27,7 @@ def microseconds(seconds: float, what: str = "a time") -> int:
     try:
         if isfinite(seconds):
             return round(seconds * MICROSECONDS)
-    except TypeError:
+    except (TypeError, OverflowError):
         pass
     raise SchedulerError(f"{what} must be a finite number of seconds (got {seconds!r})")
 

@@ -1,70 +1,71 @@
-"""The reference implementation, python_actr, for live comparison: the same scenario is run on both libraries."""
+"""Runs a model file under the real python_actr, seeded as `actr3d run --seed` seeds it.
+
+Usage: `python tests/peer.py FILE SEED`. The n-th top model of the program draws from `Random(SEED)` for n = 1 and from
+`Random("SEED/n")` after that, and the program's own `random` is seeded with SEED; nothing else about python_actr changes,
+except what keeps parts of it from running at all on the Pythons of today.
+"""
 
 from __future__ import annotations
 
+import collections
+import collections.abc
 import importlib
-import importlib.util
+import itertools
 import random
-import warnings
+import runpy
+import sys
+import types
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-import actr3d.actr as ours
-
-MODELS = Path(__file__).parent / "models"
+peer: Any = importlib.import_module("python_actr")
 
 
-def reference() -> Any:
-    """Returns the python_actr package with all its names; its own source gives warnings on newer Pythons."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        library: Any = importlib.import_module("python_actr")
-        parts: Any = importlib.import_module("python_actr.actr")
-    names = {**vars(library), **vars(parts)}
-    names["PMCompile"] = importlib.import_module("python_actr.actr.compile").PMCompile
-    merged = ModuleType("reference")
-    merged.__dict__.update({name: value for name, value in names.items() if name[0] != "_"})
-    return merged
+def seeded(seed: int) -> types.SimpleNamespace:
+    """Returns what python_actr is to take for the module `random`: only its generators' seeds differ."""
+    numbers = itertools.count(1)
+
+    def make() -> random.Random:
+        number = next(numbers)
+        return random.Random(seed if number == 1 else f"{seed}/{number}")
+
+    return types.SimpleNamespace(Random=make)
 
 
-LIBRARIES: tuple[Any, Any] = (ours, reference())
-"""Ours, then the reference."""
+def prepare(seed: int) -> None:
+    """Seeds python_actr, and makes those parts run that ask for names which Python no longer has."""
+    peer.model.random = seeded(seed)
+    peer.logger.random = random.Random(0)  # a log's file name must not draw from the program's random numbers
+    # Compiled productions are named after addresses; here after their number.
+    compiled = itertools.count(1)
+
+    def number(_: object) -> int:
+        return next(compiled)
+
+    importlib.import_module("python_actr.actr.compile").__dict__["id"] = number
+    python: Any = collections
+    python.Callable = collections.abc.Callable
+    random.seed(seed)
 
 
-def model_file(name: str) -> Any:
-    """Loads a file of tests/models afresh; its `make(library)` returns a model's class."""
-    path = MODELS / f"{name}.py"
-    spec = importlib.util.spec_from_file_location(f"tests_models_{name}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def alias_ccm() -> None:
+    """Lets a model file import python_actr under its older names."""
+    lib: Any = types.ModuleType("ccm.lib")
+    lib.actr = peer.actr
+    peer.lib = lib
+    sys.modules.update({"ccm": peer, "ccm.lib": lib, "ccm.lib.actr": peer.actr})
 
 
-def recording_buffer(library: Any, events: list[tuple[float, Any]]) -> Any:
-    """Returns a buffer that notes when it is set and cleared, and what it holds then."""
-
-    def set_chunk(self: Any, chunk: Any) -> None:
-        library.Buffer.set(self, chunk)
-        events.append((self.now(), dict(self.chunk)))
-
-    def clear(self: Any) -> None:
-        library.Buffer.clear(self)
-        events.append((self.now(), None))
-
-    return type("RecordingBuffer", (library.Buffer,), {"set": set_chunk, "clear": clear})()
+def main() -> None:
+    """Runs the file named on the command line."""
+    file, seed = sys.argv[1], int(sys.argv[2])
+    prepare(seed)
+    alias_ccm()
+    sys.argv = [file]
+    peer.logger.singleton_log.directory = file.removesuffix(".py")
+    sys.path[0] = str(Path(file).resolve().parent)
+    runpy.run_path(file, run_name="__main__")
 
 
-def seeded_agent(library: Any, seed: int, **parts: Any) -> Any:
-    """Returns a living agent with these parts, at time 0, whose random numbers come from `random.Random(seed)`."""
-    agent = type("Agent", (library.ACTR,), parts)()
-    agent.run(limit=0)
-    agent.random.seed(seed)
-    return agent
-
-
-def text_of(numbers: random.Random, words: str, length: int) -> str:
-    """Returns a chunk's text with slots a, b, c... and values drawn from `words`."""
-    return " ".join(f"{slot}:{numbers.choice(words)}" for slot in "abcdef"[:length])
+if __name__ == "__main__":
+    main()

@@ -21,8 +21,8 @@ class BlendingMemory(Memory):
     Source: Lebiere (1999), Kognitionswissenschaft 8; ACT-R 7 blending module.
     """
 
-    temperature: float | None = None
-    """t; None for the profile's."""
+    temperature: float | None
+    """t; the profile's where it is None or was never set."""
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         matches = [match for match in matches if not math.isnan(match.activation)]
@@ -58,8 +58,9 @@ class BlendingMemory(Memory):
                 blend[slot] = sums[slot] / total
 
     def _temperature(self) -> float:
-        if self.temperature is not None:
-            return self.temperature
+        temperature: float | None = getattr(self, "temperature", None)
+        if temperature is not None:
+            return temperature
         if self.rules.blend_by_noise:
             noise = next((a.noise for a in self.adaptors if isinstance(a, DMNoise)), 0.0)
             if noise > 0:

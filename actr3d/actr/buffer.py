@@ -55,6 +55,16 @@ class Buffer(Model):
             self._harvest()
         self.chunk = None
 
+    def _chunk_of_buffer(self) -> Chunk:
+        """Returns the chunk, for making another of it.
+
+        Raises:
+            ChunkError: If the buffer is empty.
+        """
+        if self.chunk is None:
+            raise ChunkError(f"buffer '{self.name}' is empty: there is no chunk to take from it")
+        return self.chunk
+
     def isEmpty(self) -> bool:  # noqa: N802 - Python ACT-R's name
         """Tells whether there is no chunk, or one without slots."""
         return len(self) == 0
@@ -67,7 +77,7 @@ class Buffer(Model):
         chunk = self.chunk
         if not chunk:
             return
-        above = self.parent
+        above: Model | None = self.__dict__.get("parent")  # a class's own buffer, filled before an agent runs, has none
         while above is not None:
             memories = [m for m in above.__dict__.get("_harvesters", ()) if m.parent is above]
             if memories:

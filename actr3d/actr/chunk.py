@@ -16,6 +16,27 @@ PLAIN = (str, float, int, bool)
 """The types of attribute that a chunk takes over from an object."""
 
 
+class PlaceName(str):
+    """The name that a model has from its place in the tree, and not from its author.
+
+    A chunk made of such an object has in its slot `name` what it has in python_actr 1.9.5, which printed output shows.
+
+    Args:
+        name: The attribute's name.
+        slot: What a chunk shows instead; None for no such slot.
+    """
+
+    slot: str | None
+
+    def __new__(cls, name: str, slot: str | None) -> PlaceName:
+        made = super().__new__(cls, name)
+        made.slot = slot
+        return made
+
+    def __reduce__(self) -> Any:
+        return PlaceName, (str(self), self.slot)
+
+
 def as_text(value: object) -> str:
     """Returns a slot's value as patterns compare it: text as it is, floats as `%g`, anything else by `repr`."""
     if isinstance(value, str):
@@ -55,6 +76,15 @@ def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any
     raise ChunkError(f"chunk '{text}': '?{name}' is not bound{did_you_mean(name, known)} ({among})")
 
 
+def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns what a chunk takes over from an object: its public attributes that are text or numbers."""
+    slots = {key: value for key, value in attributes.items() if type(value) in PLAIN and key[0] != "_"}
+    name = attributes.get("name")
+    if isinstance(name, PlaceName) and name.slot is not None:
+        slots["name"] = name.slot
+    return slots
+
+
 class Chunk(dict[Any, Any]):
     """A set of slots and their values.
 
@@ -68,18 +98,19 @@ class Chunk(dict[Any, Any]):
     """
 
     def __init__(self, contents: object, bound: Mapping[str, Any] | None = None) -> None:
-        super().__init__()
+        if type(contents) is Chunk:
+            dict.update(self, cast("Chunk", contents))
+            return
         if isinstance(contents, str):
             for slot, value in parse_slots(contents):
                 dict.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
             return
-        inner = getattr(contents, "chunk", None)
-        if isinstance(inner, Chunk):  # a buffer
-            contents = inner
+        if hasattr(contents, "_chunk_of_buffer"):
+            contents = cast("Any", contents)._chunk_of_buffer()
         if isinstance(contents, Mapping):
             dict.update(self, cast("Mapping[Any, Any]", contents))
         elif hasattr(contents, "__dict__") and not isinstance(contents, type):
-            dict.update(self, {key: value for key, value in vars(contents).items() if type(value) in PLAIN and key[0] != "_"})
+            dict.update(self, object_slots(vars(contents)))
         else:
             try:
                 dict.update(self, cast("Any", contents))
@@ -111,8 +142,8 @@ class Chunk(dict[Any, Any]):
         for store in self._stores:
             store.forget_order()
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name != "_stores"}
+    def __getstate__(self) -> dict[str, Any] | None:
+        return {name: value for name, value in vars(self).items() if name != "_stores"} or None
 
     def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
         self.update(other)

@@ -69,13 +69,12 @@ class CompiledProduction(Production):
     def fire(self) -> None:
         """Carries out what the first production kept, then all that the second did."""
         sch = self.system.sch
-        file = self.original_func.__globals__
         bound: dict[str, Any] = {**(self.bound or {}), **self.pre_bound}
         try:
             if self._kept_body is not None:
-                bound = sch.bound = Scope(bound, self.context, file)
+                bound = sch.bound = Scope(bound, self.context, self.pre.original_func)
                 self._kept_body(bound)
-            bound = sch.bound = Scope({**bound, **self.post_bound}, self.context, self.post.original_func.__globals__)
+            bound = sch.bound = Scope({**bound, **self.post_bound}, self.context, self.post.original_func)
             self._post_body(bound)
         except Exception as error:
             self.note(error)

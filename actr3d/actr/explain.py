@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
+from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Slot, as_text
 from actr3d.actr.memory import Memory
 from actr3d.actr.model import Model
@@ -132,8 +133,9 @@ class Present:
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
         target = system._context[name]
-        chunk = getattr(target, "chunk", None)
-        return [str(key) for key in (chunk if isinstance(chunk, Mapping) else vars(target) if hasattr(target, "__dict__") else ())]
+        if isinstance(target, Buffer):
+            return [str(key) for key in target.chunk or ()]
+        return [key for key in vars(target) if key[0] != "_"] if hasattr(target, "__dict__") else []
 
     def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
         return calls(condition.value, production.context[condition.name or "self"], dict(bindings))

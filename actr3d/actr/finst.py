@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Any
 
 from actr3d.actr.model import Model
+from actr3d.clock import seconds
 
 
 class Finst:
     """Marks a few things for a while.
+
+    Marks are taken away when somebody looks, not each by an event of its own; one event keeps a run going until the last
+    of them has expired.
 
     Args:
         parent: The module whose clock counts.
@@ -20,7 +25,18 @@ class Finst:
         self.parent = parent
         self.size = size
         self.time = time
-        self.obj: list[Any] = []
+        self._marks: list[Any] = []
+        self._ends: deque[tuple[int, Any]] = deque()
+        self._fresh: list[tuple[Any, int, int]] = []
+        self._fresh_step = -1
+        self._watched = False
+
+    @property
+    def obj(self) -> list[Any]:
+        """What is marked, the oldest mark first."""
+        if self._ends or self._fresh:
+            self._bring_up_to_date()
+        return self._marks
 
     def contains(self, obj: Any) -> bool:
         """Tells whether a thing is marked."""
@@ -30,12 +46,60 @@ class Finst:
         """Marks a thing; the oldest mark goes where there are too many."""
         if self.size == 0:
             return
-        self.obj.append(obj)
-        if len(self.obj) > self.size:
-            self.remove(self.obj[0])
-        self.parent.sch.add(self.remove, delay=self.time, args=[obj])
+        if self._ends or self._fresh:
+            self._bring_up_to_date()
+        self._mark(obj, self.parent.sch.after(self.time))
+
+    def add_after(self, obj: Any) -> None:
+        """Marks a thing once the present event is over: what a production still asks for does not see the mark."""
+        if self.size == 0:
+            return
+        sch = self.parent.sch
+        if self._fresh and self._fresh_step != sch.step:
+            self._bring_up_to_date()
+        self._fresh_step = sch.step
+        self._fresh.append((obj, sch.now_us, sch.after(self.time)))
+        self._watch()
 
     def remove(self, obj: Any) -> None:
         """Takes the oldest mark of a thing away."""
-        if obj in self.obj:
-            self.obj.remove(obj)
+        if obj in self._marks:
+            self._marks.remove(obj)
+
+    def _mark(self, obj: Any, end: int) -> None:
+        self._marks.append(obj)
+        if len(self._marks) > self.size:
+            self.remove(self._marks[0])
+        if self._ends and self._ends[-1][0] > end:  # the time that marks stay was shortened
+            self._ends = deque(sorted([*self._ends, (end, obj)], key=lambda mark: mark[0]))
+        else:
+            self._ends.append((end, obj))
+        self._watch()
+
+    def _bring_up_to_date(self) -> None:
+        """Takes in the marks of earlier events, and takes away those whose time is over."""
+        sch = self.parent.sch
+        if self._fresh and self._fresh_step != sch.step:
+            fresh, self._fresh = self._fresh, []
+            for obj, begin, end in fresh:
+                self._expire(begin)
+                self._mark(obj, end)
+        self._expire(sch.now_us)
+
+    def _expire(self, now: int) -> None:
+        ends = self._ends
+        while ends and ends[0][0] <= now:
+            self.remove(ends.popleft()[1])
+
+    def _watch(self) -> None:
+        """Keeps the run going until the last mark has expired."""
+        if not self._watched:
+            self._watched = True
+            self.parent.sch.add(self._look, delay=self.time)
+
+    def _look(self) -> None:
+        self._bring_up_to_date()
+        self._watched = bool(self._ends)
+        if self._watched:
+            sch = self.parent.sch
+            sch.add(self._look, delay=seconds(self._ends[-1][0] - sch.now_us))

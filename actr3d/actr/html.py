@@ -48,7 +48,7 @@ def html_page(rows: list[tuple[float, str, Any]], title: str) -> str:
             moments.append((time, {}))
         moments[-1][1][key] = value
     cells: list[list[str]] = [[] for _ in moments]
-    for key in (None, *changing):
+    for key in (None, *changing) if moments else ():
         starts = [i for i, (t, now) in enumerate(moments) if i == 0 or (key in now if key else t != moments[i - 1][0])]
         for start, end in zip(starts, [*starts[1:], len(moments)], strict=True):
             if key is None:

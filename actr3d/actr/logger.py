@@ -40,6 +40,12 @@ class Log:
         self.data: dict[str, Any] = {}
         self.rows: list[tuple[float, str, Any]] = []
         self.time = 0.0
+        self._stem: str | None = None
+
+    def __bool__(self) -> bool:
+        """Tells whether there is anything to show at the end: a line, or time that passed while something was kept."""
+        keeps = self.do_data or self.do_summary or self.do_html
+        return bool(self.data or self.rows or (keeps and self.time > 0))
 
     def set(self, key: str, value: Any) -> None:
         """Takes one line."""
@@ -65,9 +71,11 @@ class Log:
         name = self.directory or (self.source or sys.argv[0]).removesuffix(".py") or "log"
         folder = Path(name)
         folder.mkdir(parents=True, exist_ok=True)
-        # The file's own name is no part of the run: it does not draw from the run's random numbers.
-        mark = f"{random.SystemRandom().randrange(0x7FFFFFFF):08x}"
-        return folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{mark}{ending}"
+        if self._stem is None:  # one name for all files of a log
+            # It is no part of the run: it does not draw from the run's random numbers.
+            mark = f"{random.SystemRandom().randrange(0x7FFFFFFF):08x}"
+            self._stem = f"{time.strftime('%Y%m%d-%H%M%S')}-{mark}"
+        return folder / f"{self._stem}{ending}"
 
 
 class DummyLog:
@@ -190,11 +198,12 @@ def finished(flush: bool = True) -> None:
     """Writes what the log's settings ask for, and begins a new log."""
     from actr3d.actr.html import write_html
 
-    if LOG.data or LOG.rows:
+    if LOG:
         if LOG.do_summary:
             LOG.display_all()
         if LOG.do_data:
-            lines = [f"{key}={LOG.data[key]}\n" for key in sorted(LOG.data)]
+            data = {**LOG.data, "time": LOG.time} if LOG.time > 0 else LOG.data
+            lines = [f"{key}={data[key]}\n" for key in sorted(data)]
             LOG.file(".data").write_text("".join(lines), encoding="utf-8")
         if LOG.do_html:
             write_html(LOG.file(".html"), LOG.rows)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, cast
 
 from actr3d.actr.activation import MemorySubModule
@@ -11,12 +11,12 @@ from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.keywords import check_keywords
-from actr3d.actr.model import Model
+from actr3d.actr.model import Model, pick
 from actr3d.actr.partial import Partial
-from actr3d.actr.pattern import Pattern
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.requests import Candidate, Retrieval
 from actr3d.actr.saying import warn_modeller
+from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
 from actr3d.errors import ChunkError
 
@@ -139,26 +139,10 @@ class Memory(Model):
         Raises:
             PatternException: If the text is no pattern.
         """
-        found = self._matching(self._pattern(pattern, None))
+        found = search_for(pattern, self._bound(), None).among(self.dm)
         if threshold is not None:
             found = [chunk for chunk in found if self.get_activation(chunk) >= threshold]
         return found
-
-    def _pattern(self, pattern: Any, partial: Partial | None) -> Pattern:
-        patterns: object = [cast("object", pattern)] if isinstance(pattern, Mapping) else pattern
-        return Pattern(patterns, self._bound(), partial)
-
-    def _matching(self, pattern: Pattern) -> list[Chunk]:
-        """Returns the matching chunks in order, looking only at those that have the rarest of the slots asked for."""
-        chunks: Sequence[Chunk] = self.dm
-        for op, _, key, value in pattern.conditions:
-            if op in ("call", "empty") or (isinstance(key, str) and (key[:1] == "?" or "." in key)):
-                continue
-            fewer = self.dm.with_value(key, value) if op == "is" and pattern.partial is None else self.dm.with_slot(key)
-            if len(fewer) < len(chunks):
-                chunks = fewer
-        match = pattern.match
-        return [chunk for chunk in chunks if match(chunk) is not None]
 
     # -- requests
 
@@ -181,72 +165,71 @@ class Memory(Model):
         self.busy = True
         if self.error:
             self.error = False
-        self._request_count += 1
-        number = self._request_count
+        own = self.__dict__
+        own["_request_count"] = number = self._request_count + 1
         if self.rules.clear_at_request:
             self._buffer.clear()
-        compiled = self._pattern(pattern, partial)
-        matches = self._matching(compiled)
-        record = self._last = Retrieval(
-            time=self.now(),
-            pattern=str(pattern),
-            compiled=compiled,
-            modules=tuple(type(a).__name__ for a in self.adaptors),
-            threshold=self.threshold,
-            require_new=require_new,
-            marked=list(self.finst.obj),
-        )
-        if require_new and self.finst.obj:
-            record.excluded = [chunk for chunk in matches if self.finst.contains(chunk)]
-            matches = [chunk for chunk in matches if not self.finst.contains(chunk)]
+        search = search_for(pattern, self.sch.bound, partial)
+        matches = search.among(self.dm)
+        marked = self.finst.obj
+        record = own["_last"] = Retrieval(self.sch.now_us, pattern, search, self.adaptors, self.threshold, require_new, list(marked))
+        if require_new and marked:
+            record.excluded = [chunk for chunk in matches if chunk in marked]
+            matches = [chunk for chunk in matches if chunk not in marked]
         for adaptor in self.adaptors:
             adaptor.matched(matches)
         best = self._weigh(matches, record, partial)
-        if not best:
+        trace = self.sch.trace
+        if best:
+            choice: Any = pick(self.random, best)
+            record.chosen = choice
+            record.latency = self._time(self._strength(record, choice.activation))
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "request", record.to_data())
+            if type(self).recall is Memory.recall and self.sch.idle_now():
+                # The same as below, but for an event that would do nothing else at this very moment.
+                self.finst.add_after(choice)
+                self.sch.add(self._arrive, record.latency, (choice, number))
+            else:
+                self.recall(choice, matches=matches, request_number=number)
+        else:
             record.latency = self.maximum_time if self.threshold is None else self._time(self.threshold)
-            self._note_request(record)
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "request", record.to_data())
             self.fail(number)
-            return
-        choice = self.random.choice(best)
-        record.chosen = choice
-        record.latency = self._time(self._strength(record, cast("Any", choice).activation))
-        self._note_request(record)
-        self.recall(choice, matches=matches, request_number=number)
 
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
         own = self._own_activation()
+        parts_of: Callable[[Any], tuple[float, ...]] = self._parts if own is None else lambda chunk: (own(chunk),)
+        nothing = own is None and not self.adaptors and not self.record_all_chunks
+        candidates = record.candidates
+        best = -math.inf
         for chunk in cast("list[Any]", matches):
-            parts: tuple[float, ...] = (own(chunk),) if own is not None else self._parts(chunk)
-            cost: float = chunk._partial if partial is not None else 0.0
-            chunk.activation = total(parts) + cost if partial is not None else total(parts)
-            record.candidates.append(Candidate(chunk, parts, cost, chunk.activation))
-            if chunk.activation != chunk.activation:
+            parts: tuple[float, ...] = () if nothing and getattr(chunk, "record", None) is not True else parts_of(chunk)
+            activation = total(parts) if parts else 0
+            cost: float = 0.0
+            if partial is not None:
+                cost = chunk._partial
+                activation += cost
+            chunk.activation = activation
+            candidates.append(Candidate(chunk, parts, cost, activation))
+            if activation > best:
+                best = activation
+            elif activation != activation:
                 warn_modeller(f"memory '{self.name}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
-        best: float = max((c.activation for c in record.candidates if c.activation == c.activation), default=math.nan)
-        if best != best or (self.threshold is not None and self._strength(record, best) < self.threshold):
+        if self.threshold is not None and (not candidates or self._strength(record, best) < self.threshold):
             return []
-        return [candidate.chunk for candidate in record.candidates if candidate.activation == best]
+        return [candidate.chunk for candidate in candidates if candidate.activation == best]
 
     def _own_activation(self) -> Callable[[Any], float] | None:
         """Returns a modeller's own `get_activation`, where there is one."""
-        method: Any = self.get_activation
-        return None if getattr(method, "func", getattr(method, "__func__", None)) is Memory.get_activation else method
+        method: Any = self.__dict__["get_activation"]
+        return None if getattr(method, "func", None) is Memory.get_activation else method
 
     def _strength(self, record: Retrieval, best: float) -> float:
         """Returns the activation that the threshold is compared with, and that sets the time."""
         return best
-
-    def _note_request(self, record: Retrieval) -> None:
-        """Records a request with all its candidates, where that is wanted."""
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "request", record.to_data())
-
-    def _note_end(self, data: dict[str, Any]) -> None:
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "retrieval", data)
 
     def fail(self, request_number: int) -> Iterator[float]:
         """Lets a request fail, after its time."""
@@ -257,20 +240,27 @@ class Memory(Model):
         self.error = True
         self._buffer.clear()
         self.busy = False
-        self._note_end({"failed": True})
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": True})
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         """Brings a chunk to the buffer, after its time."""
         self.finst.add(chunk)
-        time = self._time(chunk.activation)
-        yield time
+        yield self._time(chunk.activation)
+        self._arrive(chunk, request_number)
+
+    def _arrive(self, chunk: Chunk, request_number: int) -> None:
+        """Puts a retrieved chunk into the buffer, unless there has been another request since."""
         if request_number != self._request_count:
             return
         self._buffer.set(chunk)
         for adaptor in self.adaptors:
             adaptor.recalled(chunk)
         self.busy = False
-        self._note_end({"failed": False, "chunk": str(chunk)})
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": False, "chunk": str(chunk)})
 
     def _time(self, activation: float) -> float:
         """Returns F exp(-A), at most the maximum time [s]."""
@@ -284,7 +274,7 @@ class Memory(Model):
 
     def _parts(self, chunk: Chunk) -> tuple[float, ...]:
         """Returns what each activation module adds to a chunk's activation now."""
-        parts = tuple([adaptor.activation(chunk) for adaptor in self.adaptors])
+        parts = tuple([adaptor.activation(chunk) for adaptor in self.adaptors]) if self.adaptors else ()
         if self.record_all_chunks or getattr(chunk, "record", None) is True:
             self.log[str(chunk)] = total(parts)
         return parts

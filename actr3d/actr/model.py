@@ -5,12 +5,12 @@ from __future__ import annotations
 import copy
 import inspect
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from types import ModuleType
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from actr3d.actr import logger as logs
-from actr3d.actr.chunk import Chunk
+from actr3d.actr.chunk import Chunk, PlaceName
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.scheduler import Event, Scheduler, Trigger
@@ -21,6 +21,16 @@ UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
 """Attributes that hold the tree together; setting them is not a change that productions could see."""
 
 Method = Callable[..., Any]
+Option = TypeVar("Option")
+
+
+def pick(numbers: random.Random, options: list[Option]) -> Option:
+    """Draws one of several; where there is only one, it uses up random numbers just as a choice among one does."""
+    if len(options) > 1:
+        return numbers.choice(options)
+    while numbers.getrandbits(1):
+        pass
+    return options[0]
 
 
 class MethodWrapper:
@@ -57,14 +67,16 @@ class MethodWrapper:
 class GeneratorWrapper(MethodWrapper):
     """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
 
-    def __call__(self, *args: Any, **keys: Any) -> Event | None:
-        return self.obj.sch.add(self.steps, args=args, keys=keys)
+    def __call__(self, *args: Any, **keys: Any) -> Event:
+        return self.obj.sch.begin(self._steps(args, keys), self.func)
 
-    def steps(self, *args: Any, **keys: Any) -> Iterator[Any]:
+    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
         """Runs the method, waking whoever waits for its begin or end."""
-        self.obj.sch.trigger(self.begins)
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
         yield from self.func(self.obj, *args, **keys)
-        self.obj.sch.trigger(self.ends)
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)
 
 
 class Model:
@@ -123,7 +135,8 @@ class Model:
         own = self.__dict__
         own["_converted"] = True
         own["changes"] = Trigger("changes")
-        own.setdefault("name", type(self).name)
+        if "name" not in own:
+            self._call(type(self).name)
         parent = own.get("parent") or parent
         methods, objects = class_members(type(self))
         objects = copy_objects(objects)
@@ -137,7 +150,8 @@ class Model:
         self._convert_info(objects, methods)
         for name, obj in objects.items():
             if isinstance(obj, Model):
-                obj.__dict__["name"] = name
+                if type(obj) is not Model or "name" not in obj.__dict__:
+                    obj._call(name)
                 if not obj._converted:
                     obj._convert(self)
                 self._adopted(name, obj)
@@ -176,6 +190,17 @@ class Model:
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         """Looks at what the class brings, before its objects come to life; for subclasses."""
 
+    def _call(self, name: str, shown: bool = False) -> None:
+        """Names the model after its place in the tree.
+
+        Args:
+            name: The attribute's name.
+            shown: Whether a chunk made of the model has the name too; python_actr 1.9.5 calls objects of classes of
+                their own «top» there, and those of Model itself by the name under which they join a running tree.
+        """
+        slot = name if shown or self._converted else None if type(self) is Model else "top"
+        self.__dict__["name"] = PlaceName(name, slot)
+
     def _adopted(self, name: str, child: Model) -> None:
         self.__dict__.setdefault("_children", {})[name] = child
 
@@ -183,30 +208,47 @@ class Model:
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
+        if key[0] == "_":
+            own[key] = value
+        elif key in UNWATCHED or isinstance(value, Model):
+            self._set_in_tree(key, value)
+        else:
+            own[key] = value
+            if "_converted" in own:
+                self._tell(key, value)
+
+    def _tell(self, key: str, value: Any) -> None:
+        """Wakes whoever waits for a change here or further up, and lets trace and log know."""
+        own = self.__dict__
+        sch: Scheduler = own["sch"]
+        part = own
+        while True:
+            if part["changes"].waiting:
+                sch.trigger(part["changes"], priority=-1)
+            above: Model | None = part["parent"]
+            if above is None or above is self:
+                break
+            part = above.__dict__
+        if sch.trace is not None:
+            self._trace_change(sch.trace, key, value)
+        log = own["log"]
+        if log is not logs.dummy and log:
+            setattr(log, key, value)
+
+    def _set_in_tree(self, key: str, value: Any) -> None:
+        """Sets an attribute that is a model, or one that holds the tree together."""
+        own = self.__dict__
         if key == "parent" and value is None and own.get("parent") is not None:
             siblings = own["parent"].__dict__.get("_children", {})
             for known in [name for name, part in siblings.items() if part is self]:
                 del siblings[known]
             self._forget_path()
         own[key] = value
-        public = key[0] != "_"
-        if public and isinstance(value, Model) and key != "parent":
+        if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
             self._take_in(key, value)
-        if public and self._converted and key not in UNWATCHED:
-            sch = self.sch
-            above: Model | None = self
-            while above is not None:
-                if above.changes.waiting:
-                    sch.trigger(above.changes, priority=-1)
-                above = above.parent
-                if above is self:
-                    break
-            if sch.trace is not None:
-                self._trace_change(sch.trace, key, value)
-            log = own["log"]
-            if log is not logs.dummy and log:
-                setattr(log, key, value)
+        if self._converted and key not in UNWATCHED:
+            self._tell(key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
@@ -222,7 +264,7 @@ class Model:
         if value.__dict__.get("parent") is not None:
             return
         value.parent = self
-        value.name = key
+        value._call(key, shown=type(value) is Model)
         self._adopted(key, value)
         value._forget_path()
         if not value._converted:

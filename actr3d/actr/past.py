@@ -88,7 +88,10 @@ class Past:
         return not self._values(system._context[name])
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
-        return list(self._values(system._context[name]))
+        target = system._context[name]
+        if isinstance(target, Model):
+            return list(self._values(target))
+        return [key for key in vars(target) if key[0] != "_"] if hasattr(target, "__dict__") else []
 
     def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
         # The function is not asked again: things have changed. Where all else holds, it decided whether the production

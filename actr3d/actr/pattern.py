@@ -116,6 +116,8 @@ class _Reader:
         self.bound: Mapping[str, Any] = bound or {}
         self.seen: set[str] = set()
         self.first: list[Condition] = []
+        self.named_by_variable: list[Condition] = []
+        """Tests of slots whose names are variables; these must have their values by then."""
         self.last: list[Condition] = []
 
     def read(self, name: str | None, pattern: object) -> None:
@@ -131,17 +133,29 @@ class _Reader:
                 self.first.append(Condition("is", name, slot, as_text(value)))
 
     def _test(self, name: str | None, slot: Slot, sign: str, word: str) -> None:
+        first = self.first
+        if isinstance(slot, str) and slot[:1] == "?":
+            if slot[1:] in self.bound:
+                slot = slot_named(self.bound[slot[1:]])
+            else:
+                first = self.named_by_variable
         if sign in ("is", "not"):
-            self.first.append(Condition("is" if sign == "is" else "not", name, slot, word))
+            first.append(Condition("is" if sign == "is" else "not", name, slot, word))
         elif word in self.bound:
-            self.first.append(Condition("is" if sign == "?" else "not", name, slot, as_text(self.bound[word])))
+            first.append(Condition("is" if sign == "?" else "not", name, slot, as_text(self.bound[word])))
         elif sign == "!?":
             self.last.append(Condition("differs", name, slot, word))
         elif word in self.seen:
             self.last.append(Condition("same", name, slot, word))
         else:
             self.seen.add(word)
-            self.first.append(Condition("bind", name, slot, word))
+            first.append(Condition("bind", name, slot, word))
+
+
+def slot_named(value: object) -> Slot:
+    """Returns the slot that a variable's value names: a number for digits, as in a pattern's text."""
+    text = as_text(value)
+    return int(text) if text.isdecimal() else text
 
 
 def conditions(patterns: object, bound: Mapping[str, Any] | None = None) -> tuple[Condition, ...]:
@@ -162,7 +176,7 @@ def conditions(patterns: object, bound: Mapping[str, Any] | None = None) -> tupl
     for name, pattern in named.items():
         for part in cast("Sequence[object]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,):
             reader.read(name, part)
-    return (*reader.first, *reader.last)
+    return (*reader.first, *reader.named_by_variable, *reader.last)
 
 
 def get_item(target: Any, key: Slot) -> Any:
@@ -172,8 +186,14 @@ def get_item(target: Any, key: Slot) -> Any:
     except (KeyError, IndexError):
         return MISSING
     except (AttributeError, TypeError):
-        if isinstance(key, str):
-            return getattr(target, key, MISSING)
+        return get_attribute(target, key) if isinstance(key, str) else MISSING
+
+
+def get_attribute(target: Any, name: str) -> Any:
+    """Returns an attribute, or MISSING where there is none or a property cannot tell it now."""
+    try:
+        return getattr(target, name)
+    except (AttributeError, TypeError, KeyError):
         return MISSING
 
 
@@ -204,7 +224,7 @@ def holds_empty(target: Any, name: str | None) -> bool:
 def calls(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindings) -> bool:
     """Asks a modeller's function; only a result equal to False means no, and so does an error that a missing slot causes."""
     try:
-        return not (function(target, bindings) == False)  # noqa: E712 - None means yes
+        return function(target, bindings) != False  # noqa: E712 - None means yes
     except (AttributeError, TypeError, KeyError):
         return False
 
@@ -225,6 +245,9 @@ class Pattern:
         self.conditions = conditions(patterns, bound)
         self.partial = partial
 
+    def __repr__(self) -> str:
+        return f"<Pattern {' '.join(str(condition) for condition in self.conditions)}>"
+
     def match(self, obj: Any) -> Bindings | None:
         """Returns the variables that a match binds (maybe none), or None for no match.
 
@@ -234,7 +257,9 @@ class Pattern:
         if self.partial is not None:
             obj._partial = 0.0
         for op, name, key, value in self.conditions:
-            target = obj if name is None else obj[name]
+            target = obj if name is None else get_item(obj, name)
+            if target is MISSING:
+                return None
             if op == "empty":
                 if not holds_empty(target, name):
                     return None
@@ -247,7 +272,9 @@ class Pattern:
 
     def _holds(self, op: Op, target: Any, key: Slot, value: Any, bindings: Bindings, obj: Any) -> bool:
         if isinstance(key, str) and key[:1] == "?":
-            key = bindings.get(key[1:], key)
+            if key[1:] not in bindings:
+                return False
+            key = slot_named(bindings[key[1:]])
         found = look_up(target, key)
         if found is MISSING:
             return False

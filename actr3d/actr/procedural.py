@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import inspect
-import random
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from actr3d.actr.checks import check_names, check_rules
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
-from actr3d.actr.model import Method, MethodWrapper, Model
-from actr3d.actr.production import Production
+from actr3d.actr.model import Method, MethodWrapper, Model, pick
+from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
 from actr3d.actr.utility import ProceduralSubModule
@@ -22,17 +21,11 @@ if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
 
 
+FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
+"""Parameters that may be functions without arguments, which are no productions then."""
+
 LAST = -1000
 """The priority of matching again after firing: everything else that happens at that moment comes first."""
-
-
-def pick(numbers: random.Random, options: list[Production]) -> Production:
-    """Draws one of several; where there is only one, it uses up random numbers just as a choice among one does."""
-    if len(options) > 1:
-        return numbers.choice(options)
-    while numbers.getrandbits(1):
-        pass
-    return options[0]
 
 
 class ProductionSystem(Model):
@@ -66,10 +59,13 @@ class ProductionSystem(Model):
             self.sch.round_ms = self.sch.round_ms or own["_profile"].whole_milliseconds
         own["_productions"] = []
         own["_initializers"] = []
+        for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
+            if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
+                objects[name] = methods.pop(name)
         for name, func in methods.items():
-            spec = inspect.getfullargspec(func)
-            if spec.varargs is None and spec.varkw is None and len(spec.args) == len(spec.defaults or ()):
-                own["_productions" if spec.args else "_initializers"].append(Production(self, name, func))
+            patterns = defaults_of(func)
+            if patterns is not None:
+                own["_productions" if patterns else "_initializers"].append(Production(self, name, func))
         own["_process"] = self.sch.add(self._process_productions)
 
     # -- the cycle
@@ -92,13 +88,19 @@ class ProductionSystem(Model):
     def _begin(self) -> None:
         """Fixes what productions can see by name, and carries out the methods without parameters."""
         self._calc_context()
+        unchecked = check_rules(self)
         for production in self._initializers:
             production.bound = {}
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
-        self._matcher = Matcher(self._context)
-        self._matcher.build(self._productions)
+        for production in self._productions:
+            production.share_globals()
+        if unchecked:
+            check_names(self)
+        matcher = Matcher(self._context)
+        matcher.build(self._productions)
+        self.__dict__["_matcher"] = matcher
 
     def _calc_context(self) -> None:
         context: dict[str, Any] = {}

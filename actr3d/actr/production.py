@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.bodies import Body, Scope, compile_body, stored_names
+from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, Condition, conditions
-from actr3d.actr.sources import function_node, place
+from actr3d.actr.rebinding import stored_names
+from actr3d.actr.sources import assigned_globals, function_node, has_source, place
 from actr3d.errors import PatternException, ProductionException, did_you_mean
 
 if TYPE_CHECKING:
@@ -35,8 +36,7 @@ class Production:
         self.system = system
         self.name = name
         self.original_func = func
-        spec = inspect.getfullargspec(func)
-        patterns: dict[str, Any] = dict(zip(spec.args, spec.defaults or (), strict=True))
+        patterns = defaults_of(func) or {}
         self.base_utility = patterns.pop("utility", 0)
         self.pattern_specs = patterns
         self.keys = list(patterns)
@@ -46,7 +46,7 @@ class Production:
             raise PatternException(f"production '{name}' ({self.place}): {error}") from None
         self.bound: Bindings | None = None
         """What the last match bound."""
-        self.context: Mapping[str, Any] = {}
+        self.context: dict[str, Any] = {}
         """What the body sees by name; set when the system begins."""
 
     @property
@@ -59,10 +59,13 @@ class Production:
         """The syntax tree of the modeller's method."""
         node = function_node(self.original_func)
         if node is None:
-            raise ProductionException(
-                f"production '{self.name}': its source is not to be had ({self.place}); load the model from a file, "
-                "or its text with actr3d.actr.load_text"
-            )
+            if self.original_func.__name__ == "<lambda>":
+                reason = f"it is a lambda ({self.place}); write it with def"
+            elif has_source(self.original_func):
+                reason = f"its source is not to be had ({self.place}): the file has changed since it was loaded; load it again"
+            else:
+                reason = f"its source is not to be had ({self.place}); load the model from a file, or its text with actr3d.actr.load_text"
+            raise ProductionException(f"production '{self.name}': {reason}")
         return node
 
     @cached_property
@@ -71,21 +74,39 @@ class Production:
         return [condition.value for condition in self.conditions if condition.op == "bind"]
 
     @cached_property
+    def more_bound(self) -> bool:
+        """Whether a function among the patterns may bind variables too."""
+        return any(condition.op == "call" for condition in self.conditions)
+
+    @cached_property
     def assigned(self) -> set[str]:
         """The names that the body assigns."""
         return stored_names(self.node.body)
 
     def body_of(self, statements: Sequence[ast.stmt]) -> Body:
         """Makes a function of some of the body's statements."""
-        return compile_body(statements, func=self.original_func, name=self.name, bound=self.variables, context=self.context)
+        return compile_body(
+            statements,
+            name=self.name,
+            func=self.original_func,
+            bound=self.variables,
+            context=self.context,
+            more_bound=self.more_bound,
+        )
 
     @cached_property
     def _body(self) -> Body:
         return self.body_of(self.node.body)
 
+    def share_globals(self) -> None:
+        """Makes what the body declares global, and an initializer has assigned, a global of the modeller's file."""
+        func = self.original_func
+        for name in assigned_globals(func) & self.context.keys():
+            func.__globals__[name] = self.context.pop(name)
+
     def scope(self, bound: Bindings) -> Bindings:
         """Returns the bound variables in the form the body asks for."""
-        return Scope(bound, self.context, self.original_func.__globals__) if self.assigned else bound
+        return Scope(bound, self.context, self.original_func) if self.assigned or self.more_bound else bound
 
     def fire(self) -> None:
         """Carries out the body, with what the last match bound."""
@@ -108,6 +129,17 @@ class Production:
 
     def __repr__(self) -> str:
         return f"<Production {self.name}>"
+
+
+def defaults_of(func: Callable[..., Any]) -> dict[str, Any] | None:
+    """Returns the parameters of a function with their defaults, or None where one has none: then it is no production."""
+    spec = inspect.getfullargspec(func)
+    if spec.varargs is not None or spec.varkw is not None or len(spec.args) != len(spec.defaults or ()):
+        return None
+    named = spec.kwonlydefaults or {}
+    if len(spec.kwonlyargs) != len(named):
+        return None
+    return {**dict(zip(spec.args, spec.defaults or (), strict=True)), **named}
 
 
 def condition_text(condition: Condition) -> str:

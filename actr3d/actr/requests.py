@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from actr3d.actr.chunk import Chunk
-from actr3d.actr.pattern import Pattern
+from actr3d.actr.search import Search
 
 
 @dataclass(slots=True)
@@ -26,19 +27,19 @@ class Candidate:
 class Retrieval:
     """One request and what came of it."""
 
-    time: float
-    """When it was made [s]."""
-    pattern: str
+    time: int
+    """When it was made [us]."""
+    pattern: Any
     """As it was written."""
-    compiled: Pattern
+    search: Search
     """With the values that its variables had."""
-    modules: tuple[str, ...]
+    modules: Sequence[object]
     """The activation modules, in the order of each candidate's parts."""
     threshold: float | None
     require_new: bool
     marked: list[Chunk]
     """What had been retrieved lately (finsts)."""
-    excluded: list[Chunk] = field(default_factory=list[Chunk])
+    excluded: Sequence[Chunk] = ()
     """Matching chunks that were left out for being marked."""
     candidates: list[Candidate] = field(default_factory=list[Candidate])
     chosen: Chunk | None = None
@@ -49,14 +50,14 @@ class Retrieval:
         """Returns the request as plain values, for the trace and for explanations."""
         chosen = next((i for i, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
         return {
-            "pattern": self.pattern,
-            "asked": " ".join(map(str, self.compiled.conditions)),
+            "pattern": str(self.pattern),
+            "asked": str(self.search),
             "threshold": self.threshold,
             "require_new": self.require_new,
             "finsts": [str(chunk) for chunk in self.marked],
             "excluded": [str(chunk) for chunk in self.excluded],
-            "modules": list(self.modules),
-            "partial": self.compiled.partial is not None,
+            "modules": [type(module).__name__ for module in self.modules],
+            "partial": self.search.partial is not None,
             "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in self.candidates],
             "chosen": chosen,
             "latency": self.latency,

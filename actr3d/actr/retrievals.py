@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from actr3d.actr.memory import Memory
+from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
 
 
@@ -110,7 +111,7 @@ def live_retrieval(memory: Memory) -> RetrievalReason | None:
     if record is None:
         return None
     outcome = "pending" if memory.busy else "retrieved" if record.chosen is not None else "failed"
-    return _reason(memory._path, record.time, record.to_data(), outcome)
+    return _reason(memory._path, seconds(record.time), record.to_data(), outcome)
 
 
 def past_retrieval(memory: str, events: Sequence[TraceEvent], time: int) -> RetrievalReason | None:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import copy
 import warnings
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from inspect import isgeneratorfunction
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from inspect import CO_GENERATOR
+from numbers import Real
 from types import GeneratorType
 from typing import Any, cast
 
 from actr3d.actr import logger
 from actr3d.actr.limits import RunLimits
 from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
-from actr3d.errors import ModelWarning, SchedulerError
+from actr3d.errors import ModelWarning, SchedulerError, did_you_mean
 from actr3d.trace import Trace
 
 NEVER = 1 << 62
@@ -29,14 +30,22 @@ FAR = 1e12
 class Trigger:
     """Something that generators can wait for (`yield trigger`)."""
 
-    __slots__ = ("name", "waiting")
+    __slots__ = ("_most", "name", "waiting")
 
     def __init__(self, name: str = "") -> None:
         self.name = name
         self.waiting: list[Event] = []
+        self._most = 8
 
     def __repr__(self) -> str:
         return f"<Trigger '{self.name}'>"
+
+    def add_one_of_several(self, event: Event) -> None:
+        """Takes in an event that also waits elsewhere, and now and then lets those go that were woken from there."""
+        if len(self.waiting) >= self._most:
+            self.waiting = [other for other in self.waiting if not other.cancelled]
+            self._most = max(8, 2 * len(self.waiting))
+        self.waiting.append(event)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Trigger:
         return Trigger(self.name)
@@ -45,7 +54,7 @@ class Trigger:
 class Event:
     """A call that will be made, or a generator that goes on, at a time or when a trigger says so."""
 
-    __slots__ = ("args", "call", "cancelled", "done", "generator", "group", "keys", "parents", "priority")
+    __slots__ = ("args", "call", "cancelled", "done", "generator", "group", "keys", "origin", "parents", "priority")
 
     def __init__(
         self,
@@ -53,18 +62,19 @@ class Event:
         args: Sequence[Any] = (),
         keys: Mapping[str, Any] | None = None,
         priority: float = 0,
+        generator: GeneratorType[Any, Any, Any] | None = None,
     ) -> None:
         self.call = call
         self.args = args
         self.keys: Mapping[str, Any] = keys or {}
         self.priority = priority
         self.group: Sequence[Event] = ()
+        self.origin = self
+        """The event as its caller knows it; another one where this waits in its place for one of several things."""
         self.cancelled = False
         self.done = False
         self.parents: list[Event] = []
-        self.generator: GeneratorType[Any, Any, Any] | None = None
-        if isgeneratorfunction(call) or isgeneratorfunction(getattr(type(call), "__call__", None)):
-            self.generator = call(*args, **self.keys)
+        self.generator = generator
 
     def __repr__(self) -> str:
         return f"<Event {self.describe()}>"
@@ -80,9 +90,19 @@ class Event:
         name = getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call))
         if self.generator is None:
             return str(name)
-        code = self.generator.gi_code
-        frame = self.generator.gi_frame
+        generator = self.innermost
+        assert generator is not None
+        code = generator.gi_code
+        frame = generator.gi_frame
         return f"{code.co_qualname} ({code.co_filename}:{frame.f_lineno if frame else code.co_firstlineno})"
+
+    @property
+    def innermost(self) -> GeneratorType[Any, Any, Any] | None:
+        """The modeller's own generator: the one that `yield from` leads to."""
+        generator = self.generator
+        while generator is not None and isinstance(inner := generator.gi_yieldfrom, GeneratorType):
+            generator = cast("GeneratorType[Any, Any, Any]", inner)
+        return generator
 
 
 class Scheduler:
@@ -97,6 +117,10 @@ class Scheduler:
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
         self.stop_flag = False
+        self.step = 0
+        """How many events have happened."""
+        self.harvests = False
+        """Whether there is a memory that collects what leaves buffers, as in ACT-R 7."""
         self.round_ms = False
         """Whether there are models whose events happen at whole milliseconds, as in ACT-R 7."""
         self.harvests = False
@@ -104,6 +128,7 @@ class Scheduler:
         self.limits: RunLimits | None = RunLimits.current()
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
+        self._running = False
         self._named: dict[str, Trigger] = {}
         self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
 
@@ -137,8 +162,15 @@ class Scheduler:
         if thread_safe:
             self._incoming.append((func, delay, args, keys, priority))
             return None
-        event = Event(func, args, keys, priority)
+        generator = func(*args, **(keys or {})) if _makes_generator(func) else None
+        event = Event(func, args, keys, priority, generator)
         self.queue.push(self.after(delay, event), event, priority)
+        return event
+
+    def begin(self, generator: GeneratorType[Any, Any, Any], call: Callable[..., Any]) -> Event:
+        """Lets a generator, which `call` has made, run from now on."""
+        event = Event(call, generator=generator)
+        self.queue.push(self.now_us, event)
         return event
 
     def after(self, delay: float, event: Event | None = None) -> int:
@@ -182,7 +214,11 @@ class Scheduler:
         Raises:
             SchedulerError: If time stands still for a million events, or something cannot be waited for.
         """
-        until = None if duration is None else self.after(duration)
+        until = None
+        if duration is not None:
+            until = self.now_us + microseconds(duration, "the limit of a run")
+            if until < self.now_us:
+                raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
         bound = self.limits.clip(self.now_us) if self.limits is not None else None
         if bound is not None:
             until = bound if until is None else min(until, bound)
@@ -191,7 +227,18 @@ class Scheduler:
         if until is not None and (not heap or heap[0][0] > until) and not self._incoming:
             self._advance(until)
             return
-        self._run_events(until)
+        if self._running:
+            warnings.warn(
+                f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
+                "to let time pass, yield a number of seconds",
+                ModelWarning,
+                stacklevel=3,
+            )
+        before, self._running = self._running, True
+        try:
+            self._run_events(until)
+        finally:
+            self._running = before
         if until is not None and not self.stop_flag and until > self.now_us:
             self._advance(until)
 
@@ -218,6 +265,7 @@ class Scheduler:
                         f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; "
                         f"the last was {heap[0][3].describe()}"
                     )
+            self.step += 1
             event = queue.pop()
             if event.cancelled:
                 continue
@@ -259,7 +307,7 @@ class Scheduler:
         logger.LOG.time = time / MICROSECONDS
 
     def _finish(self, event: Event) -> None:
-        event.done = True
+        event.done = event.origin.done = True
         for parent in event.parents:
             self.queue.push(self.now_us, parent, parent.priority)
         event.parents = []
@@ -269,18 +317,21 @@ class Scheduler:
         if isinstance(result, (int, float)):
             self.queue.push(self.after(result, event), event, event.priority)
         elif isinstance(result, dict):
-            how = cast("dict[str, float]", result)
-            event.priority = how.get("priority", event.priority)
-            self.queue.push(self.after(how.get("delay", 0), event), event, event.priority)
-        elif isinstance(result, Trigger):
-            result.waiting.append(event)
-        elif isinstance(result, str):
-            self._named.setdefault(result, Trigger(result)).waiting.append(event)
+            self._wait_as(event, cast("dict[str, Any]", result))
+        elif isinstance(result, (Trigger, str)):
+            trigger = self._named.setdefault(result, Trigger(result)) if isinstance(result, str) else result
+            if event.group:
+                trigger.add_one_of_several(event)
+            else:
+                trigger.waiting.append(event)
         elif isinstance(result, (list, tuple)):
-            choices = cast("Sequence[Any]", result)
+            choices = list(_each(cast("Sequence[Any]", result)))
+            if not choices:
+                raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; an empty {type(result).__name__} names nothing")
             events = [copy.copy(event) for _ in choices]
-            for choice, alternative in zip(choices, events, strict=True):
+            for alternative in events:
                 alternative.group = events
+            for choice, alternative in zip(choices, events, strict=True):
                 self._wait(alternative, choice)
         elif result is None:
             self._finish(event)
@@ -291,14 +342,28 @@ class Scheduler:
                 result.parents.append(event)
         elif hasattr(result, "default_trigger"):
             self._wait(event, result.default_trigger)
+        elif isinstance(result, Real):  # a number of another kind, such as numpy's
+            self.queue.push(self.after(float(result), event), event, event.priority)
         else:
             raise SchedulerError(
                 f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
                 "the event of a called generator method, or a tuple of these"
             )
 
+    def _wait_as(self, event: Event, how: dict[str, Any]) -> None:
+        """Puts an event where a dict says: after its `delay`, with its `priority` from now on."""
+        for word in how:
+            if word not in ("delay", "priority"):
+                near = did_you_mean(str(word), ("delay", "priority"))
+                raise SchedulerError(f"{event.describe()}: cannot wait for {how!r}: no '{word}'{near or '; use delay and priority'}")
+        priority = how.get("priority", event.priority)
+        if not isinstance(priority, (int, float)):
+            raise SchedulerError(f"{event.describe()}: a priority must be a number (got {priority!r})")
+        event.priority = priority
+        self.queue.push(self.after(how.get("delay", 0), event), event, priority)
+
     def _warn_of_none(self, event: Event) -> None:
-        generator = event.generator
+        generator = event.innermost
         frame = generator.gi_frame if generator is not None else None
         if frame is not None:
             warnings.warn_explicit(
@@ -308,3 +373,18 @@ class Scheduler:
                 frame.f_code.co_filename,
                 frame.f_lineno,
             )
+
+
+def _each(choices: Sequence[Any]) -> Iterator[Any]:
+    """Yields what is to be waited for, also from sequences inside."""
+    for choice in choices:
+        if isinstance(choice, (list, tuple)):
+            yield from _each(cast("Sequence[Any]", choice))
+        else:
+            yield choice
+
+
+def _makes_generator(func: Callable[..., Any]) -> bool:
+    """Tells whether a call gives a generator, also of a callable object."""
+    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)
+    return code is not None and bool(code.co_flags & CO_GENERATOR)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import dis
 import linecache
 import warnings
 from collections.abc import Callable
@@ -34,6 +35,22 @@ def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
         return None
 
 
+def has_source(func: Callable[..., Any]) -> bool:
+    """Tells whether the file of a function can be read at all."""
+    return bool(linecache.getlines(func.__code__.co_filename, func.__globals__))
+
+
 def place(func: Callable[..., Any]) -> str:
     """Returns `file:line` of a function's definition."""
     return f"{func.__code__.co_filename}:{func.__code__.co_firstlineno}"
+
+
+def assigned_globals(func: Callable[..., Any]) -> set[str]:
+    """Returns the names that a function declares global and assigns."""
+    code = func.__code__
+    if not _STORE_GLOBAL & set(code.co_code[::2]):
+        return set()
+    return {step.argval for step in dis.get_instructions(code) if step.opname == "STORE_GLOBAL"}
+
+
+_STORE_GLOBAL = {dis.opmap["STORE_GLOBAL"]}

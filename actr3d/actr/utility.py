@@ -86,23 +86,7 @@ class PMNoise(ProceduralSubModule):
         return logistic_noise(self.random, s)
 
 
-class _Credited(ProceduralSubModule):
-    """Keeps the productions chosen since the last reward, with the time of each choice [s]."""
-
-    history: list[tuple[Any, float]]
-
-    def _begin_history(self) -> None:
-        self.history = []
-        self._rewarded = False
-
-    def selecting(self, prod: Any) -> None:
-        if self._rewarded:
-            self.history.clear()
-            self._rewarded = False
-        self.history.append((prod, self.now()))
-
-
-class PMPGC(_Credited):
+class PMPGC(ProceduralSubModule):
     """Utility as expected gain, U = P G - C, learned from successes, failures and the time that was spent.
 
     Args:
@@ -112,8 +96,16 @@ class PMPGC(_Credited):
     """
 
     def __init__(self, goal: float = 20) -> None:
-        self._begin_history()
+        self.history: list[tuple[Any, float]] = []
         self.goal = goal
+        self._rewarded = False
+
+    def selecting(self, prod: Any) -> None:
+        """Notes a production with the time of its choice [s], and first forgets those that a reward has reached."""
+        if self._rewarded:
+            self.history.clear()
+            self._rewarded = False
+        self.history.append((prod, self.now()))
 
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.successes = 1
@@ -178,7 +170,7 @@ class PMPGCMixedWeighted(PMPGC):
         return prod.successes / (prod.successes + prod.failures) * self.goal - prod.time / prod.successes
 
 
-class PMNew(_Credited):
+class PMNew(ProceduralSubModule):
     """Utility learning U += alpha (R - dt - U), where dt is the time from the choice to the reward [s].
 
     Args:
@@ -188,8 +180,17 @@ class PMNew(_Credited):
     """
 
     def __init__(self, alpha: float = 0.2) -> None:
-        self._begin_history()
+        self.history: list[tuple[Any, float]] = []
         self.alpha = alpha
+        self.clearFlag = False
+        """Whether a reward has come since the latest choice; public, so that Python ACT-R's logs show it."""
+
+    def selecting(self, prod: Any) -> None:
+        """Notes a production with the time of its choice [s], and first forgets those that a reward has reached."""
+        if self.clearFlag:
+            self.history.clear()
+            self.clearFlag = False
+        self.history.append((prod, self.now()))
 
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.util = 0
@@ -201,7 +202,7 @@ class PMNew(_Credited):
             present = prod.util + prod.base_utility if whole else prod.util
             prod.util += self.alpha * (value - (now - chosen) - present)
             self._learned(prod, prod.util)
-        self._rewarded = True
+        self.clearFlag = True
 
     def utility(self, prod: Any) -> float:
         return prod.util

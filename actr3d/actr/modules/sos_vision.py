@@ -35,7 +35,7 @@ class SOSVision(Model):
         """Looks for what matches, unless it is looking already."""
         if self.busy:
             return
-        matcher = Pattern(pattern, self.sch.bound)
+        matcher = Pattern(pattern)  # unlike a memory's request, `?x` asks for any value here, also where x is bound
         self.error = False
         noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
         self.busy = True

@@ -28,6 +28,7 @@ class Vision(Model):
         self._visual = visual
         self._location = location
         self.busy = False
+        self.lastLocationPattern = Pattern("")
         self.tracking: Any = None
         self.timeAppeared: dict[Any, float] = {}
         self.visualOnsetSpan = 0.5
@@ -89,7 +90,8 @@ class Vision(Model):
 
     def attendTo(self, pattern: Any, unattended: bool = False, new: bool = False) -> None:  # noqa: N802
         """Puts the place of a matching object into the location buffer; where there is none, nothing happens."""
-        matcher = self._pattern(pattern)
+        # Like all attributes of models, what was asked last is a change that wakes whoever waits for one.
+        matcher = self.lastLocationPattern = self._pattern(pattern)
         found: list[Any] = []
         for obj in self._visible():
             if new and not self.isNew(obj):
@@ -105,7 +107,7 @@ class Vision(Model):
 
     def examine(self, pat: Any) -> Iterator[float]:
         """Brings the first matching object to the visual buffer, after 0.085 s; `'x y'` names a place."""
-        matcher = self._pattern(pat)
+        matcher = self.lastExamine = self._pattern(pat)
         for obj in self._visible():
             if matcher.match(obj) is None:
                 continue

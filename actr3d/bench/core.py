@@ -1,0 +1,192 @@
+"""`actr3d bench core`: the cognitive core beside python_actr, in one run on one machine."""
+
+from __future__ import annotations
+
+import atexit
+import importlib
+import importlib.util
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from actr3d.actr import ACTR, Buffer, Memory
+from actr3d.actr.loading import load_text
+from actr3d.bench.figures import Figure, ratio, report, seconds_of
+
+THREE = """
+from python_actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('step:a count:0')
+    def one(goal='step:a count:?n'):
+        goal.modify(step='b')
+    def two(goal='step:b count:?n'):
+        goal.modify(step='c')
+    def three(goal='step:c count:?n'):
+        goal.modify(step='a')
+"""
+"""Three productions that follow one another for ever."""
+
+HUNDREDS = "\n".join(
+    [
+        "from python_actr import *",
+        "class Agent(ACTR):",
+        "    goal = Buffer()",
+        "    def init():",
+        "        goal.set('step:0 count:0')",
+        *(
+            f"    def p{i}(goal='step:{i} count:?n'):\n        goal.modify(step='{(i + 1) % 300}')"
+            for i in range(300)
+        ),
+    ]
+)
+"""Three hundred productions, one of which matches at any time."""
+
+COUNTING = """
+from python_actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    def init():
+        for i in range(SIZE):
+            memory.add(f'count {i} {i + 1}')
+        goal.set('counting 0')
+        memory.request('count 0 ?next')
+    def count_on(goal='counting ?now', retrieval='count ?now ?next'):
+        goal.set('counting ?next')
+        memory.request('count ?next ?after')
+"""
+"""Counts up through as many chunks as SIZE."""
+
+
+class Peer:
+    """Loads models for the real python_actr: from files, because it reads their source."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._library: Any = importlib.import_module("python_actr")
+        # It would print a last line when the program ends, in the middle of our output.
+        atexit.unregister(importlib.import_module("python_actr.logger").finished)
+
+    def load(self, source: str, name: str) -> ModuleType:
+        """Returns a model's module."""
+        path = self._folder / f"{name}.py"
+        path.write_text(source, encoding="utf-8")
+        spec = importlib.util.spec_from_file_location(f"peer_{name}", path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[module.__name__] = module
+        spec.loader.exec_module(module)
+        return module
+
+
+@contextmanager
+def _peer() -> Iterator[Peer]:
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(), redirect_stdout(StringIO()):
+        warnings.simplefilter("ignore")
+        yield Peer(Path(folder))
+
+
+def _cost(module: ModuleType, before: float, length: float) -> float:
+    """Returns what running a fresh agent costs, after its first moments [s of real time for each s of simulated time]."""
+    agent: Any = module.Agent()
+    agent.run(before)
+    return seconds_of(lambda: agent.run(length)) / length
+
+
+def _against_peer(peer: Peer, source: str, name: str, before: float, ours: float, theirs: float) -> float:
+    """Returns how many times as long python_actr takes for the same simulated time."""
+    own, other = load_text(source, f"{name}.py"), peer.load(source, name)
+    return ratio(lambda: _cost(other, before, theirs), lambda: _cost(own, before, ours))
+
+
+def _request_cost(size: int) -> Callable[[], float]:
+    """Returns a function that measures one selective request among `size` chunks [s]."""
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    agent = ACTR()
+    agent.retrieval = retrieval
+    agent.memory = memory
+    agent.run(0.001)
+    for i in range(size):
+        memory.add({"kind": "fact", "number": str(i), "group": str(i % 7)})
+    requests = 2000
+
+    def ask() -> None:
+        for i in range(requests):
+            memory.request(f"kind:fact number:{i * 37 % size}")
+            agent.run(0.05)
+
+    ask()
+    return lambda: seconds_of(ask) / requests
+
+
+def _idle_tick() -> float:
+    """Returns what a 10 ms tick with nothing to do costs beyond an empty loop [us]."""
+    agent = load_text(THREE.replace("step:a count:0", "nothing"), "idle.py").Agent()
+    agent.run(1)
+    ticks = 100_000
+
+    def run() -> None:
+        for _ in range(ticks):
+            agent.run(0.01)
+
+    def nothing() -> None:
+        for _ in range(ticks):
+            pass
+
+    return min(seconds_of(run) - seconds_of(nothing) for _ in range(5)) / ticks * 1e6
+
+
+def _traced_ratio() -> float:
+    """Returns what full tracing makes of the counting model's run."""
+    module = load_text(COUNTING.replace("SIZE", "1000"), "counting.py")
+
+    def run(level: str | None) -> float:
+        agent: Any = module.Agent()
+        agent.run(0.001)
+        if level is not None:
+            agent.traced(level)
+        return seconds_of(lambda: agent.run(80))
+
+    run("all")
+    return ratio(lambda: run("all"), lambda: run(None), rounds=9)
+
+
+def measure() -> list[Figure]:
+    """Measures everything.
+
+    Raises:
+        ModuleNotFoundError: If python_actr is not installed.
+    """
+    with _peer() as peer:
+        three = _against_peer(peer, THREE, "three", 1, 400, 400)
+        hundreds = _against_peer(peer, HUNDREDS, "hundreds", 16, 200, 20)
+        counting = _against_peer(peer, COUNTING.replace("SIZE", "2000"), "counting", 0.101, 80, 4)
+    small, large = _request_cost(1_000), _request_cost(100_000)
+    return [
+        Figure(name="three productions", value=three, sense="at least", bar=1.5, what="times python_actr's cycles a second"),
+        Figure(name="300 productions", value=hundreds, sense="at least", bar=10, what="times python_actr's cycles a second"),
+        Figure(name="counting, 2,000 chunks", value=counting, sense="at least", bar=100, what="times python_actr's speed"),
+        Figure(name="request, 100,000 chunks", value=ratio(large, small), sense="at most", bar=2, what="times one among 1,000"),
+        Figure(name="idle tick", value=_idle_tick(), sense="at most", bar=3, what="us more than an empty loop"),
+        Figure(name="full tracing", value=_traced_ratio(), sense="at most", bar=2, what="times the untraced counting model"),
+    ]
+
+
+def main(*, json_output: bool) -> int:
+    """Measures and prints; returns the exit code."""
+    try:
+        return report(measure(), json_output=json_output)
+    except ModuleNotFoundError as error:
+        print(f"the benchmark compares with another library, which is not installed ({error}); use: uv run --group bench actr3d bench core", file=sys.stderr)
+        return 2

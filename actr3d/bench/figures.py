@@ -1,0 +1,57 @@
+"""Figures with bars, and how they are measured and shown."""
+
+from __future__ import annotations
+
+import gc
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Literal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figure:
+    """One measured figure, and the bar it should hold."""
+
+    name: str
+    value: float
+    sense: Literal["at least", "at most"]
+    bar: float
+    what: str
+    """What it is, with its unit."""
+
+    @property
+    def holds(self) -> bool:
+        """Whether the bar is held."""
+        return self.value >= self.bar if self.sense == "at least" else self.value <= self.bar
+
+
+def seconds_of(work: Callable[[], object]) -> float:
+    """Returns how long a call takes [s], with the garbage collector off."""
+    gc.collect()
+    gc.disable()
+    try:
+        start = time.perf_counter()
+        work()
+        return time.perf_counter() - start
+    finally:
+        gc.enable()
+
+
+def ratio(slow: Callable[[], float], fast: Callable[[], float], rounds: int = 5) -> float:
+    """Returns the median ratio of two measured costs, taken in turn so that a machine's drift touches both alike."""
+    return median(slow() / fast() for _ in range(rounds))
+
+
+def report(figures: Sequence[Figure], *, json_output: bool) -> int:
+    """Prints the figures; returns 0 where all hold, else 1."""
+    if json_output:
+        bars = {f.name: {"value": round(f.value, 4), "bar": f"{f.sense} {f.bar:g}", "holds": f.holds} for f in figures}
+        print(json.dumps(bars))
+    else:
+        width = max(len(f.name) for f in figures)
+        for f in figures:
+            print(f"{'holds ' if f.holds else 'MISSED'}  {f.name:<{width}}  {f.value:10.2f}  ({f.sense} {f.bar:g})  {f.what}")
+    return 0 if all(f.holds for f in figures) else 1
