@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
-
-import pytest
 
 from actr3d.actr import ACTR
 
-near: Any = pytest.approx
+near: Any = importlib.import_module("pytest").approx
 """`pytest.approx`, which has no complete types."""
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from living import near
-from peer import model_file
+from reference import model_file
 
 import actr3d.actr as library
 

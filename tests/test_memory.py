@@ -123,7 +123,7 @@ def test_a_draw_is_decided_by_lot() -> None:
     agent = remembering(finst_size=0)
     for n in range(3):
         agent.memory.add(f"a {n}")
-    counts = dict.fromkeys(("a 0", "a 1", "a 2"), 0)
+    counts: dict[str, int] = dict.fromkeys(("a 0", "a 1", "a 2"), 0)
     for _ in range(900):
         counts[str(arrival(agent, "a ?")[1])] += 1
     assert all(abs(count - 300) < 4 * math.sqrt(900 * 2 / 9) for count in counts.values())
@@ -218,7 +218,7 @@ def test_dm_is_a_list() -> None:
     agent.memory.add("a 3")
     assert [str(c) for c in agent.memory.dm] == ["a 3", "a 4", "a 7"]
     assert arrival(agent, "a 7")[1] == Chunk("a 7")
-    agent.memory.dm = []
+    agent.memory.dm = list[Chunk]()
     agent.memory.add("a 1")
     assert agent.memory.dm == [Chunk("a 1")]
     agent.memory.clear()

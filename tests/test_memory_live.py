@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from living import near
-from peer import LIBRARIES, recording_buffer, seeded_agent, text_of
+from reference import LIBRARIES, recording_buffer, seeded_agent, text_of
 
 Maker = Callable[[Any, Any, Any], Any]
 

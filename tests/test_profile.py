@@ -15,10 +15,8 @@ from actr3d.actr import (
     Chunk,
     DMBaseLevel,
     DMNoise,
-    ImaginalModule,
     Memory,
     Model,
-    Motor,
     Partial,
     ProductionSystem,
 )
@@ -255,48 +253,6 @@ def test_buffers_of_parallel_systems_are_harvested_into_the_agents_memory() -> N
     agent.parallel.own.set("a")
     agent.parallel.own.clear()
     assert list(agent.memory.dm) == [Chunk("a")]
-
-
-def test_only_the_events_of_such_agents_lie_at_whole_milliseconds() -> None:
-    class Clock(Model):
-        def start(self) -> Any:
-            self.seen: list[float] = []
-            while self.now() < 0.003:
-                yield 0.0006
-                self.seen.append(self.now())
-
-    class Agent(ACTR):
-        goal = Buffer()
-        imaginal = Buffer()
-        imagination = ImaginalModule(imaginal, delay=0.0126)
-        clock = Clock()
-
-    class Seven(Agent):
-        profile = "act-r-7"
-
-    class World(Model):
-        python = Agent()
-        seven = Seven()
-        clock = Clock()
-
-    world: Any = World()
-    world.run(0.01)
-    assert world.python.clock.seen == world.clock.seen == near([0.0006 * n for n in range(1, 6)])
-    assert world.seven.clock.seen == [0.001, 0.002, 0.003]
-    for agent in (world.python, world.seven):
-        agent.imagination.set("a")
-    world.run(0.0127)
-    assert world.python.imaginal.chunk == Chunk("a")
-    assert world.seven.imaginal.chunk is None
-    world.run(0.0004)
-    assert world.seven.imaginal.chunk == Chunk("a")
-
-
-def test_short_steps_of_a_run_add_up_under_act_r_7() -> None:
-    agent = living("act-r-7", motor=Motor())
-    for _ in range(10):
-        agent.run(0.0004)
-    assert agent.now() == 0.004
 
 
 def test_an_unknown_profile() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from living import near
-from peer import LIBRARIES, model_file, recording_buffer
+from reference import LIBRARIES, model_file, recording_buffer
 
 Modules = Callable[[Any], dict[str, Any]]
 

@@ -74,8 +74,8 @@ class BlendingMemory(Memory):
 
     def _match_score(self, matches: Sequence[Any]) -> float:
         """Returns ln sum exp A."""
-        largest: float = max(match.activation for match in matches)
-        if not math.isfinite(largest):
+        largest: float = max((match.activation for match in matches), default=-math.inf)
+        if math.isinf(largest):
             return largest
         return largest + math.log(math.fsum(math.exp(match.activation - largest) for match in matches))
 

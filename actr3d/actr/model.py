@@ -68,7 +68,7 @@ class GeneratorWrapper(MethodWrapper):
     """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
 
     def __call__(self, *args: Any, **keys: Any) -> Event:
-        return self.obj.sch.begin(self._steps(args, keys), self.func)
+        return self.obj.sch.begin(self._steps(args, keys), self)
 
     def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
         """Runs the method, waking whoever waits for its begin or end."""

@@ -123,8 +123,6 @@ class Scheduler:
         """Whether there is a memory that collects what leaves buffers, as in ACT-R 7."""
         self.round_ms = False
         """Whether there are models whose events happen at whole milliseconds, as in ACT-R 7."""
-        self.harvests = False
-        """Whether there are memories that take in what leaves buffers, as in ACT-R 7."""
         self.limits: RunLimits | None = RunLimits.current()
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
