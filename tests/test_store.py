@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from actr3d.actr import Buffer, Chunk, Memory
 from actr3d.actr.chunk import as_text
 from actr3d.actr.pattern import Pattern
+from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
 
 VALUES: list[Any] = ["x", "y", "1", 1, 1.0, True, None, 0.1, "0.1", (1, 2), [1], {"k": 1}]
@@ -19,10 +20,8 @@ SLOTS: list[Any] = ["a", "b", 0, 1]
 slots = st.sampled_from(SLOTS)
 values = st.sampled_from(VALUES)
 contents = st.dictionaries(slots, values, max_size=4)
-steps = st.lists(
-    st.tuples(st.sampled_from(["keep", "append", "remove", "change", "delete", "slice", "grow", "reverse", "merge"]), st.integers(0, 50), contents),
-    max_size=25,
-)
+changes = st.sampled_from(["keep", "append", "remove", "change", "delete", "slice", "grow", "reverse", "merge"])
+steps = st.lists(st.tuples(changes, st.integers(0, 50), contents), max_size=25)
 
 
 def perform(store: ChunkStore, what: str, place: int, items: dict[Any, Any]) -> None:
@@ -44,9 +43,9 @@ def perform(store: ChunkStore, what: str, place: int, items: dict[Any, Any]) -> 
     elif what == "slice":
         store[place % len(store) :] = [chunk]
     elif what == "grow":  # a value that changes by itself, unseen
-        for value in known.values():
-            if isinstance(value, list):
-                value.append(place)
+        lists: list[Any] = [value for value in known.values() if isinstance(value, list)]
+        for value in lists:
+            value.append(place)
     elif what == "reverse":
         store.reverse()
     else:
@@ -118,3 +117,25 @@ def test_a_copied_chunk_lies_in_no_memory() -> None:
     for twin in (copy.copy(chunk), chunk.copy(), copy.deepcopy(chunk)):
         assert store.holds(chunk)
         assert not store.holds(twin)
+
+
+tests_of_a_slot = st.sampled_from(["1", "!1", "x", "!x!y", "None?v", "?v", "!?v", "?w", "?bound", "!?bound", "?", "0.1", "?v!?bound"])
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    chunks=st.lists(contents, max_size=8),
+    asked=st.dictionaries(st.sampled_from(["a", "b", "0", "1"]), tests_of_a_slot, min_size=1),
+    bound=st.sampled_from([None, {}, {"bound": "x"}, {"bound": 1, "v": "1"}, {"bound": 0.1, "w": None}]),
+)
+def test_a_search_finds_what_trying_every_chunk_finds(
+    chunks: list[dict[Any, Any]], asked: dict[str, str], bound: dict[str, Any] | None
+) -> None:
+    store = ChunkStore()
+    for chunk in chunks:
+        store.keep(Chunk(chunk))
+    text = " ".join(f"{slot}:{test}" for slot, test in asked.items())
+    pattern = Pattern(text, bound)
+    expected = [id(chunk) for chunk in store if pattern.match(chunk) is not None]
+    assert [id(chunk) for chunk in search_for(text, bound, None).among(store)] == expected
+    assert [id(chunk) for chunk in search_for((text,), bound, None).among(store)] == expected

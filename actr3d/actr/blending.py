@@ -25,6 +25,7 @@ class BlendingMemory(Memory):
     """t; the profile's where it is None or was never set."""
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
+        matches = [match for match in matches if not math.isnan(match.activation)]
         numeric = [slot for slot in sorted(chunk, key=str) if _number(chunk[slot]) is not None]
         if numeric or self.rules.blend_by_noise:
             blend: Any = Chunk(chunk)
@@ -69,12 +70,12 @@ class BlendingMemory(Memory):
     def _strength(self, record: Retrieval, best: float) -> float:
         if not self.rules.blend_by_noise:
             return best
-        return self._match_score([candidate.chunk for candidate in record.candidates])
+        return self._match_score([c.chunk for c in record.candidates if not math.isnan(c.activation)])
 
     def _match_score(self, matches: Sequence[Any]) -> float:
         """Returns ln sum exp A."""
-        largest: float = max(match.activation for match in matches)
-        if not math.isfinite(largest):
+        largest: float = max((match.activation for match in matches), default=-math.inf)
+        if math.isinf(largest):
             return largest
         return largest + math.log(math.fsum(math.exp(match.activation - largest) for match in matches))
 

@@ -50,7 +50,9 @@ class Buffer(Model):
 
     def clear(self) -> None:
         """Empties the buffer."""
-        self._harvest()
+        sch = self.__dict__.get("sch")
+        if sch is not None and sch.harvests:
+            self._harvest()
         self.chunk = None
 
     def _chunk_of_buffer(self) -> Chunk:

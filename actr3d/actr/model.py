@@ -69,7 +69,7 @@ class GeneratorWrapper(MethodWrapper):
     """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
 
     def __call__(self, *args: Any, **keys: Any) -> Event:
-        return self.obj.sch.begin(self._steps(args, keys), self.func)
+        return self.obj.sch.begin(self._steps(args, keys), self)
 
     def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
         """Runs the method, waking whoever waits for its begin or end."""
@@ -322,6 +322,7 @@ class Model:
             sch.queue.push(max(time, sch.now_us), event, -priority)
         sch.round_ms = sch.round_ms or self.sch.round_ms
         sch.take_waiting(self.sch)
+        sch.harvests = sch.harvests or self.sch.harvests
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 

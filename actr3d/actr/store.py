@@ -65,7 +65,7 @@ class ChunkStore(list[Chunk]):
 
     def __deepcopy__(self, memo: dict[int, Any]) -> ChunkStore:
         copied = memo[id(self)] = ChunkStore()
-        list.extend(copied, [copy.deepcopy(chunk, memo) for chunk in self])
+        copied.extend([copy.deepcopy(chunk, memo) for chunk in self])
         return copied
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
@@ -73,7 +73,7 @@ class ChunkStore(list[Chunk]):
 
     def keep(self, chunk: Chunk) -> None:
         """Appends a chunk and enters it in the indexes there are."""
-        list.append(self, chunk)
+        super().append(chunk)
         self._adopt(chunk)
         for slot, postings in self._slots.items():
             self._post(chunk, slot, postings)

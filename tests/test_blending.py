@@ -1,0 +1,147 @@
+"""Blending, against the published numbers and means worked out with high precision."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal, getcontext
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from living import living, near
+
+from actr3d.actr import BlendingMemory, Buffer, Chunk, DMFixed, DMNoise, Memory
+
+getcontext().prec = 60
+
+
+def blending(profile: str = "python-actr", noise: float | None = None, **options: Any) -> Any:
+    buffer = Buffer()
+    memory = BlendingMemory(buffer, **options)
+    parts: dict[str, Any] = {"buffer": buffer, "memory": memory, "fixed": DMFixed(memory)}
+    if noise is not None:
+        parts["noise"] = DMNoise(memory, noise=noise)
+    return living(profile, **parts)
+
+
+def mean(rows: list[tuple[float, float]], t: float) -> float:
+    weights = [(Decimal(repr(a)) / Decimal(repr(t))).exp() for a, _ in rows]
+    total = sum((w * Decimal(repr(v)) for w, (_, v) in zip(weights, rows, strict=True)), Decimal(0))
+    return float(total / sum(weights, Decimal(0)))
+
+
+PUBLISHED = [(2.53252, 1.0), (3.76348, 2.0), (4.34334, 3.0)]
+
+
+@pytest.mark.parametrize(("temperature", "expected"), [(0.35355, 2.82841), (1.0, 2.48534), (None, 2.48534)])
+@pytest.mark.parametrize("profile", ["python-actr", "act-r-7"])
+def test_published_blends(profile: str, temperature: float | None, expected: float) -> None:
+    agent = blending(profile)
+    agent.memory.temperature = temperature
+    for activation, value in PUBLISHED:
+        agent.memory.add(f"size:big n:{value}", fixed=activation)
+    agent.memory.request("size:big")
+    agent.run(1)
+    assert agent.buffer.chunk["n"] == near(expected, abs=5e-6)
+    assert agent.buffer.chunk["size"] == "big"
+
+
+def test_act_r_7_takes_its_temperature_from_the_noise() -> None:
+    for noise in (0.25, 0.1):
+        agent = blending("act-r-7", noise=noise)
+        agent.memory.add("n:0 k:a", fixed=1)
+        agent.memory.add("n:1 k:a", fixed=1)
+        agent.memory.request("k:a")
+        drawn = [(c.activation, float(c.chunk["n"])) for c in agent.memory._last.candidates]
+        agent.run(10)
+        assert agent.buffer.chunk["n"] == near(mean(drawn, math.sqrt(2) * noise), rel=1e-12)
+
+
+def test_the_time_is_the_best_chunks_or_that_of_all() -> None:
+    activations = [0.3, 0.1, -0.4]
+    together = math.log(sum(map(math.exp, activations)))
+    for profile, expected in [("python-actr", 0.05 * math.exp(-0.3)), ("act-r-7", round(math.exp(-together), 3))]:
+        agent = blending(profile)
+        for n, activation in enumerate(activations):
+            agent.memory.add(f"n:{n}", fixed=activation)
+        agent.memory.request("n:?")
+        assert agent.memory._last.latency == near(expected, abs=1e-9)
+        agent.run(expected - 1e-5)
+        assert agent.buffer.chunk is None
+        agent.run(2e-5)
+        assert agent.buffer.chunk is not None
+
+
+def test_the_threshold_is_compared_with_the_best_or_with_all_together() -> None:
+    for profile, arrives in [("python-actr", False), ("act-r-7", True)]:
+        agent = blending(profile, threshold=0.5)
+        agent.memory.add("n:1", fixed=0.4)
+        agent.memory.add("n:2", fixed=0.4)  # ln(2 exp 0.4) is 1.09
+        agent.memory.request("n:?")
+        agent.run(2)
+        assert (agent.buffer.chunk is not None) is arrives
+        assert agent.memory.error is not arrives
+
+
+def test_a_chunk_without_numbers_takes_act_r_7s_time_all_the_same() -> None:
+    agent = blending("act-r-7")
+    agent.memory.add("a:x", fixed=0.2)
+    agent.memory.add("a:y", fixed=0.1)
+    agent.memory.request("a:?")
+    agent.run(round(1 / (math.exp(0.2) + math.exp(0.1)), 3))
+    assert agent.buffer.chunk == Chunk("a:x")
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    rows=st.lists(st.tuples(st.floats(-6, 6), st.floats(-1e3, 1e3)), min_size=1, max_size=6, unique_by=lambda row: f"{row[1]:g}"),
+    t=st.floats(0.05, 3),
+)
+def test_blends_are_weighted_means(rows: list[tuple[float, float]], t: float) -> None:
+    agent = blending(threshold=None, maximum_time=60)
+    agent.memory.temperature = t
+    for activation, value in rows:
+        agent.memory.add({"n": value}, fixed=activation)
+    agent.memory.request("n:?")
+    agent.run(60)
+    assert agent.buffer.chunk["n"] == near(mean(rows, t), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("profile", ["python-actr", "act-r-7"])
+@pytest.mark.parametrize("level", [-5000.0, -760.0, 0.0, 760.0, 5000.0])
+def test_activations_of_any_size(profile: str, level: float) -> None:
+    agent = blending(profile, threshold=None)
+    agent.memory.add("n:1", fixed=level)
+    agent.memory.add("n:2", fixed=level + math.log(3))
+    agent.memory.request("n:?")
+    agent.run(10)
+    assert agent.buffer.chunk["n"] == near(1.75, rel=1e-9)
+
+
+@pytest.mark.parametrize("profile", ["python-actr", "act-r-7"])
+def test_what_is_no_number_or_has_other_slots_stays_out(profile: str) -> None:
+    agent = blending(profile)
+    for text, fixed in [("n:2 a:x", 1.0), ("n:4 a:y", 1.0), ("n:many a:x", 0.5), ("n:100", 0.9), ("n:100 a:x b:y", 0.9)]:
+        agent.memory.add(text, fixed=fixed)
+    agent.memory.add({"n": None, "a": "x"}, fixed=0.2)
+    agent.memory.request("n:?")
+    agent.run(2)
+    assert agent.buffer.chunk["n"] == near(3.0)
+    assert [chunk["n"] for chunk in agent.memory.dm][:2] == ["2", "4"]
+
+
+def test_a_blend_of_partial_matches() -> None:
+    from actr3d.actr import Partial
+
+    buffer = Buffer()
+    memory: Any = BlendingMemory(buffer, threshold=-9)
+    partial = Partial(memory, strength=2)
+    partial.similarity("red", "pink", -0.3)
+    agent = living(buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent.memory.add("c:red n:1")
+    agent.memory.add("c:pink n:5", fixed=0.1)
+    agent.memory.request("c:red")
+    agent.run(2)
+    assert agent.buffer.chunk["n"] == near(mean([(0.0, 1.0), (0.1 - 0.6, 5.0)], 1.0))
+    assert isinstance(agent.memory, Memory)
