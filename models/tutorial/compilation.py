@@ -46,7 +46,7 @@ class Translator(ACTR):
         else:
             goal.clear()
 
-    # Only what stands in a compiled production can be compiled: changes of the goal, and the request.
+    # It may make the request and change the goal, but do nothing else: otherwise it is not compiled.
     def ask(goal="task:translate word:?word", utility=utility_of_asking):
         goal.modify(task="say")
         memory.request("english:?word german:?")
