@@ -1,4 +1,16 @@
-"""Counts from 2 to 5, by remembering what comes after each number."""
+"""Counts from 2 to 5, by remembering what comes after each number.
+
+An agent is a class of type ACTR. It has buffers, each of which holds one chunk (a few slots with values)
+or nothing, and a memory. Each method whose parameters all have patterns for defaults is a production:
+«if the goal buffer holds ... and the retrieval buffer holds ..., then ...». One production fires at a
+time, and takes 50 ms.
+
+Productions need no `self`: inside them, the agent's parts are known by name. `?now` in a pattern takes
+the value of that slot, for the whole production; `!?now` means «anything but this». Only slots that a
+pattern names are looked at.
+
+It prints 2, 3, 4, 5. Try other numbers in `goal.set`; then let it count further than it knows.
+"""
 
 from actr3d.actr import *
 
@@ -8,22 +20,24 @@ class Counting(ACTR):
     retrieval = Buffer()
     memory = Memory(retrieval)
 
+    # A method without parameters is carried out once, before anything else.
     def init():
         for number in range(10):
             memory.add(f"count {number} {number + 1}")
-        goal.set("action:start from:2 to:5")
+        goal.set("task:start number:2 last:5")
 
-    def start_counting(goal="action:start from:?first"):
-        memory.request("count ?first ?next")
-        goal.modify(action="counting")
+    def start_counting(goal="task:start number:?now"):
+        memory.request("count ?now ?next")
+        goal.modify(task="count")
 
-    def count_on(goal="action:counting from:?now to:!?now", retrieval="count ?now ?next"):
+    # ?now stands in both patterns: what was remembered must be about the number that the goal is at.
+    def count_on(goal="task:count number:?now last:!?now", retrieval="count ?now ?next"):
         print(now)
-        goal.modify(**{"from": next})
+        goal.modify(number=next)
         memory.request("count ?next ?after")
 
-    def stop_counting(goal="action:counting from:?last to:?last"):
-        print(last)
+    def stop_counting(goal="task:count number:?now last:?now"):
+        print(now)
         goal.clear()
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import inspect
 import random
-import warnings
 from collections.abc import Callable, Generator, Iterator
 from types import ModuleType
 from typing import Any, TypeVar, cast
@@ -14,8 +13,9 @@ from actr3d.actr import logger as logs
 from actr3d.actr.chunk import Chunk, PlaceName
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.profile import PYTHON_ACTR, Profile
+from actr3d.actr.saying import warn_modeller
 from actr3d.actr.scheduler import Event, Scheduler, Trigger
-from actr3d.errors import ModelWarning, SchedulerError
+from actr3d.errors import SchedulerError
 from actr3d.trace import Trace
 
 UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
@@ -186,13 +186,16 @@ class Model:
                 raise SchedulerError(f"{type(self).__name__}.{name}: the name '{name}' is taken by every model; use another")
 
     def _warn_of_loss(self, name: str, before: Any, after: Any) -> None:
-        """Warns where what was set on the model is lost, because its class says otherwise."""
-        if not (type(before) in PLAIN_TYPES and before == after):
-            warnings.warn(
+        """Warns where what was set on the model is lost, because its class says otherwise.
+
+        A class may well say otherwise than the default of a parameter.
+        """
+        if type(before) in PLAIN_TYPES and before == after:
+            return
+        if not any(name in inspect.signature(kind.__init__).parameters for kind in type(self).__mro__[:-1]):
+            warn_modeller(
                 f"{type(self).__name__}.{name} was set to {traceable(before)!r}, but becomes {traceable(after)!r}, as its class says, "
-                "when the model comes to life; set it after the first run(0), or leave it out of the class",
-                ModelWarning,
-                stacklevel=2,
+                "when the model comes to life; set it after the first run(0), or leave it out of the class"
             )
 
     def _become_top(self) -> None:

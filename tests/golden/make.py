@@ -1,0 +1,69 @@
+"""Records the golden traces: what each model of `models` does with seed 1, event by event.
+
+Usage: `python tests/golden/make.py` writes them all anew, `python tests/golden/make.py addition tutorial/counting` only
+those named. The trace of `models/tutorial/counting.py` is `tests/golden/tutorial/counting.jsonl`. Look at the difference
+(`git diff tests/golden`) before keeping it: every changed line is a changed behaviour.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+GOLDEN = Path(__file__).resolve().parent
+ROOT = GOLDEN.parent.parent
+MODELS = ROOT / "models"
+OPTIONS = ("--seed", "1", "--trace", "buffer", "--json")
+"""How every golden trace is made."""
+
+
+def model_names() -> list[str]:
+    """Returns the path of every model below `models`, without its ending."""
+    return sorted(path.relative_to(MODELS).with_suffix("").as_posix() for path in MODELS.rglob("*.py"))
+
+
+def golden_names() -> list[str]:
+    """Returns the path of every golden trace, without its ending."""
+    return sorted(path.relative_to(GOLDEN).with_suffix("").as_posix() for path in GOLDEN.rglob("*.jsonl"))
+
+
+def golden_file(name: str) -> Path:
+    """Returns where a model's golden trace is kept."""
+    return GOLDEN / f"{name}.jsonl"
+
+
+def command(name: str, *options: str) -> list[str]:
+    """Returns the arguments of `actr3d` that run a model, from the project's folder."""
+    return ["run", f"models/{name}.py", *(options or OPTIONS)]
+
+
+def record(name: str, *options: str) -> bytes:
+    """Runs a model in a process of its own, and returns what that printed.
+
+    Raises:
+        RuntimeError: If it fails, or complains of anything.
+    """
+    environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8"}
+    arguments = [sys.executable, "-m", "actr3d.cli", *command(name, *options)]
+    done = subprocess.run(arguments, capture_output=True, cwd=ROOT, env=environment, timeout=60, check=False)
+    if done.returncode != 0 or done.stderr:
+        raise RuntimeError(f"models/{name}.py ended with {done.returncode}:\n{done.stderr.decode()}")
+    return done.stdout
+
+
+def main() -> None:
+    """Records the models named on the command line, or all; drops traces that no model has any more."""
+    chosen = sys.argv[1:] or model_names()
+    for name in chosen:
+        file = golden_file(name)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(record(name))
+    if not sys.argv[1:]:
+        for name in set(golden_names()) - set(chosen):
+            golden_file(name).unlink()
+
+
+if __name__ == "__main__":
+    main()

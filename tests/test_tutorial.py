@@ -1,0 +1,99 @@
+"""Every model does what its golden trace says, again and again, and prints the same under python_actr.
+
+After a wanted change of behaviour, `python tests/golden/make.py` writes the golden traces anew.
+
+All models run under python_actr 1.9.5. One of them, tutorial/imaginal, only with the help of `peer.py`: python_actr's
+ImaginalModule asks for `collections.Callable`, which Python has had under another name since 3.10.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from itertools import zip_longest
+from pathlib import Path
+
+import pytest
+from golden.make import GOLDEN, MODELS, OPTIONS, ROOT, command, golden_file, golden_names, model_names, record
+
+from actr3d.actr.sweep import parameters
+from actr3d.cli import main
+
+NAMES = model_names()
+TUTORIAL = [name for name in NAMES if name.startswith("tutorial/")]
+NOISY = {"tutorial/partial_matching", "tutorial/sos_vision", "tutorial/utility_learning"}
+"""The models that draw random numbers which make a difference."""
+LARGEST = 300_000
+"""No golden trace is larger [bytes]."""
+
+
+def compare(name: str, found: bytes) -> None:
+    """Fails at the first event that differs from the golden trace."""
+    lines, golden = found.split(b"\n"), golden_file(name).read_bytes().split(b"\n")
+    for number, (line, expected) in enumerate(zip_longest(lines, golden), start=1):
+        if line != expected:
+            before = (golden[number - 2] if number > 1 else b"(the beginning)").decode()
+            shown = [repr(None) if event is None else event.decode() or "(the end)" for event in (expected, line)]
+            pytest.fail(
+                f"models/{name}.py differs from {golden_file(name).relative_to(ROOT)} at event {number}\n"
+                f"  after     {before}\n  expected  {shown[0]}\n  found     {shown[1]}\n"
+                f"If that is right: python {(GOLDEN / 'make.py').relative_to(ROOT)} {name}"
+            )
+
+
+def without_start(trace: bytes) -> list[bytes]:
+    """Returns a trace's events but the first, which names the seed."""
+    first, *rest = trace.split(b"\n")
+    assert b'"kind": "start"' in first
+    return rest
+
+
+def test_every_model_has_a_golden_trace_and_every_trace_a_model() -> None:
+    assert golden_names() == NAMES
+    assert [name for name in NAMES if golden_file(name).stat().st_size > LARGEST] == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_does_what_its_golden_trace_says(name: str) -> None:
+    compare(name, record(name))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_does_the_same_twice_in_one_process(name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("PYTHONHASHSEED", "0")
+    for _ in range(2):
+        assert main(command(name)) == 0
+        compare(name, capsys.readouterr().out.encode())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_another_seed_changes_noisy_models_only(name: str) -> None:
+    other = [word if word != "1" else "2" for word in OPTIONS]
+    same = without_start(record(name, *other)) == without_start(golden_file(name).read_bytes())
+    assert same == (name not in NOISY)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("seed", ["1", "7"])
+def test_prints_the_same_under_python_actr(name: str, seed: str, tmp_path: Path) -> None:
+    source = (MODELS / f"{name}.py").read_text(encoding="utf-8")
+    ported, replaced = re.subn(r"^from actr3d\.actr import \*$", "from python_actr import *", source, flags=re.MULTILINE)
+    assert replaced == 1
+    file = tmp_path / Path(f"{name}.py").name
+    file.write_text(ported, encoding="utf-8")
+    environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8"}
+    arguments = [sys.executable, "-W", "ignore", str(ROOT / "tests" / "peer.py"), str(file), seed]
+    done = subprocess.run(arguments, capture_output=True, encoding="utf-8", env=environment, cwd=tmp_path, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    ours = record(name, "--seed", seed).decode()
+    assert ours
+    # python_actr prints a last line of its own when a program that imports it ends.
+    assert ours + "end...\n" == done.stdout
+
+
+@pytest.mark.parametrize("name", TUTORIAL)
+def test_sets_its_parameters_in_its_first_lines(name: str) -> None:
+    assert parameters((MODELS / f"{name}.py").read_text(encoding="utf-8"))
