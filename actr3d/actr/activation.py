@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.utility import logistic_noise
 from actr3d.errors import ChunkError
@@ -59,6 +60,7 @@ class MemorySubModule:
 class DMNoise(MemorySubModule):
     """Adds logistic noise: `noise` drawn anew each time, `baseNoise` once for each chunk."""
 
+    @named_parameters
     def __init__(self, memory: Memory, noise: float = 0.3, baseNoise: float = 0.0) -> None:  # noqa: N803
         MemorySubModule.__init__(self, memory)
         self.noise = noise
@@ -112,6 +114,7 @@ class DMBaseLevel(MemorySubModule):
     Source: Anderson & Lebiere (1998); hybrid form: Petrov (2006).
     """
 
+    @named_parameters
     def __init__(self, memory: Memory | None, decay: float | None = 0.5, limit: int | _ByProfile | None = BY_PROFILE) -> None:
         MemorySubModule.__init__(self, memory)
         self.decay = decay
@@ -203,6 +206,7 @@ def _forgotten(count: int, oldest: float, latest: float | None, d: float, younge
 class DMFixed(MemorySubModule):
     """Adds a fixed amount: `memory.add(chunk, fixed=2)`; adding an equal chunk again adds its amount."""
 
+    @named_parameters
     def __init__(self, memory: Memory, default: float = 0) -> None:
         MemorySubModule.__init__(self, memory)
         self.default = default

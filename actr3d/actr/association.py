@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.activation import BY_PROFILE, DMBaseLevel, MemorySubModule, _ByProfile
 from actr3d.actr.chunk import Chunk
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.profile import PYTHON_ACTR
 from actr3d.actr.spreading import countable
 from actr3d.errors import ChunkError
@@ -30,6 +31,7 @@ class DMAssociate(MemorySubModule):
         limit: As in `DMBaseLevel`.
     """
 
+    @named_parameters
     def __init__(
         self, memory: Memory, buffer: Any, weight: float = 1, decay: float | None = 0.5, limit: int | _ByProfile | None = BY_PROFILE
     ) -> None:
@@ -94,6 +96,7 @@ class DMInhibition(MemorySubModule):
     Source: Lebiere & Best (2009), Proceedings of the Cognitive Science Society.
     """
 
+    @named_parameters
     def __init__(self, memory: Memory, decayScale: float = 1.0, timeScale: float = 5.0) -> None:  # noqa: N803
         MemorySubModule.__init__(self, memory)
         self.decayScale = decayScale

@@ -6,6 +6,7 @@ from typing import Any
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.model import Model, traceable
+from actr3d.actr.parameters import named_parameters
 from actr3d.errors import ChunkError, did_you_mean
 from actr3d.trace import Trace
 
@@ -15,6 +16,7 @@ class Buffer(Model):
 
     chunk: Chunk | None
 
+    @named_parameters
     def __init__(self) -> None:
         self.chunk = None
 

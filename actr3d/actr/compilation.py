@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, cast
 
 from actr3d.actr.bodies import Body, Scope
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.pattern import Bindings, conditions
 from actr3d.actr.production import Production
 from actr3d.actr.utility import PMNew, ProceduralSubModule
@@ -102,6 +103,7 @@ class PMCompile(ProceduralSubModule):
         retrieve: The buffer in which the answer arrives.
     """
 
+    @named_parameters
     def __init__(self, keep: str | Sequence[str], request: str, retrieve: str) -> None:
         self.keep = tuple(keep) if isinstance(keep, (list, tuple)) else (cast("str", keep),)
         self.request = request

@@ -12,6 +12,7 @@ from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.keywords import check_keywords
 from actr3d.actr.model import Model, pick
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.partial import Partial
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.requests import Candidate, Retrieval
@@ -37,6 +38,7 @@ class Memory(Model):
         ParameterError: If there is no such profile.
     """
 
+    @named_parameters
     def __init__(
         self,
         buffer: Any,

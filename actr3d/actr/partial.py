@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.chunk import Slot, as_text
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.profile import PYTHON_ACTR
 from actr3d.actr.saying import warn_modeller
 
@@ -23,6 +24,7 @@ class Partial:
     Source: P = sum MP M_l (Anderson & Lebiere 1998, equation 3.7).
     """
 
+    @named_parameters
     def __init__(self, memory: Memory, strength: float = 1.0, limit: float = -1.0) -> None:
         self._memory = memory
         self.limit = limit

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.activation import MemorySubModule
 from actr3d.actr.chunk import Chunk, as_text
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.pattern import Pattern
 from actr3d.actr.saying import warn_modeller
 from actr3d.errors import ChunkError
@@ -30,6 +31,7 @@ class DMSpreading(MemorySubModule):
     Source: Anderson & Lebiere (1998), equation 3.5; ACT-R 7 reference manual, spreading activation.
     """
 
+    @named_parameters
     def __init__(self, memory: Memory, *buffers: Any) -> None:
         MemorySubModule.__init__(self, memory)
         self.strength: float = 1
@@ -112,6 +114,7 @@ def names_a_chunk(value: Any) -> bool:
 class DMSalience(MemorySubModule):
     """Makes rare values active: a value adds its weight times its information in bits, among the chunks of a context."""
 
+    @named_parameters
     def __init__(self, memory: Memory) -> None:
         MemorySubModule.__init__(self, memory)
         self.histogram: dict[Any, dict[Any, float]] = {}

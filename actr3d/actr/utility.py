@@ -9,6 +9,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
 
 if TYPE_CHECKING:
     from actr3d.actr.production import Production
@@ -67,6 +68,7 @@ class ProceduralSubModule(Model):
 class PMNoise(ProceduralSubModule):
     """Adds logistic noise: `noise` drawn anew at each choice, `baseNoise` once for each production."""
 
+    @named_parameters
     def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
         self.noise = noise
         self.baseNoise = baseNoise
@@ -95,6 +97,7 @@ class PMPGC(ProceduralSubModule):
     Source: Anderson & Lebiere (1998), chapter 3.
     """
 
+    @named_parameters
     def __init__(self, goal: float = 20) -> None:
         self.history: list[tuple[Any, float]] = []
         self.goal = goal
@@ -179,6 +182,7 @@ class PMNew(ProceduralSubModule):
     Source: Anderson (2007), equation for utility learning; ACT-R 6 and 7.
     """
 
+    @named_parameters
     def __init__(self, alpha: float = 0.2) -> None:
         self.history: list[tuple[Any, float]] = []
         self.alpha = alpha
@@ -225,6 +229,7 @@ class PMTD(ProceduralSubModule):
     Source: Fu & Anderson (2004), Proceedings of the Cognitive Science Society.
     """
 
+    @named_parameters
     def __init__(self, alpha: float = 0.1, discount: float = 1, cost: float = 0.05) -> None:
         self.alpha = alpha
         self.discount = discount

@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
 
 
 class ImaginalModule(Model):
@@ -20,6 +21,7 @@ class ImaginalModule(Model):
     Source: 0.2 s, ACT-R's imaginal delay.
     """
 
+    @named_parameters
     def __init__(self, buffer: Any, delay: Any = 0.2, delay_sd: float | None = None) -> None:
         Model.__init__(self)
         self._buffer = buffer

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
 
 
 class Motor(Model):
@@ -14,6 +15,7 @@ class Motor(Model):
     Source: ACT-R's times: 0.25 s preparation, 0.05 s initiation, 0.1 s until the key is struck, 0.15 s to finish.
     """
 
+    @named_parameters
     def __init__(self) -> None:
         Model.__init__(self)
         self.busy = False

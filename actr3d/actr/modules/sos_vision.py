@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.pattern import Pattern
 
 
@@ -24,6 +25,7 @@ class SOSVision(Model):
     Source: SOS Vision (West & Emond 2002).
     """
 
+    @named_parameters
     def __init__(self, buffer: Any, delay: float = 0.0, log: Any = None, delay_sd: float | None = None) -> None:
         self._buffer = buffer
         self.delay = delay

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.scheduler import Trigger
 
 
@@ -19,6 +20,7 @@ class Timer(Model):
     Source: Taatgen, van Rijn & Anderson (2007), Psychological Review 114; ACT-R's temporal module.
     """
 
+    @named_parameters
     def __init__(self, startpulse: float = 0.011, a: float = 1.1, b: float = 0.015) -> None:
         Model.__init__(self)
         self.startpulse = startpulse

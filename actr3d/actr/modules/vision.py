@@ -8,6 +8,7 @@ from typing import Any
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
 from actr3d.actr.pattern import Pattern
 
 
@@ -23,6 +24,7 @@ class Vision(Model):
     Source: ACT-R's onset span of 0.5 s, and 0.085 s for an attention shift.
     """
 
+    @named_parameters
     def __init__(self, visual: Any, location: Any) -> None:
         Model.__init__(self)
         self._visual = visual
