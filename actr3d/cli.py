@@ -50,63 +50,76 @@ def event_line(event: TraceEvent) -> str:
 def run_command(options: argparse.Namespace) -> int:
     """Runs a model file."""
     out: TextIO = sys.stdout
+    if isinstance(out, io.TextIOWrapper):
+        # A text that the terminal cannot show must not end a run; JSON is UTF-8 wherever it is made.
+        out.reconfigure(encoding="utf-8" if options.json else None, errors="backslashreplace")
     level = options.trace or ("all" if options.json else "none")
     trace = Trace(level, keep=False) if level != "none" else None
     limits = RunLimits(seed=options.seed, until=options.until, trace=trace)
     lines: _Lines | None = None
     if options.json:
         lines = _Lines(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
-        if trace is not None:
-            trace.listen(lambda event: print(event.to_json(), file=out))
-    elif trace is not None:
-        trace.listen(lambda event: print(event_line(event), file=out))
-    warnings.showwarning = _show_warning
+    if trace is not None:
+        show = TraceEvent.to_json if options.json else event_line
+        trace.listen(lambda event: print(show(event), file=out))
     try:
-        if lines is not None:
-            sys.stdout = lines
-        run_file(options.file, limits=limits)
-    except Actr3dError as error:
-        out.flush()
-        return _complain(error, options.file)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning
+            if lines is not None:
+                sys.stdout = lines
+            try:
+                run_file(options.file, limits=limits)
+            finally:
+                sys.stdout = out
+                if lines is not None:
+                    lines.finish()
+                out.flush()
     except BrokenPipeError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
-        out.flush()
-        return _complain(error, options.file)
-    finally:
-        sys.stdout = out
-        if lines is not None:
-            lines.finish()
-    out.flush()
+        return _complain(error)
     return 0
 
 
-def _complain(error: BaseException, file: str) -> int:
-    """Prints an error with the modeller's own lines only."""
+def _complain(error: BaseException) -> int:
+    """Prints an error, and what caused it, with the modeller's own lines only."""
     report = traceback.TracebackException.from_exception(error)
-    library = str(Path(__file__).parent)
-    own = [frame for frame in report.stack if not frame.filename.startswith((library, "<frozen"))]
-    own = [frame for frame in own if Path(frame.filename).name != "actr3d"]
-    report.stack = traceback.StackSummary.from_list(own)
-    shown = list(report.format(chain=False))
-    if not own:
-        shown = shown[1:] if shown and shown[0].startswith("Traceback") else shown
-    text = "".join(shown)
+    _keep_own_lines(report)
+    text = "".join(report.format())
     if isinstance(error, Actr3dError):
-        kind = f"{type(error).__module__}.{type(error).__qualname__}: "
-        text = text.replace(kind, "error: ", 1)
+        if not report.stack:
+            text = text.removeprefix("Traceback (most recent call last):\n")
+        text = text.replace(f"{type(error).__module__}.{type(error).__qualname__}: ", "error: ")
     print(text, end="", file=sys.stderr)
     return 1
 
 
+def _keep_own_lines(report: traceback.TracebackException | None) -> None:
+    """Leaves the library's own lines, and the loader's, out of a report and out of those of its causes."""
+    if report is not None:
+        library = str(Path(__file__).parent)
+        own = [frame for frame in report.stack if not frame.filename.startswith((library, "<frozen"))]
+        report.stack = traceback.StackSummary.from_list([frame for frame in own if Path(frame.filename).name != "actr3d"])
+        _keep_own_lines(report.__cause__)
+        _keep_own_lines(report.__context__)
+
+
 def _show_warning(
-    message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None, line: str | None = None
+    message: Warning | str,
+    category: type[Warning],  # noqa: ARG001 - what `warnings` gives
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,  # noqa: ARG001 - what `warnings` gives
 ) -> None:
     print(f"{filename}:{lineno}: warning: {message}", file=file or sys.stderr)
 
 
 def _seconds(text: str) -> float:
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0
     if not 0 < value < 1e9:
         raise argparse.ArgumentTypeError(f"must be a number of seconds above 0 (got {text})")
     return value
@@ -140,7 +153,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None and os.environ.get("PYTHONHASHSEED") is None and sys.argv[1:2] == ["run"]:
         # The order of sets of texts must not differ between two runs of one seed.
         os.environ["PYTHONHASHSEED"] = "0"
-        os.execv(sys.executable, [sys.executable, "-m", "actr3d.cli", *sys.argv[1:]])
+        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
     options: Any = _parser().parse_args(arguments)
     try:
         return options.function(options)

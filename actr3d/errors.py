@@ -30,6 +30,10 @@ class ParameterError(Actr3dError):
     """A parameter has a wrong name, type or value."""
 
 
+class GridError(Actr3dError):
+    """A grid world cannot be made, or a body in it placed or moved, as asked."""
+
+
 class ModelFileError(Actr3dError):
     """A model file cannot be loaded: missing, not Python 3, or not readable as text."""
 

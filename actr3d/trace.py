@@ -7,8 +7,9 @@ event first looks at the trace's level flags, so that nothing is computed which 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import isfinite
+from typing import Any, NamedTuple, cast
 
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, did_you_mean
@@ -37,9 +38,32 @@ class TraceEvent(NamedTuple):
         return seconds(self.time_us)
 
     def to_json(self) -> str:
-        """Returns the event as one line of JSON; the same event always gives the same bytes."""
+        """Returns the event as one line of JSON; the same event always gives the same bytes.
+
+        Numbers that JSON does not have become the texts `inf`, `-inf` and `nan`.
+        """
         record = {"time": self.time, "source": self.source, "kind": self.kind, "data": self.data}
-        return json.dumps(record, default=repr, ensure_ascii=False)
+        try:
+            return json.dumps(record, ensure_ascii=False, allow_nan=False)
+        except (TypeError, ValueError):
+            return json.dumps({**record, "data": _plain(self.data)}, ensure_ascii=False, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
+    """Returns what JSON can hold of a value: what it has no word for becomes text, without addresses."""
+    if value is None or isinstance(value, (bool, int, str)):
+        return value
+    if isinstance(value, float):
+        return value if isfinite(value) else repr(value)
+    if isinstance(value, Mapping):
+        items = cast("Mapping[Any, Any]", value).items()
+        return {key if isinstance(key, str) else str(_plain(key)): _plain(item) for key, item in items}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in cast("Sequence[Any]", value)]
+    if isinstance(value, (set, frozenset)):
+        return sorted((_plain(item) for item in cast("set[Any]", value)), key=repr)
+    text = repr(value)
+    return f"<{type(value).__name__}>" if " at 0x" in text else text
 
 
 class Trace:

@@ -35,8 +35,9 @@ def test_an_empty_buffer() -> None:
     assert goal.isEmpty()
     assert len(goal) == 0
     assert goal.chunk is None
-    assert goal == None  # noqa: E711
     goal.clear()
+    equal_to_none: Any = goal.__eq__(None)
+    assert equal_to_none is True
     with pytest.raises(TypeError, match="buffer 'goal' is empty: it has no slot 'color'"):
         goal["color"]
     with pytest.raises(ChunkError, match="buffer 'goal' is empty: there is no slot 'color' to modify; use set"):

@@ -141,7 +141,7 @@ def test_every_way_of_changing_a_chunk_in_memory_is_noticed() -> None:
     changes: list[tuple[Callable[[Any], Any], str, str]] = [
         (lambda c: operator.setitem(c, "a", "2"), "a:2", "a:1"),
         (lambda c: c.update(a="2"), "a:2", "a:1"),
-        (lambda c: operator.ior(c, {"a": "2"}), "a:2", "a:1"),
+        (lambda c: c.__ior__({"a": "2"}), "a:2", "a:1"),
         (lambda c: c.setdefault("new", "3"), "new:3", "a:2"),
         (lambda c: c.pop("a"), "b:1", "a:1"),
         (lambda c: operator.delitem(c, "a"), "b:1", "a:1"),

@@ -238,6 +238,21 @@ def test_a_file_that_changed_after_it_was_loaded_is_said_plainly(tmp_path: Path,
     del sys.modules["changed_since"]
 
 
+def test_two_texts_of_one_name_keep_their_own_bodies() -> None:
+    text = "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        out.append({!r})\n"
+    first, second = load(text.format("first")), load(text.format("second"))
+    first.Agent().run(0.1)
+    second.Agent().run(0.1)
+    assert (first.out, second.out) == (["first"], ["second"])
+
+
+def test_lines_are_counted_as_python_counts_them() -> None:
+    with pytest.raises(ZeroDivisionError) as caught:
+        load("# a form feed \x0c and a \u2028 end no line\n1 / 0\n", "feed.py")
+    frame = traceback.extract_tb(caught.value.__traceback__)[-1]
+    assert (frame.lineno, frame.line) == (4, "1 / 0")
+
+
 def test_a_lambda_is_no_production() -> None:
     body = "class Agent(ACTR):\n    goal = Buffer()\n    p = lambda goal='a': goal.clear()\n    def init():\n        goal.set('a')\n"
     with pytest.raises(ProductionException, match=r"production 'p'.*forms\.py:5.*def"):

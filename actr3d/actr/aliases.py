@@ -7,7 +7,7 @@ import importlib.abc
 import importlib.machinery
 import importlib.util
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
@@ -83,9 +83,11 @@ class _Aliases(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 
 def _part(fullname: str) -> str | None:
-    """Returns what follows the root in a dotted name; None for other packages."""
+    """Returns what follows the root in a dotted name, `actr.dm` also for `lib.actr.dm`; None for other packages."""
     root, _, part = fullname.partition(".")
-    return part if root in ROOTS else None
+    if root not in ROOTS:
+        return None
+    return part.removeprefix("lib.") if part.startswith("lib.actr.") else part
 
 
 def _is_alias(name: str) -> bool:
@@ -93,7 +95,7 @@ def _is_alias(name: str) -> bool:
 
 
 @contextmanager
-def aliases() -> Iterator[None]:
+def aliases() -> Generator[None]:
     """Makes the old names importable inside the block; afterwards everything is as it was, a real python_actr included."""
     finder = _Aliases()
     before = {name: sys.modules.pop(name) for name in list(sys.modules) if _is_alias(name)}

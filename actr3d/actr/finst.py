@@ -69,7 +69,7 @@ class Finst:
     def _mark(self, obj: Any, end: int) -> None:
         self._marks.append(obj)
         if len(self._marks) > self.size:
-            self.remove(self._marks[0])
+            del self._marks[0]
         if self._ends and self._ends[-1][0] > end:  # the time that marks stay was shortened
             self._ends = deque(sorted([*self._ends, (end, obj)], key=lambda mark: mark[0]))
         else:
@@ -95,11 +95,11 @@ class Finst:
         """Keeps the run going until the last mark has expired."""
         if not self._watched:
             self._watched = True
-            self.parent.sch.add(self._look, delay=self.time)
+            self.parent.sch.call_after(self.time, self._look)
 
     def _look(self) -> None:
         self._bring_up_to_date()
         self._watched = bool(self._ends)
         if self._watched:
             sch = self.parent.sch
-            sch.add(self._look, delay=seconds(self._ends[-1][0] - sch.now_us))
+            sch.call_after(seconds(self._ends[-1][0] - sch.now_us), self._look)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import linecache
 import random
 import sys
 import tokenize
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +18,7 @@ from actr3d.actr import logger as logs
 from actr3d.actr.aliases import aliases
 from actr3d.actr.limits import EndOfRun, RunLimits
 from actr3d.actr.python2 import python_2_reason
+from actr3d.actr.sources import SOURCE
 from actr3d.errors import ModelFileError, did_you_mean
 
 
@@ -35,11 +37,23 @@ def read_source(path: Path) -> str:
         raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
     except OSError as error:
         raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-        return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+        return data.decode(encoding)
     except (SyntaxError, UnicodeDecodeError, LookupError) as error:
-        raise ModelFileError(f"'{path}' is no Python source: {error}") from None
+        raise ModelFileError(f"'{path}' is no Python source: {_why_no_text(data, error)}") from None
+
+
+def _why_no_text(data: bytes, error: Exception) -> str:
+    """Says what is wrong with a file's encoding; where it declares none, which line is no UTF-8."""
+    if "encoding declaration" in str(error) or getattr(error, "encoding", None) == "utf-8":
+        try:
+            data.decode("utf-8")
+        except UnicodeDecodeError as wrong:
+            line = data.count(b"\n", 0, wrong.start) + 1
+            return f"line {line} is no UTF-8; save it as UTF-8, or name its encoding in the first line (# -*- coding: latin-1 -*-)"
+    return str(error)
 
 
 def compile_source(source: str, filename: str) -> Any:
@@ -48,7 +62,7 @@ def compile_source(source: str, filename: str) -> Any:
     Raises:
         ModelFileError: If it is no Python 3; the message names the line, and says so where it is Python 2.
     """
-    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
+    linecache.cache[filename] = (len(source), None, [f"{line}\n" for line in source.split("\n")], filename)
     try:
         return compile(source, filename, "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -64,21 +78,28 @@ def compile_source(source: str, filename: str) -> Any:
 
 
 @contextmanager
-def _as_main(module: ModuleType, folder: Path) -> Iterator[None]:
-    """Lets a module be the program: `__main__`, its folder first on the path, and its own helper modules gone afterwards."""
-    main, path, known = sys.modules.get("__main__"), list(sys.path), set(sys.modules)
+def _as_main(module: ModuleType, folder: Path) -> Generator[None]:
+    """Lets a module be the program: `__main__`, alone in `sys.argv`, its folder first on the path; its helper modules go with it."""
+    main, path, argv, known = sys.modules.get("__main__"), list(sys.path), list(sys.argv), set(sys.modules)
+    importlib.invalidate_caches()  # helper modules may be newer than the last look into their folder
     sys.modules["__main__"] = module
     sys.path.insert(0, str(folder))
+    sys.argv[:] = [str(module.__file__)]
     try:
         yield
     finally:
-        sys.path[:] = path
+        sys.path[:], sys.argv[:] = path, argv
         if main is not None:
             sys.modules["__main__"] = main
         for name in set(sys.modules) - known:
-            file = getattr(sys.modules[name], "__file__", None)
-            if file is not None and Path(file).is_relative_to(folder) and not Path(file).is_relative_to(sys.prefix):
+            helper = sys.modules[name]
+            places = [getattr(helper, "__file__", None) or "", *getattr(helper, "__path__", ())]
+            if any(_is_in(place, folder) and not _is_in(place, Path(sys.prefix)) for place in places):
                 del sys.modules[name]
+
+
+def _is_in(place: str, folder: Path) -> bool:
+    return bool(place) and Path(place).is_relative_to(folder)
 
 
 def run_text(
@@ -109,12 +130,11 @@ def run_text(
     """
     code = compile_source(source, filename)
     module = ModuleType("__main__")
-    module.__dict__.update(__file__=filename, __builtins__=__builtins__, **(names or {}))
+    module.__dict__.update({"__file__": filename, "__builtins__": __builtins__, SOURCE: source, **(names or {})})
     if prepare is not None:
         prepare(module)
     limits = limits or RunLimits()
-    restore = logs.settings()
-    logs.LOG.announce = False
+    restore = logs.begin()
     state = random.getstate()
     with ExitStack() as stack:
         stack.callback(random.setstate, state)
@@ -125,9 +145,9 @@ def run_text(
         if limits.seed is not None:
             random.seed(limits.seed)
         logs.LOG.source = filename
+        stack.callback(logs.finished)  # also where the program fails: what it logged until then is kept
         with suppress(EndOfRun):
             exec(code, module.__dict__)
-        logs.finished()
     return module
 
 
@@ -151,7 +171,7 @@ def load_text(source: str, filename: str = "<model>") -> ModuleType:
     """
     code = compile_source(source, filename)
     module = ModuleType(f"actr3d_model_{abs(hash(filename))}")
-    module.__file__ = filename
+    module.__dict__.update({"__file__": filename, SOURCE: source})
     sys.modules[module.__name__] = module  # dataclasses and pickling look a class's module up
     with aliases():
         exec(code, module.__dict__)

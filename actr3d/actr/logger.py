@@ -12,7 +12,9 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any
+
+from actr3d.clock import MICROSECONDS
 
 BASIC = (int, float, bool, str, tuple, list, dict)
 
@@ -21,7 +23,7 @@ class Log:
     """Where all log lines of a program go."""
 
     def __init__(self) -> None:
-        self.time = 0.0
+        self.time_us = 0
         self.do_screen = True
         self.do_html = False
         self.do_summary = False
@@ -39,7 +41,7 @@ class Log:
         """Forgets what was logged."""
         self.data: dict[str, Any] = {}
         self.rows: list[tuple[float, str, Any]] = []
-        self.time = 0.0
+        self.time_us = 0
         self._stem: str | None = None
 
     def __bool__(self) -> bool:
@@ -47,12 +49,17 @@ class Log:
         keeps = self.do_data or self.do_summary or self.do_html
         return bool(self.data or self.rows or (keeps and self.time > 0))
 
+    @property
+    def time(self) -> float:
+        """When the latest step of any run was [s]."""
+        return self.time_us / MICROSECONDS
+
     def set(self, key: str, value: Any) -> None:
         """Takes one line."""
         if key == "time":
-            self.time = value
+            self.time_us = round(value * MICROSECONDS)
         elif self.do_screen:
-            print(f"{self.time:8.3f} {key} {value}")
+            print(f"{self.time:8.3f} {key} {value}")  # noqa: T201 - the log's own output
         if self.do_data or self.do_summary:
             self.data[key] = value
         if self.do_html and key != "time":
@@ -61,10 +68,10 @@ class Log:
     def display_all(self) -> None:
         """Prints the last value of everything."""
         if self.time > 0:
-            print(f"Total time: {self.time:8.3f}")
+            print(f"Total time: {self.time:8.3f}")  # noqa: T201 - the log's own output
         for key in sorted(self.data):
             if key != "time":
-                print(f" {key} {self.data[key]}")
+                print(f" {key} {self.data[key]}")  # noqa: T201 - the log's own output
 
     def file(self, ending: str) -> Path:
         """Returns a new file's path in the log's directory, and makes the directory."""
@@ -108,6 +115,11 @@ class DummyLog:
 class LogProxy:
     """A place in a log: `proxy.a.b = 3` and `proxy['x'] = 4` write lines named after the place; `proxy._ = 5` names the place itself."""
 
+    if TYPE_CHECKING:
+        _log: Log
+        _prefix: str
+        _items: dict[Any, LogProxy]
+
     def __init__(self, target: Log, prefix: str = "") -> None:
         own = self.__dict__
         own["_log"] = target
@@ -134,7 +146,7 @@ class LogProxy:
         self[key]._set(value)
 
     def __getitem__(self, key: Any) -> LogProxy:
-        items: dict[Any, LogProxy] = self._items
+        items = self._items
         if key not in items:
             items[key] = LogProxy(self._log, f"{self._prefix}[{key}]")
         return items[key]
@@ -189,12 +201,13 @@ def log_everything(model: Any, log: Any = None) -> None:
     if not hasattr(model, "log"):
         model.run(limit=0)
     model.log = log
-    for key, part in list(vars(model).items()):
+    attributes: dict[str, Any] = dict(model.__dict__)
+    for key, part in attributes.items():
         if key[0] != "_" and key != "parent" and hasattr(part, "get_children") and getattr(part, "parent", None) is model:
             log_everything(part, getattr(log, key))
 
 
-def finished(flush: bool = True) -> None:
+def finished(flush: bool = True) -> None:  # noqa: ARG001 - as models call it
     """Writes what the log's settings ask for, and begins a new log."""
     from actr3d.actr.html import write_html
 
@@ -204,20 +217,28 @@ def finished(flush: bool = True) -> None:
         if LOG.do_data:
             data = {**LOG.data, "time": LOG.time} if LOG.time > 0 else LOG.data
             lines = [f"{key}={data[key]}\n" for key in sorted(data)]
-            LOG.file(".data").write_text("".join(lines), encoding="utf-8")
+            LOG.file(".data").write_text("".join(lines), encoding="utf-8", errors="backslashreplace")
         if LOG.do_html:
             write_html(LOG.file(".html"), LOG.rows)
     LOG.reset()
     if LOG.announce:
-        print("end...")
+        print("end...")  # noqa: T201 - the log's own output
 
 
-def settings() -> Callable[[], None]:
-    """Returns a function that puts the log back as it is now, with nothing in it."""
+def begin() -> Callable[[], None]:
+    """Begins a log for one program: empty, and set as at first unless a parameter sweep has set it.
+
+    Returns:
+        A function that puts back the log as it was before, with what was in it.
+    """
     before = dict(vars(LOG))
+    if LOG.locked:
+        LOG.reset()
+    else:
+        LOG.__init__()
 
     def restore() -> None:
-        vars(LOG).update(cast("dict[str, Any]", before))
-        LOG.reset()
+        vars(LOG).clear()
+        vars(LOG).update(before)
 
     return restore

@@ -87,6 +87,9 @@ class Memory(Model):
             self.__dict__["_latency_given"] = True
         super().__setattr__(key, value)
 
+    def _is_default(self, name: str, value: Any) -> bool:
+        return (name == "latency" and not self._latency_given) or super()._is_default(name, value)
+
     # -- what is known
 
     def clear(self) -> None:
@@ -169,27 +172,28 @@ class Memory(Model):
         own["_request_count"] = number = self._request_count + 1
         if self.rules.clear_at_request:
             self._buffer.clear()
-        search = search_for(pattern, self.sch.bound, partial)
+        sch = self.sch
+        search = search_for(pattern, sch.bound, partial)
         matches = search.among(self.dm)
         marked = self.finst.obj
-        record = own["_last"] = Retrieval(self.sch.now_us, pattern, search, self.adaptors, self.threshold, require_new, list(marked))
+        record = own["_last"] = Retrieval(sch.now_us, pattern, search, self.adaptors, self.threshold, require_new, list(marked))
         if require_new and marked:
             record.excluded = [chunk for chunk in matches if chunk in marked]
             matches = [chunk for chunk in matches if chunk not in marked]
         for adaptor in self.adaptors:
             adaptor.matched(matches)
         best = self._weigh(matches, record, partial)
-        trace = self.sch.trace
+        trace = sch.trace
         if best:
             choice: Any = pick(self.random, best)
             record.chosen = choice
             record.latency = self._time(self._strength(record, choice.activation))
             if trace is not None and trace.all:
                 trace.emit(self.sch.now_us, self._path, "request", record.to_data())
-            if type(self).recall is Memory.recall and self.sch.idle_now():
+            if type(self).recall is Memory.recall and sch.idle_now():
                 # The same as below, but for an event that would do nothing else at this very moment.
                 self.finst.add_after(choice)
-                self.sch.add(self._arrive, record.latency, (choice, number))
+                sch.call_after(record.latency, self._arrive, (choice, number))
             else:
                 self.recall(choice, matches=matches, request_number=number)
         else:

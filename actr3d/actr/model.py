@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import random
+import warnings
 from collections.abc import Callable, Generator, Iterator
 from types import ModuleType
 from typing import Any, TypeVar, cast
@@ -14,7 +15,7 @@ from actr3d.actr.chunk import Chunk, PlaceName
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.scheduler import Event, Scheduler, Trigger
-from actr3d.errors import SchedulerError
+from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
 UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
@@ -97,6 +98,8 @@ class Model:
     _auto_run_start = True
     _init_log: Any = None
     _profile: Profile | None = None
+    _setters: frozenset[str] = frozenset()
+    """The attributes that a class's own properties take care of."""
 
     # Given to every instance when it comes to life.
     changes: Trigger
@@ -139,6 +142,7 @@ class Model:
             self._call(type(self).name)
         parent = own.get("parent") or parent
         methods, objects = class_members(type(self))
+        self._check_names({**objects, **methods})
         objects = copy_objects(objects)
         if parent is not None:
             parent._ensure_converted()
@@ -155,6 +159,8 @@ class Model:
                 if not obj._converted:
                     obj._convert(self)
                 self._adopted(name, obj)
+            if name in own and name not in UNWATCHED:
+                self._warn_of_loss(name, own[name], obj)
             own[name] = obj
         if self._convert_methods:
             for name, func in methods.items():
@@ -168,6 +174,32 @@ class Model:
         limits = RunLimits.current()
         if parent is None and limits is not None and limits.trace is not None:
             self._attach_trace(limits.trace)
+
+    def _check_names(self, members: dict[str, Any]) -> None:
+        """Raises an error where a class gives one of the names that hold the tree together to something else."""
+        for name in ("changes", "log", "parent", "random", "sch"):
+            if name not in members:
+                continue
+            value = members[name]
+            usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
+            if not usable:
+                raise SchedulerError(f"{type(self).__name__}.{name}: the name '{name}' is taken by every model; use another")
+
+    def _is_default(self, name: str, value: Any) -> bool:
+        """Tells whether an attribute has the value that a parameter of its name has unless it is given; for subclasses too."""
+        inits = [vars(kind)["__init__"] for kind in type(self).__mro__ if inspect.isfunction(vars(kind).get("__init__"))]
+        parameters = [inspect.signature(init).parameters.get(name) for init in inits]
+        return any(parameter is not None and parameter.default == value for parameter in parameters)
+
+    def _warn_of_loss(self, name: str, before: Any, after: Any) -> None:
+        """Warns where what was set on the model is lost, because its class says otherwise."""
+        if not (type(before) in PLAIN_TYPES and before == after) and not self._is_default(name, before):
+            warnings.warn(
+                f"{type(self).__name__}.{name} was set to {traceable(before)!r}, but becomes {traceable(after)!r}, as its class says, "
+                "when the model comes to life; set it after the first run(0), or leave it out of the class",
+                ModelWarning,
+                stacklevel=2,
+            )
 
     def _become_top(self) -> None:
         own = self.__dict__
@@ -205,6 +237,14 @@ class Model:
         self.__dict__.setdefault("_children", {})[name] = child
 
     # -- changes
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        setters = {name for name, member in vars(cls).items() if has_setter(member)}
+        if setters:
+            cls._setters = cls._setters | setters
+            if "__setattr__" not in vars(cls):
+                type.__setattr__(cls, "__setattr__", set_with_properties)
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
@@ -285,6 +325,7 @@ class Model:
             sch.queue.push(max(time, sch.now_us), event, -priority)
         sch.round_ms = sch.round_ms or self.sch.round_ms
         sch.harvests = sch.harvests or self.sch.harvests
+        sch.take_waiting(self.sch)
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 
@@ -412,6 +453,19 @@ def traceable(value: Any) -> Any:
     return f"<{type(value).__name__}>" if " at 0x" in text else text
 
 
+def set_with_properties(model: Model, key: str, value: Any) -> None:
+    """Sets an attribute of a model whose class has properties that can be set."""
+    if key in model._setters:  # pyright: ignore[reportPrivateUsage]
+        object.__setattr__(model, key, value)
+    else:
+        Model.__setattr__(model, key, value)
+
+
+def has_setter(member: object) -> bool:
+    """Tells whether a class's attribute takes care of being set, as properties do."""
+    return hasattr(type(member), "__set__")
+
+
 def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
     """Returns what a class and its ancestors below Model bring, in alphabetical order: methods, and other objects.
 
@@ -431,7 +485,7 @@ def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
             methods[name] = member
         elif isinstance(member, type) and issubclass(member, Model):
             objects[name] = member()
-        elif not isinstance(member, (property, staticmethod, classmethod)) and not hasattr(type(member), "__set__"):
+        elif not isinstance(member, (property, staticmethod, classmethod)) and not has_setter(cast("object", member)):
             objects[name] = member
     return methods, objects
 

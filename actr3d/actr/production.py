@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, Condition, conditions
 from actr3d.actr.rebinding import stored_names
-from actr3d.actr.sources import assigned_globals, function_node, has_source, place
+from actr3d.actr.sources import assigned_globals, function_node, has_file, place
 from actr3d.errors import PatternException, ProductionException, did_you_mean
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Production:
         if node is None:
             if self.original_func.__name__ == "<lambda>":
                 reason = f"it is a lambda ({self.place}); write it with def"
-            elif has_source(self.original_func):
+            elif has_file(self.original_func):
                 reason = f"its source is not to be had ({self.place}): the file has changed since it was loaded; load it again"
             else:
                 reason = f"its source is not to be had ({self.place}); load the model from a file, or its text with actr3d.actr.load_text"
@@ -77,6 +77,11 @@ class Production:
     def more_bound(self) -> bool:
         """Whether a function among the patterns may bind variables too."""
         return any(condition.op == "call" for condition in self.conditions)
+
+    @cached_property
+    def _looks_up(self) -> bool:
+        """Whether the body looks names up while it runs."""
+        return self.more_bound or bool(self.assigned)
 
     @cached_property
     def assigned(self) -> set[str]:
@@ -106,11 +111,13 @@ class Production:
 
     def scope(self, bound: Bindings) -> Bindings:
         """Returns the bound variables in the form the body asks for."""
-        return Scope(bound, self.context, self.original_func) if self.assigned or self.more_bound else bound
+        return Scope(bound, self.context, self.original_func) if self._looks_up else bound
 
     def fire(self) -> None:
         """Carries out the body, with what the last match bound."""
-        bound = self.system.sch.bound = self.scope(self.bound or {})
+        sch = self.system.sch
+        bound = sch.bound = self.scope(self.bound or {})
+        sch.fired = self
         try:
             self._body(bound)
         except Exception as error:

@@ -13,7 +13,7 @@ _SIGNS: tuple[tuple[re.Pattern[str], str], ...] = (
     (re.compile(r"<>"), "the operator <>"),
     (re.compile(r"`[^`]+`"), "backquotes"),
     (re.compile(r"\b0[0-7]+\b(?![.\w])"), "an octal number without 0o"),
-    (re.compile(r"\b\d+[lL]\b"), "a long number"),
+    (re.compile(r"\b(\d+|0[xX][0-9a-fA-F]+)[lL]\b"), "a long number"),
     (re.compile(r"\b[uU][rR][\"']"), "a ur'' text"),
     (re.compile(r"^\s*def\s+\w+\([^)]*\([^)]*\)[^)]*\)\s*:|lambda\s*\("), "a tuple parameter"),
 )
@@ -26,20 +26,27 @@ def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
         source: The file's text.
         error: What Python 3 says of it.
     """
-    lines = source.splitlines()
+    lines = _without_texts(source).split("\n")
     number = error.lineno or 0
     # The line Python 3 stopped at, or the one before, where a statement's end was missed.
     for line in (number, number - 1):
         if 0 < line <= len(lines):
-            text = _without_comment(lines[line - 1])
             for sign, reason in _SIGNS:
-                if sign.search(text):
+                if sign.search(lines[line - 1]):
                     return line, reason
     if isinstance(error, TabError):
         return number, "tabs and spaces mixed in its indentation"
     return None
 
 
-def _without_comment(line: str) -> str:
-    """Cuts a line's comment off, where it has no text that could contain a '#'."""
-    return line if '"' in line or "'" in line else line.split("#", 1)[0]
+_QUIET = re.compile(r"#[^\n]*|(\"\"\"|\'\'\')[\s\S]*?\1|([\"\'])(?:\\.|(?!\2)[^\n\\])*\2")
+
+
+def _without_texts(source: str) -> str:
+    """Empties comments and texts, which may contain anything, on the lines where they are."""
+
+    def emptied(found: re.Match[str]) -> str:
+        quote = found[1] or found[2] or ""
+        return f"{quote}{chr(10) * found[0].count(chr(10))}{quote}"
+
+    return _QUIET.sub(emptied, source)

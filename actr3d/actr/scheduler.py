@@ -11,8 +11,8 @@ from numbers import Real
 from types import GeneratorType
 from typing import Any, cast
 
-from actr3d.actr import logger
 from actr3d.actr.limits import RunLimits
+from actr3d.actr.logger import LOG
 from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
 from actr3d.errors import ModelWarning, SchedulerError, did_you_mean
 from actr3d.trace import Trace
@@ -113,6 +113,8 @@ class Scheduler:
         self.now_us = 0
         self.bound: dict[str, Any] | None = None
         """What the production that fired last had bound; `?name` in a chunk's text means these."""
+        self.fired: Any = None
+        """The production that fired last; errors name it."""
         self.trace: Trace | None = None
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
@@ -165,6 +167,11 @@ class Scheduler:
         self.queue.push(self.after(delay, event), event, priority)
         return event
 
+    def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
+        """Schedules a plain call of the library's own, which returns None."""
+        event = Event(call, args)
+        self.queue.push(self.after(delay, event), event)
+
     def begin(self, generator: GeneratorType[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
         event = Event(call, generator=generator)
@@ -199,6 +206,14 @@ class Scheduler:
             if priority is not None:
                 event.priority = priority
             self.queue.push(self.now_us, event, event.priority)
+
+    def take_waiting(self, other: Scheduler) -> None:
+        """Takes over from another scheduler whoever waits there for a name, and what other threads have added."""
+        for name, trigger in other._named.items():
+            self._named.setdefault(name, Trigger(name)).waiting += trigger.waiting
+        self._incoming += other._incoming
+        other._named.clear()
+        other._incoming.clear()
 
     def stop(self) -> None:
         """Ends the run once the present event is over."""
@@ -262,6 +277,7 @@ class Scheduler:
                     raise SchedulerError(
                         f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; "
                         f"the last was {heap[0][3].describe()}"
+                        + (f", the production that fired last '{self.fired.name}' ({self.fired.place})" if self.fired is not None else "")
                     )
             self.step += 1
             event = queue.pop()
@@ -273,7 +289,11 @@ class Scheduler:
                 event.group = ()
             generator = event.generator
             if generator is None:
-                self._wait(event, event.call(*event.args, **event.keys))
+                result = event.call(*event.args, **event.keys)
+                if result is None:
+                    self._finish(event)
+                else:
+                    self._wait(event, result)
                 continue
             try:
                 result = next(generator)
@@ -302,7 +322,7 @@ class Scheduler:
 
     def _advance(self, time: int) -> None:
         self.now_us = time
-        logger.LOG.time = time / MICROSECONDS
+        LOG.time_us = time
 
     def _finish(self, event: Event) -> None:
         event.done = event.origin.done = True
@@ -325,7 +345,7 @@ class Scheduler:
         elif isinstance(result, (list, tuple)):
             choices = list(_each(cast("Sequence[Any]", result)))
             if not choices:
-                raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; an empty {type(result).__name__} names nothing")
+                raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; nothing is in it")
             events = [copy.copy(event) for _ in choices]
             for alternative in events:
                 alternative.group = events

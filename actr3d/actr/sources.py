@@ -8,7 +8,11 @@ import linecache
 import warnings
 from collections.abc import Callable
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
+
+SOURCE = "__actr3d_source__"
+"""The global under which a module that was loaded from text keeps that text: another may come under the same name later."""
 
 
 @lru_cache(maxsize=64)
@@ -28,16 +32,24 @@ def _functions(text: str) -> dict[tuple[str, int], ast.FunctionDef]:
 def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
     """Returns the syntax tree of a function's definition, or None where its source is not to be had."""
     code = func.__code__
-    lines = linecache.getlines(code.co_filename, func.__globals__)
     try:
-        return _functions("".join(lines)).get((code.co_name, code.co_firstlineno))
+        return _functions(_source(func)).get((code.co_name, code.co_firstlineno))
     except (SyntaxError, ValueError):  # the file has changed since, and is no Python now
         return None
 
 
-def has_source(func: Callable[..., Any]) -> bool:
-    """Tells whether the file of a function can be read at all."""
-    return bool(linecache.getlines(func.__code__.co_filename, func.__globals__))
+def _source(func: Callable[..., Any]) -> str:
+    """Returns the text of a function's file: as it was loaded, where this library loaded it, or as it is now."""
+    names = func.__globals__
+    filename = func.__code__.co_filename
+    if SOURCE in names and names.get("__file__") == filename:
+        return names[SOURCE]
+    return "".join(linecache.getlines(filename, names))
+
+
+def has_file(func: Callable[..., Any]) -> bool:
+    """Tells whether the file of a function is there at all."""
+    return Path(func.__code__.co_filename).is_file()
 
 
 def place(func: Callable[..., Any]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
@@ -46,17 +47,24 @@ def with_values(source: str, chosen: Mapping[str, Any]) -> str:
         ParameterError: If the model has no such parameter.
     """
     known = parameters(source)
-    lines = source.splitlines()
+    text = source.encode()  # Python counts columns in bytes
+    starts = [0]
+    for line in text.split(b"\n"):
+        starts.append(starts[-1] + len(line) + 1)
+    values: list[tuple[int, int, str]] = []
     for name, value in chosen.items():
         if name not in known:
             raise ParameterError(
                 f"the model has no parameter '{name}'{did_you_mean(name, known)}; "
                 f"its first lines set: {', '.join(known) or 'nothing'}"
             )
-        node = known[name]
-        last = node.end_lineno or node.lineno
-        lines[node.lineno - 1 : last] = [f"{name}={value!r}"] + [""] * (last - node.lineno)
-    return "\n".join(lines) + "\n"
+        old = known[name].value
+        last = old.end_lineno or old.lineno
+        start, end = starts[old.lineno - 1] + old.col_offset, starts[last - 1] + (old.end_col_offset or 0)
+        values.append((start, end, f"({value!r}{chr(10) * (last - old.lineno)})" if last > old.lineno else repr(value)))
+    for start, end, new in sorted(values, reverse=True):
+        text = text[:start] + new.encode() + text[end:]
+    return text.decode()
 
 
 def label(source: str, chosen: Mapping[str, Any]) -> str:
@@ -72,7 +80,7 @@ def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
     The data go to `model/a(3) b(x)/<time>.data`, and a copy of the model's text to `model/code.py`.
 
     Args:
-        _filename: The model file, with or without `.py`.
+        _filename: The model file, with or without `.py`; in the present folder, or beside the program that asks.
         _iterations: How often to run each combination.
         settings_of: For each parameter one value, or a list of values to try.
 
@@ -83,6 +91,9 @@ def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
     from actr3d.actr.loading import compile_source, read_source, run_text
 
     path = Path(_filename if _filename.endswith(".py") else f"{_filename}.py")
+    program = getattr(sys.modules.get("__main__"), "__file__", None)
+    if not path.exists() and program is not None and (beside := Path(program).parent / path).exists():
+        path = beside
     source = read_source(path)
     compile_source(source, str(path))
     _keep_copy(path, source)
@@ -94,7 +105,7 @@ def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
             outer = RunLimits.current()
             seed = None if outer is None else outer.next_seed()
             limits = RunLimits(seed=seed, until=None if outer is None else outer.until)
-            restore = logs.settings()
+            restore = logs.begin()
             logs.log(data=True, screen=False, directory=str(path.with_suffix("") / _safe(name)))
             logs.LOG.locked = True
             try:

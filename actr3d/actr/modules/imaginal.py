@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.model import Model
@@ -29,18 +29,17 @@ class ImaginalModule(Model):
 
     def delay_time(self) -> float:
         """Returns how long the next change takes [s]."""
-        time: float = self.delay() if callable(self.delay) else self.delay
+        time: float = cast("Any", self.delay)() if callable(self.delay) else self.delay
         return time if self.delay_sd is None else max(0.0, self.random.gauss(time, self.delay_sd))
 
     def set(self, chunk: Any) -> Iterator[float]:
         """Puts a new chunk into the buffer; its variables mean what they are bound to now."""
         if self.busy:
             return
-        self.busy = True
         new = Chunk(chunk, self.sch.bound)
+        self.busy = True
         yield self.delay_time()
-        self._buffer.set(new)
-        self.busy = False
+        self._finish(self._buffer.set, new)
 
     def modify(self, **args: Any) -> Iterator[float]:
         """Changes slots of the buffer's chunk."""
@@ -48,8 +47,7 @@ class ImaginalModule(Model):
             return
         self.busy = True
         yield self.delay_time()
-        self._buffer.modify(**args)
-        self.busy = False
+        self._finish(self._buffer.modify, **args)
 
     def clear(self, **args: Any) -> Iterator[float]:
         """Empties the buffer."""
@@ -57,5 +55,11 @@ class ImaginalModule(Model):
             return
         self.busy = True
         yield self.delay_time()
-        self._buffer.clear()
-        self.busy = False
+        self._finish(self._buffer.clear)
+
+    def _finish(self, change: Callable[..., None], *args: Any, **keys: Any) -> None:
+        """Changes the buffer; whether that can be done or not, the module is free again."""
+        try:
+            change(*args, **keys)
+        finally:
+            self.busy = False

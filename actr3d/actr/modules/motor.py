@@ -30,9 +30,20 @@ class Motor(Model):
         self.log._ = "Pressing key initiation complete"
         yield 0.1
         self.log._ = "Actually pressing the key"
-        environment: Any = self.parent and self.parent.parent
-        environment.key_pressed(key)
+        self._environment().key_pressed(key)
         self.log._ = "Finishing movement"
         yield 0.15
         self.log._ = "Finished movement"
         self.busy = False
+
+    def _environment(self) -> Any:
+        """Returns the model the agent is in.
+
+        Raises:
+            AttributeError: If there is none, or it takes no keys.
+        """
+        environment = self.parent and self.parent.parent
+        if not hasattr(environment, "key_pressed"):
+            where = "the agent is in no environment" if environment is None else f"the environment '{environment.name}' has none"
+            raise AttributeError(f"Motor '{self.name}' calls key_pressed(key) of the environment, but {where}")
+        return environment

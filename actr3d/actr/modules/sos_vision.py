@@ -32,10 +32,10 @@ class SOSVision(Model):
         self.busy = False
 
     def request(self, pattern: Any = "") -> Iterator[float]:
-        """Looks for what matches, unless it is looking already."""
+        """Looks for what matches, unless it is looking already; `?name` matches anything, as in python_actr 1.9.5."""
         if self.busy:
             return
-        matcher = Pattern(pattern)  # unlike a memory's request, `?x` asks for any value here, also where x is bound
+        matcher = Pattern(pattern)
         self.error = False
         noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
         self.busy = True

@@ -26,10 +26,12 @@ class Timer(Model):
         self.b = b
         self.count = 0
         self.t = startpulse
+        self._resets = 0
         self._restart = Trigger("timer reset")
 
     def reset(self) -> None:
         """Begins to count from 0."""
+        self._resets += 1
         self.count = 0
         self.t = self.startpulse
         self.sch.trigger(self._restart)
@@ -37,9 +39,8 @@ class Timer(Model):
     def start(self) -> Iterator[object]:
         """Counts for ever."""
         while True:
-            begun = self.t
-            before = self.count
+            before = self._resets
             yield self.t, self._restart
-            if self.count == before and self.t == begun:
+            if self._resets == before:
                 self.count += 1
-                self.t = max(0.0, self.random.gauss(self.a * begun, self.a * begun * self.b))
+                self.t = max(0.0, self.random.gauss(self.a * self.t, self.a * self.t * self.b))

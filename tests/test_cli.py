@@ -1,0 +1,216 @@
+"""The command `actr3d run`, as a person at a terminal meets it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+COMMAND = [sys.executable, "-c", "import sys; from actr3d.cli import main; sys.exit(main(sys.argv[1:]))"]
+
+NOISY = """
+from python_actr import *
+
+class Noisy(ACTR):
+    goal = Buffer()
+    noise = PMNoise(noise=1)
+    def init():
+        goal.set('go 0')
+    def left(goal='go ?n!5'):
+        print('left', n)
+        goal.set({0: 'go', 1: int(n) + 1})
+    def right(goal='go ?n!5'):
+        print('right', n)
+        goal.set({0: 'go', 1: int(n) + 1})
+
+Noisy().run()
+"""
+
+ENDLESS = """
+from python_actr import *
+
+class Endless(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('go')
+    def on(goal='go'):
+        print('on')
+
+model = Endless()
+"""
+
+BROKEN = """from python_actr import *
+
+class Broken(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('go')
+    def boom(goal='go'):
+        print('before the crash \u2211')
+        x = goall.chunk
+
+Broken().run()
+"""
+
+
+def actr3d(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Runs the command in a folder."""
+    env = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8", **environment}
+    return subprocess.run([*COMMAND, *words], cwd=folder, env=env, capture_output=True, encoding="utf-8", timeout=120, check=False)
+
+
+def run(folder: Path, source: str, *words: str) -> subprocess.CompletedProcess[str]:
+    """Runs a model's text."""
+    (folder / "model.py").write_text(source, encoding="utf-8")
+    return actr3d(folder, "run", "model.py", *words)
+
+
+def test_a_seed_gives_the_same_bytes(tmp_path: Path) -> None:
+    first, second = (run(tmp_path, NOISY, "--seed", "7", "--json") for _ in range(2))
+    assert first.returncode == 0
+    assert first.stderr == ""
+    assert first.stdout == second.stdout
+    others = {run(tmp_path, NOISY, "--seed", str(seed)).stdout for seed in range(4)}
+    assert len(others) > 1
+
+
+def test_every_line_of_json_is_an_event(tmp_path: Path) -> None:
+    done = run(tmp_path, NOISY + "print('no end of line', end='')\nprint(' \\ud800 \\x00')", "--seed", "1", "--json")
+    assert done.returncode == 0
+
+    def refuse(word: str) -> float:
+        raise ValueError(word)
+
+    events = [json.loads(line, parse_constant=refuse) for line in done.stdout.splitlines()]
+    assert all(list(event) == ["time", "source", "kind", "data"] for event in events)
+    assert events[0]["kind"] == "start"
+    assert events[0]["data"]["seed"] == 1
+    printed = [event["data"]["text"] for event in events if event["kind"] == "output"]
+    assert printed[-1] == "end..."
+    assert printed[-2] == "no end of line \ud800 \x00"
+    assert [event["time"] for event in events] == sorted(event["time"] for event in events)
+
+
+def test_numbers_that_json_does_not_have_become_text(tmp_path: Path) -> None:
+    source = "import ccm\nm = ccm.Model()\nm.run(limit=0)\nm.x = float('inf')\nm.y = [float('nan')]\n"
+    done = run(tmp_path, source, "--json")
+    data = [json.loads(line)["data"] for line in done.stdout.splitlines()]
+    assert {"x": "inf"} in data
+    assert {"y": ["nan"]} in data
+
+
+@pytest.mark.parametrize(
+    "ending", ["model.run()", "while True: model.run(1)", "while True:\n    try: model.run()\n    except Exception: pass"]
+)
+def test_until_ends_every_model(tmp_path: Path, ending: str) -> None:
+    done = run(tmp_path, ENDLESS + ending, "--until", "0.5")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "on\n" * 10 + "end...\n"
+
+
+@pytest.mark.parametrize(("level", "kinds"), [("none", set[str]()), ("production", {"start", "select", "fire"})])
+def test_levels_of_trace(tmp_path: Path, level: str, kinds: set[str]) -> None:
+    done = run(tmp_path, ENDLESS + "model.run()", "--until", "0.2", "--trace", level)
+    lines = [line.split() for line in done.stdout.splitlines() if line.startswith("  ")]
+    assert {words[2] for words in lines} == kinds
+    assert done.stdout.count("on\n") >= 4
+
+
+def test_an_error_names_file_line_and_production_after_all_output(tmp_path: Path) -> None:
+    done = run(tmp_path, BROKEN)
+    assert done.returncode == 1
+    assert done.stdout == "before the crash \u2211\nend...\n"
+    assert 'File "model.py", line 9, in boom' in done.stderr
+    assert "    x = goall.chunk" in done.stderr
+    assert "in production 'boom' (model.py:7) at 0.05 s; did you mean 'goal'?" in done.stderr
+    assert "actr3d/" not in done.stderr
+
+
+def test_an_error_shows_what_caused_it(tmp_path: Path) -> None:
+    source = "def inner():\n    raise KeyError('deep')\n"
+    source += "try:\n    inner()\nexcept KeyError as error:\n    raise ValueError('shallow') from error\n"
+    done = run(tmp_path, source)
+    assert "line 2, in inner" in done.stderr
+    assert "KeyError: 'deep'" in done.stderr
+    assert done.stderr.endswith("ValueError: shallow\n")
+
+
+def test_an_error_of_the_library_shows_the_modellers_line(tmp_path: Path) -> None:
+    done = run(tmp_path, ENDLESS + "model.run(limit=0)\nmodel.goal.clear()\nmodel.goal.modify(a=1)\n")
+    assert done.returncode == 1
+    assert 'File "model.py", line 14' in done.stderr
+    assert "error: buffer 'goal' is empty" in done.stderr
+    assert "actr3d/" not in done.stderr
+
+
+def test_time_that_stands_still_is_an_error(tmp_path: Path) -> None:
+    done = run(
+        tmp_path, ENDLESS.replace("goal = Buffer()", "goal = Buffer(); production_time = 0").replace("print('on')", "pass") + "model.run()"
+    )
+    assert done.returncode == 1
+    assert "error: time stands still at 0 s" in done.stderr
+    assert "'on' (model.py:8)" in done.stderr
+
+
+@pytest.mark.parametrize(("call", "code", "message"), [("3", 3, ""), ("", 0, ""), ("'sorry'", 1, "sorry\n")])
+def test_a_model_may_exit(tmp_path: Path, call: str, code: int, message: str) -> None:
+    done = run(tmp_path, f"import sys\nprint('before')\nsys.exit({call})\n", "--json")
+    assert (done.returncode, done.stderr) == (code, message)
+    assert json.loads(done.stdout)["data"] == {"text": "before"}
+
+
+def test_a_closed_pipe_is_no_error(tmp_path: Path) -> None:
+    (tmp_path / "model.py").write_text(ENDLESS + "model.run()", encoding="utf-8")
+    command = [*COMMAND, "run", "model.py", "--until", "5000", "--json"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert b"start" in process.stdout.readline()
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(timeout=60) == 1
+
+
+def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> None:
+    (tmp_path / "model.py").write_text("print('\u2211')", encoding="utf-8")
+    done = actr3d(tmp_path, "run", "model.py", PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stdout) == (0, "\\u2211\n")
+    done = actr3d(tmp_path, "run", "model.py", "--json", PYTHONIOENCODING="ascii")
+    assert json.loads(done.stdout)["data"] == {"text": "\u2211"}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["run", "model.py", "--until", "-1"], "--until: must be a number of seconds above 0 (got -1)"),
+        (["run", "model.py", "--until", "nan"], "above 0 (got nan)"),
+        (["run", "model.py", "--until", "soon"], "above 0 (got soon)"),
+        (["run", "model.py", "--seed", "x"], "--seed: invalid int value: 'x'"),
+        (["run", "model.py", "--trace", "much"], "--trace: invalid choice: 'much'"),
+        (["run", "model.py", "--fast"], "unrecognized arguments: --fast"),
+        (["run"], "the following arguments are required: FILE"),
+        ([], "the following arguments are required: COMMAND"),
+    ],
+)
+def test_bad_options_are_refused(tmp_path: Path, words: list[str], message: str) -> None:
+    done = actr3d(tmp_path, *words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
+
+
+def test_a_missing_file_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "counting.py").touch()
+    done = actr3d(tmp_path, "run", "countng.py")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == "error: no model file 'countng.py'; did you mean 'counting.py'?\n"
+
+
+def test_the_order_of_sets_does_not_differ_between_runs(tmp_path: Path) -> None:
+    (tmp_path / "model.py").write_text("print({'a', 'b', 'c', 'd', 'e', 'f', 'g'})", encoding="utf-8")
+    (tmp_path / "random.py").write_text("raise SystemExit('a file of the model stands in for the library')", encoding="utf-8")
+    env = {key: value for key, value in os.environ.items() if key != "PYTHONHASHSEED"}
+    command = [str(Path(sys.executable).parent / "actr3d"), "run", "model.py", "--seed", "1"]
+    runs = [subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, timeout=60, check=True).stdout for _ in range(3)]
+    assert len(set(runs)) == 1
