@@ -172,6 +172,8 @@ if __name__ == '__main__':
 
 
 def test_a_model_is_the_program_and_leaves_nothing_behind(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run_text("from ccm.lib import grid", folder=folder)  # the library's own parts stay loaded once they were asked for
+    capsys.readouterr()
     (folder / "program.py").write_text(PROGRAM, encoding="utf-8")
     real = ModuleType("python_actr")
     part = ModuleType("python_actr.actr")

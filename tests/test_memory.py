@@ -238,6 +238,7 @@ def test_unhashable_values() -> None:
 def test_a_memory_of_ones_own() -> None:
     class Own(Memory):
         latency = 0.2
+        threshold = -1
 
         def get_activation(self, chunk: Any) -> float:
             return float(chunk["worth"])
