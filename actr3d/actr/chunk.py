@@ -85,6 +85,11 @@ def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return slots
 
 
+_NONE_SUCH = object()
+_LASTING = frozenset({str, int, float, bool, type(None)})
+"""The types of value whose text stays the same."""
+
+
 class Chunk(dict[Any, Any]):
     """A set of slots and their values.
 
@@ -120,14 +125,20 @@ class Chunk(dict[Any, Any]):
 
     def __repr__(self) -> str:
         """Positional slots in order, then the named ones sorted; slots that begin with `_` are left out."""
+        if self._text is not None:
+            return self._text
         words: list[str] = []
-        place = 0
-        while place in self:
-            words.append(f"{self[place]}")
-            place += 1
-        rest = [key for key in self if not (type(key) is int and 0 <= key < place)]
-        words += [f"{key}:{self[key]}" for key in sorted(rest, key=str) if str(key)[:1] != "_"]
-        return " ".join(words)
+        get = self.get
+        while (value := get(len(words), _NONE_SUCH)) is not _NONE_SUCH:
+            words.append(value if type(value) is str else f"{value}")
+        places = len(words)
+        if places < len(self):
+            rest = [key for key in self if not (type(key) is int and 0 <= key < places)]
+            words += [f"{key}:{self[key]}" for key in sorted(rest, key=str) if str(key)[:1] != "_"]
+        text = " ".join(words)
+        if self._stores and _LASTING.issuperset(map(type, self.values())):
+            self._text = text  # a remembered chunk is named again and again
+        return text
 
     __str__ = __repr__
 
@@ -139,12 +150,15 @@ class Chunk(dict[Any, Any]):
     # all others `_stores` is empty. A copy lies in none.
     _stores: tuple[ChunkStore, ...] = ()
 
+    _text: str | None = None
+
     def _changed(self) -> None:
+        self._text = None
         for store in self._stores:
             store.forget_order()
 
     def __getstate__(self) -> dict[str, Any] | None:
-        return {name: value for name, value in vars(self).items() if name != "_stores"} or None
+        return {name: value for name, value in vars(self).items() if name not in ("_stores", "_text")} or None
 
     def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
         self.update(other)

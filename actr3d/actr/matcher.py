@@ -38,7 +38,7 @@ class Matcher:
         self._order: dict[Production, int] = {}
         self._always: list[Production] = []
         self._by_value: list[tuple[Callable[[], Any], dict[Any, list[Production]]]] = []
-        self._unrecorded: dict[str, Callable[[], Any]] = {}
+        self.unrecorded: dict[str, Callable[[], Any]] = {}
         self._seen: dict[str, Any] = {}
 
     def build(self, productions: Sequence[Production]) -> None:
@@ -69,15 +69,15 @@ class Matcher:
             name, key = condition.name or "self", None if condition.op == "empty" else condition.key
             target = self._context[name]
             label = f"{name}=None" if key is None else f"{name}.{key}"
-            if label not in self._unrecorded and not is_recorded(target, key):
-                self._unrecorded[label] = _emptiness_of(target) if key is None else reader_of(target, key)
+            if label not in self.unrecorded and not is_recorded(target, key):
+                self.unrecorded[label] = _emptiness_of(target) if key is None else reader_of(target, key)
 
     def observed(self) -> dict[str, Any]:
         """Returns what has changed, since it was last asked, of what productions look at and no model's change records:
         attributes of plain objects, dotted paths, and properties. None stands for what is not there.
         """
         changed: dict[str, Any] = {}
-        for label, reader in self._unrecorded.items():
+        for label, reader in self.unrecorded.items():
             value = reader()
             value = None if value is MISSING else value
             if self._seen.get(label, _UNREAD) != value:

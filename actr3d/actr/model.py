@@ -262,15 +262,19 @@ class Model:
                     if above is None or above is self:
                         break
                     part = above.__dict__
-                if own["log"] is not logs.dummy or own["sch"].trace is not None:
+                trace = own["sch"].trace
+                if own["log"] is not logs.dummy or (trace is not None and trace.buffer):
                     self._record(key, value)
 
     def _record(self, key: str, value: Any) -> None:
         """Lets trace and log know of a change."""
-        if self.sch.trace is not None:
-            self._trace_change(self.sch.trace, key, value)
-        if self.log:
-            setattr(self.log, key, value)
+        own = self.__dict__
+        trace = own["sch"].trace
+        if trace is not None:
+            self._trace_change(trace, key, value)
+        log = own["log"]
+        if log is not logs.dummy and log:
+            setattr(log, key, value)
 
     def _set_in_tree(self, key: str, value: Any) -> None:
         """Sets an attribute that is a model, or one that holds the tree together."""
@@ -400,12 +404,16 @@ class Model:
             trace.emit(self.sch.now_us, self._path, "state", plain)
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
-        if trace.all:
-            if isinstance(value, Model) and value.__dict__.get("parent") is self:
-                for part in value._tree():
-                    part._trace_state(trace)
-            else:
-                trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
+        """Records one attribute's new value."""
+        if not trace.all:
+            return
+        if type(value) in PLAIN_TYPES:
+            trace.emit(self.sch.now_us, self._path, "state", {key: value})
+        elif isinstance(value, Model) and value.__dict__.get("parent") is self:
+            for part in value._tree():
+                part._trace_state(trace)
+        else:
+            trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
 
     # -- running
 

@@ -41,6 +41,8 @@ class ProductionSystem(Model):
     """How long matching takes, as a part of that [s]."""
     _auto_run_start = False
     _matcher: Matcher | None = None
+    _weighs = False
+    """Whether utilities decide among those that match, and so are part of the conflict set."""
     _chosen: Production | None = None
     """The production that is about to fire."""
 
@@ -133,16 +135,14 @@ class ProductionSystem(Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            seen = matcher.observed()
-            if seen:
-                trace.emit(self.sch.now_us, self._path, "observe", seen)
-            self._trace_conflict(matching)
+            if matcher.unrecorded:
+                seen = matcher.observed()
+                if seen:
+                    trace.emit(self.sch.now_us, self._path, "observe", seen)
+            if not matching or not self._weighs:
+                utilities = {production.name: production.base_utility for production in matching}
+                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
         return matching
-
-    def _trace_conflict(self, matching: list[Production]) -> None:
-        """Records which productions match; an agent that knows utilities records them when it has computed them."""
-        assert self.sch.trace is not None
-        self.sch.trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": {p.name: p.base_utility for p in matching}})
 
     def _adaptor_names(self) -> list[str]:
         """Returns the names of the modules that add to utilities."""
@@ -169,7 +169,7 @@ class ProductionSystem(Model):
         self.__dict__["_chosen"] = None
         trace = self.sch.trace
         if trace is not None and trace.production:
-            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": dict(choice.bound or {})})
+            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": choice.bound or {}})
         if self.log is not dummy:
             self.log.production = None
         choice.fire()
@@ -198,6 +198,7 @@ class ProductionSystem(Model):
 class ACTR(ProductionSystem):
     """An ACT-R agent: the production with the highest utility fires, ties are broken at random, and utilities learn."""
 
+    _weighs = True
     production_time_sd: float | None = None
     """The standard deviation of the firing time [s]; None for no noise."""
     production_threshold: Any = None
@@ -252,7 +253,11 @@ class ACTR(ProductionSystem):
 
     def _choose(self, matching: list[Production]) -> Production | None:
         """Returns one of those with the highest utility, or None where that is below the threshold."""
-        if len(matching) == 1 and self._indifferent and self.production_threshold is None and self.sch.trace is None:
+        trace = self.sch.trace
+        if len(matching) == 1 and self._indifferent and self.production_threshold is None:
+            if trace is not None and trace.all:
+                only = matching[0]
+                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": {only.name: only.base_utility}})
             return pick(self.random, matching)
         if type(self).get_activation is not ACTR.get_activation:
             utilities: list[float] = [self.get_activation(p) for p in matching]
@@ -260,7 +265,6 @@ class ACTR(ProductionSystem):
             utilities = self._weigh(matching)
         else:
             utilities = [p.base_utility for p in matching]
-        trace = self.sch.trace
         if trace is not None and trace.all:
             self._trace_utilities(matching, utilities)
         best = max(utilities)
@@ -284,10 +288,6 @@ class ACTR(ProductionSystem):
                 utility += part
             utilities.append(utility)
         return utilities
-
-    def _trace_conflict(self, matching: list[Production]) -> None:
-        if not matching:
-            super()._trace_conflict(matching)
 
     def _trace_utilities(self, matching: list[Production], utilities: list[float]) -> None:
         trace = self.sch.trace

@@ -48,7 +48,12 @@ class Retrieval:
 
     def to_data(self) -> dict[str, Any]:
         """Returns the request as plain values, for the trace and for explanations."""
-        chosen = next((i for i, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
+        chosen = None
+        rows: list[list[Any]] = []
+        for number, candidate in enumerate(self.candidates):
+            if candidate.chunk is self.chosen:
+                chosen = number
+            rows.append([str(candidate.chunk), list(candidate.parts), candidate.partial, candidate.activation])
         return {
             "pattern": str(self.pattern),
             "asked": str(self.search),
@@ -58,7 +63,7 @@ class Retrieval:
             "excluded": [str(chunk) for chunk in self.excluded],
             "modules": [type(module).__name__ for module in self.modules],
             "partial": self.search.partial is not None,
-            "candidates": [[str(c.chunk), list(c.parts), c.partial, c.activation] for c in self.candidates],
+            "candidates": rows,
             "chosen": chosen,
             "latency": self.latency,
         }
