@@ -95,7 +95,9 @@ def test_similar_letters_are_confused_as_often_as_the_equation_says(noise: float
     for one, other, similarity in (("b", "d", -0.03), ("m", "n", -0.06), ("c", "g", -0.12)):
         expected = larger_by(-penalty * similarity, noise)
         assert module.predicted(similarity)[0] == approx(expected, abs=1e-6)
-        shares.append((module.agent.errors[one] + module.agent.errors[other]) / (2 * trials))
+        said = [(cue, word) for cue in (one, other) for word in module.agent.answers[cue]]
+        assert len(said) == 2 * trials
+        shares.append(sum(word[0] != cue for cue, word in said) / (2 * trials))
         assert near(shares[-1], expected, 2 * trials)
     assert shares == sorted(shares, reverse=True)
 
