@@ -39,7 +39,8 @@ def compare(name: str, found: bytes) -> None:
             pytest.fail(
                 f"models/{name}.py differs from {golden_file(name).relative_to(ROOT)} at event {number}\n"
                 f"  after     {before}\n  expected  {shown[0]}\n  found     {shown[1]}\n"
-                f"If that is right: python {(GOLDEN / 'make.py').relative_to(ROOT)} {name}"
+                f"If that is right: python {(GOLDEN / 'make.py').relative_to(ROOT)} {name}",
+                pytrace=False,
             )
 
 
@@ -92,6 +93,17 @@ def test_prints_the_same_under_python_actr(name: str, seed: str, tmp_path: Path)
     assert ours
     # python_actr prints a last line of its own when a program that imports it ends.
     assert ours + "end...\n" == done.stdout
+
+
+@pytest.mark.parametrize("until", ["0.01", "0.12", "3"])
+@pytest.mark.parametrize("name", NAMES)
+def test_can_be_ended_early(name: str, until: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(MODELS / f"{name}.py"), "--seed", "1", "--until", until, "--trace", "production"]) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    moments = [float(line.split()[0]) for line in printed.out.splitlines() if " select " in line]
+    assert moments == sorted(moments)
+    assert all(moment <= float(until) for moment in moments)
 
 
 @pytest.mark.parametrize("name", TUTORIAL)

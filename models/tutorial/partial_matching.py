@@ -41,7 +41,7 @@ class LetterWords(ACTR):
     words = WORDS
     similarities = SIMILARITIES
     cues = list(WORDS) * trials
-    errors = {letter: 0 for letter in WORDS}
+    answers = {letter: [] for letter in WORDS}
 
     def init():
         for letter, word in words.items():
@@ -56,8 +56,7 @@ class LetterWords(ACTR):
         goal.modify(task="say")
 
     def say(goal="task:say cue:?cue", retrieval="word:?word"):
-        if word != words[cue]:
-            errors[cue] += 1
+        answers[cue].append(word)
         if cues:
             goal.set(f"task:ask cue:{cues.pop()}")
         else:
@@ -76,6 +75,7 @@ if __name__ == "__main__":
     agent.run()
     print("letters  similarity  errors  equation  approximation")
     for (one, other), similarity in SIMILARITIES.items():
-        share = (agent.errors[one] + agent.errors[other]) / (2 * trials)
+        wrong = agent.answers[one].count(WORDS[other]) + agent.answers[other].count(WORDS[one])
+        share = wrong / max(1, len(agent.answers[one]) + len(agent.answers[other]))
         exact, approximate = predicted(similarity)
         print(f"{one} and {other}  {similarity:10.2f} {share:7.3f} {exact:9.3f} {approximate:14.3f}")

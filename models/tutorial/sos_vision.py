@@ -75,5 +75,7 @@ if __name__ == "__main__":
     crossing.observer = Observer()
     crossing.run()
     print("seen      share  equation")
+    counts = crossing.observer.counts
+    done = max(1, sum(counts.values()))
     for what, share in predicted().items():
-        print(f"{what:8} {crossing.observer.counts[what] / glances:6.3f} {share:9.3f}")
+        print(f"{what:8} {counts[what] / done:6.3f} {share:9.3f}")

@@ -79,7 +79,7 @@ if __name__ == "__main__":
     agent = Commuter()
     agent.run()
     print("mornings   by bus")
-    for first in range(0, mornings, 25):
+    for first in range(0, len(agent.choices), 25):
         block = agent.choices[first : first + 25]
         print(f"{first + 1:4}-{first + len(block):<4} {block.count('bus') / len(block):6.2f}")
     if noise > 0:
