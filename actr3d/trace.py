@@ -17,7 +17,9 @@ from actr3d.errors import ParameterError, did_you_mean
 LEVELS = ("none", "production", "buffer", "all")
 """What a trace may hold: nothing; selections and firings; also buffer changes; everything."""
 
-Record = tuple[int, str, str, dict[str, Any]]
+Data = dict[str, Any] | Callable[[], dict[str, Any]]
+"""The particulars of an event, or a function that makes them of what it has kept, when somebody reads them."""
+Record = tuple[int, str, str, Data]
 
 
 class TraceEvent(NamedTuple):
@@ -90,12 +92,12 @@ class Trace:
         self._records: list[Record] = []
         self._listeners: list[Callable[[TraceEvent], None]] = []
 
-    def emit(self, time_us: int, source: str, kind: str, data: dict[str, Any]) -> None:
+    def emit(self, time_us: int, source: str, kind: str, data: Data) -> None:
         """Appends one event; the caller has looked at the level and gives `data` away."""
         if self.keep:
             self._records.append((time_us, source, kind, data))
         if self._listeners:
-            event = TraceEvent(time_us, source, kind, data)
+            event = _event((time_us, source, kind, data))
             for listener in self._listeners:
                 listener(event)
 
@@ -107,8 +109,13 @@ class Trace:
         return len(self._records)
 
     def __iter__(self) -> Iterator[TraceEvent]:
-        return (TraceEvent(*record) for record in self._records)
+        return map(_event, self._records)
 
     def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
         """Returns the events of one kind, of one source where it is named, in order."""
         return [e for e in self if e.kind == kind and (source is None or e.source == source)]
+
+
+def _event(record: Record) -> TraceEvent:
+    time_us, source, kind, data = record
+    return TraceEvent(time_us, source, kind, data() if callable(data) else data)

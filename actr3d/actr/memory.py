@@ -178,7 +178,7 @@ class Memory(Model):
         search = search_for(pattern, sch.bound, partial)
         matches = search.among(self.dm)
         marked = self.finst.obj
-        record = own["_last"] = Retrieval(sch.now_us, pattern, search, self.adaptors, self.threshold, require_new, list(marked))
+        record = own["_last"] = Retrieval(sch.now_us, pattern, search, tuple(self.adaptors), self.threshold, require_new, list(marked))
         if require_new and marked:
             record.excluded = [chunk for chunk in matches if chunk in marked]
             matches = [chunk for chunk in matches if chunk not in marked]
@@ -191,7 +191,7 @@ class Memory(Model):
             record.chosen = choice
             record.latency = self._time(self._strength(record, choice.activation))
             if trace is not None and trace.all:
-                trace.emit(self.sch.now_us, self._path, "request", record.to_data())
+                trace.emit(self.sch.now_us, self._path, "request", record.snapshot())
             if type(self).recall is Memory.recall and sch.idle_now():
                 # The same as below, but for an event that would do nothing else at this very moment.
                 self.finst.add_after(choice)
@@ -201,7 +201,7 @@ class Memory(Model):
         else:
             record.latency = self.maximum_time if self.threshold is None else self._time(self.threshold)
             if trace is not None and trace.all:
-                trace.emit(self.sch.now_us, self._path, "request", record.to_data())
+                trace.emit(self.sch.now_us, self._path, "request", record.snapshot())
             self.fail(number)
 
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:

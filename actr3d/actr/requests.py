@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from actr3d.actr.chunk import Chunk
@@ -48,19 +49,23 @@ class Retrieval:
 
     def to_data(self) -> dict[str, Any]:
         """Returns the request as plain values, for the trace and for explanations."""
-        chosen = None
-        rows: list[list[Any]] = []
-        for number, candidate in enumerate(self.candidates):
-            if candidate.chunk is self.chosen:
-                chosen = number
-            rows.append([str(candidate.chunk), list(candidate.parts), candidate.partial, candidate.activation])
+        return self.snapshot()()
+
+    def snapshot(self) -> Callable[[], dict[str, Any]]:
+        """Returns a function that makes plain values of the request; what may change later is taken down now."""
+        names = [str(candidate.chunk) for candidate in self.candidates]
+        return partial(self._data, names, [str(chunk) for chunk in self.marked], [str(chunk) for chunk in self.excluded])
+
+    def _data(self, names: list[str], marked: list[str], excluded: list[str]) -> dict[str, Any]:
+        chosen = next((number for number, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
+        rows = [[name, list(c.parts), c.partial, c.activation] for name, c in zip(names, self.candidates, strict=True)]
         return {
             "pattern": str(self.pattern),
             "asked": str(self.search),
             "threshold": self.threshold,
             "require_new": self.require_new,
-            "finsts": [str(chunk) for chunk in self.marked],
-            "excluded": [str(chunk) for chunk in self.excluded],
+            "finsts": marked,
+            "excluded": excluded,
             "modules": [type(module).__name__ for module in self.modules],
             "partial": self.search.partial is not None,
             "candidates": rows,
