@@ -42,12 +42,18 @@ class EventQueue(Generic[T]):
 
     At one time the event of higher priority comes first, and among equals the one that was put in first:
     simultaneous events have one defined order.
+
+    Args:
+        first_come: Whether equals come in the order they were put in. Without it they come as the heap has them, which
+            is defined too, though harder to foresee: it is the order that models written for python_actr know. Events
+            are compared then, and must say that none is less than another.
     """
 
-    __slots__ = ("_serial", "heap")
+    __slots__ = ("_serial", "first_come", "heap")
 
-    def __init__(self) -> None:
+    def __init__(self, first_come: bool = True) -> None:
         self.heap: list[tuple[int, float, int, T]] = []
+        self.first_come = first_come
         self._serial = 0
 
     def __len__(self) -> int:
@@ -55,7 +61,7 @@ class EventQueue(Generic[T]):
 
     def push(self, time: int, event: T, priority: float = 0) -> None:
         """Puts an event in, at `time` [us]."""
-        self._serial += 1
+        self._serial += self.first_come
         heappush(self.heap, (time, -priority, self._serial, event))
 
     def pop(self) -> T:

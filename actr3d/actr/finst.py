@@ -93,9 +93,12 @@ class Finst:
 
     def _watch(self) -> None:
         """Keeps the run going until the last mark has expired."""
-        if not self._watched:
+        sch = self.parent.sch
+        if not sch.queue.first_come:
+            sch.call_after(self.time, self._bring_up_to_date)
+        elif not self._watched:
             self._watched = True
-            self.parent.sch.call_after(self.time, self._look)
+            sch.call_after(self.time, self._look)
 
     def _look(self) -> None:
         self._bring_up_to_date()

@@ -13,10 +13,12 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+from zlib import crc32
 
 from actr3d.actr import logger as logs
 from actr3d.actr.aliases import aliases
 from actr3d.actr.limits import EndOfRun, RunLimits
+from actr3d.actr.model import WRITTEN_FOR_PYTHON_ACTR
 from actr3d.actr.python2 import python_2_reason
 from actr3d.actr.sources import SOURCE
 from actr3d.errors import ModelFileError, did_you_mean
@@ -170,9 +172,14 @@ def load_text(source: str, filename: str = "<model>") -> ModuleType:
         Exception: Whatever its top level raises.
     """
     code = compile_source(source, filename)
-    module = ModuleType(f"actr3d_model_{abs(hash(filename))}")
+    module = ModuleType(f"actr3d_model_{crc32(filename.encode(errors='replace')):08x}")
     module.__dict__.update({"__file__": filename, SOURCE: source})
     sys.modules[module.__name__] = module  # dataclasses and pickling look a class's module up
-    with aliases():
-        exec(code, module.__dict__)
+    before, logs.LOG.announce = logs.LOG.announce, False
+    try:
+        with aliases():
+            exec(code, module.__dict__)
+        module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = logs.LOG.announce
+    finally:
+        logs.LOG.announce = before
     return module

@@ -192,12 +192,14 @@ class Memory(Model):
             record.latency = self._time(self._strength(record, choice.activation))
             if trace is not None and trace.all:
                 trace.emit(self.sch.now_us, self._path, "request", record.snapshot())
-            if type(self).recall is Memory.recall and sch.idle_now():
+            if type(self).recall is not Memory.recall:
+                self.recall(choice, matches=matches, request_number=number)
+            elif sch.idle_now():
                 # The same as below, but for an event that would do nothing else at this very moment.
                 self.finst.add_after(choice)
                 sch.call_after(record.latency, self._arrive, (choice, number))
             else:
-                self.recall(choice, matches=matches, request_number=number)
+                sch.call_after(0, self._begin_recall, (choice, record.latency, number))
         else:
             record.latency = self.maximum_time if self.threshold is None else self._time(self.threshold)
             if trace is not None and trace.all:
@@ -256,6 +258,11 @@ class Memory(Model):
         self.finst.add(chunk)
         yield self._time(chunk.activation)
         self._arrive(chunk, request_number)
+
+    def _begin_recall(self, chunk: Chunk, time: float, request_number: int) -> None:
+        """Does what `recall` does, where no subclass has its own."""
+        self.finst.add(chunk)
+        self.sch.call_after(time, self._arrive, (chunk, request_number))
 
     def _arrive(self, chunk: Chunk, request_number: int) -> None:
         """Puts a retrieved chunk into the buffer, unless there has been another request since."""

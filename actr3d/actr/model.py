@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import random
+import sys
 from collections.abc import Callable, Generator, Iterator
 from types import ModuleType
 from typing import Any, TypeVar, cast
@@ -201,7 +202,7 @@ class Model:
     def _become_top(self) -> None:
         own = self.__dict__
         limits = RunLimits.current()
-        sch = own["sch"] = Scheduler()
+        sch = own["sch"] = Scheduler(first_come=not written_for_python_actr(type(self)))
         wanted = self._init_log
         own["log"] = logs.log() if wanted is True else logs.dummy if wanted is None else wanted
         seed = limits.next_seed() if limits is not None else None
@@ -506,6 +507,15 @@ def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
             objects[name] = member
     return methods, objects
 
+
+def written_for_python_actr(kind: type) -> bool:
+    """Tells whether a class is part of a program that imports python_actr or ccm by name."""
+    files = [sys.modules.get(klass.__module__) for klass in kind.__mro__]
+    return logs.LOG.announce or any(vars(file).get(WRITTEN_FOR_PYTHON_ACTR) for file in files if file is not None)
+
+
+WRITTEN_FOR_PYTHON_ACTR = "__written_for_python_actr__"
+"""The global by which a loaded model's module says so."""
 
 RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
 """What a subclass may override, but not turn into something that is waited for or copied."""

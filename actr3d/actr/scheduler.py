@@ -23,6 +23,8 @@ STANDSTILL = 1_000_000
 """So many events without any time passing are an endless loop, not a model."""
 
 
+END = -9999999
+"""The priority of a run's end: everything else of that moment comes before it."""
 FAR = 1e12
 """Delays up to here [s] need no further look."""
 
@@ -79,6 +81,9 @@ class Event:
     def __repr__(self) -> str:
         return f"<Event {self.describe()}>"
 
+    def __lt__(self, other: Event) -> bool:
+        return False  # events of one time and priority are equals; the queue alone puts them in order
+
     def in_milliseconds(self) -> bool:
         """Tells whether the model whose method this is goes by whole milliseconds."""
         owner = getattr(self.call, "__self__", self.call)
@@ -106,10 +111,16 @@ class Event:
 
 
 class Scheduler:
-    """The clock and the event queue of one run; all models below one top model share it."""
+    """The clock and the event queue of one run; all models below one top model share it.
 
-    def __init__(self) -> None:
-        self.queue: EventQueue[Event] = EventQueue()
+    Args:
+        first_come: Whether simultaneous events of one priority happen in the order they were scheduled. Otherwise they
+            happen in the order that python_actr 1.9.5 has, which depends on all events that are queued; so there must
+            be the same ones, also those that do nothing.
+    """
+
+    def __init__(self, first_come: bool = True) -> None:
+        self.queue: EventQueue[Event] = EventQueue(first_come)
         self.now_us = 0
         self.bound: dict[str, Any] | None = None
         """What the production that fired last had bound; `?name` in a chunk's text means these."""
@@ -119,6 +130,7 @@ class Scheduler:
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
         self.stop_flag = False
+        self._run_number = 0
         self.step = 0
         """How many events have happened."""
         self.harvests = False
@@ -237,7 +249,13 @@ class Scheduler:
             until = bound if until is None else min(until, bound)
         self.stop_flag = False
         heap = self.queue.heap
-        if until is not None and (not heap or heap[0][0] > until) and not self._incoming:
+        idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
+        if duration is not None and not self.queue.first_come:
+            self._run_number += 1
+            self.queue.push(self.now_us + round(duration * MICROSECONDS), Event(self._end, (self._run_number,)), END)
+            if idle:
+                self.queue.pop()
+        if until is not None and idle:
             self._advance(until)
             return
         if self._running:
@@ -254,6 +272,11 @@ class Scheduler:
             self._running = before
         if until is not None and not self.stop_flag and until > self.now_us:
             self._advance(until)
+
+    def _end(self, run_number: int) -> None:
+        """Ends the run that asked for it; one that was stopped before leaves this without effect."""
+        if run_number == self._run_number:
+            self.stop_flag = True
 
     def _run_events(self, until: int | None) -> None:
         queue = self.queue
@@ -318,6 +341,8 @@ class Scheduler:
     def idle_now(self) -> bool:
         """Tells whether nothing else is to happen before time passes, so that what comes last may come at once."""
         heap = self.queue.heap
+        if not self.queue.first_come:
+            return False
         return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self._incoming
 
     def _advance(self, time: int) -> None:
