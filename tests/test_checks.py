@@ -11,8 +11,8 @@ from actr3d.actr.loading import load_text
 from actr3d.errors import ChunkError, ModelWarning, ProductionException
 
 HEAD = """from actr3d.actr import *
-class Eye(Model):
-    busy = False
+class Colour: depth = 3
+class Eye(Model): busy, colour = False, Colour()
 class Agent(ACTR):
     goal = Buffer()
     retrieval = Buffer()
@@ -45,6 +45,8 @@ def warned(body: str, length: float = 0.0) -> list[tuple[str, int]]:
         ("def init(): goal.set('count:1')\ndef p(goal='cuont:1'): pass", "no chunk is ever given a slot 'cuont'; did you mean 'count'?", 11),
         ("def p(memory='eror:True'): pass", "'memory' has no attribute 'eror'; did you mean 'error'?", 10),
         ("def p(eye='bussy:False'): pass", "'eye' has no attribute 'bussy'; did you mean 'busy'?", 10),
+        ("def p(eye='colour.depht:3'): pass", "'eye' has no attribute 'colour.depht'; did you mean 'depth'?", 10),
+        ("def p(eye='colur.depth:3'): pass", "'eye' has no attribute 'colur'; did you mean 'colour'?", 10),
         ("def p(goal='a'):\n    goal.clear", "'goal.clear' without brackets does nothing; did you mean 'goal.clear()'?", 11),
         ("def init():\n    goal.clear", "'goal.clear' without brackets does nothing", 11),
         ("def act(self):\n    if self:\n        self.goal.clear", "'self.goal.clear' without brackets does nothing", 12),

@@ -20,7 +20,7 @@ from actr3d.actr.chunk import parse_slots
 from actr3d.actr.memory import Memory
 from actr3d.actr.model import MethodWrapper, Model
 from actr3d.actr.modules.imaginal import ImaginalModule
-from actr3d.actr.pattern import Condition
+from actr3d.actr.pattern import MISSING, Condition, get_item
 from actr3d.actr.sources import function_node
 from actr3d.actr.vocabulary import slots_given
 from actr3d.errors import ModelWarning, did_you_mean
@@ -110,24 +110,38 @@ def _check_patterns(production: Production) -> None:
 
 
 def _check_slots(production: Production) -> None:
-    """Finds slots that are never given a value, where a similar one is; and attributes that a module does not have."""
+    """Finds slots that are never given a value, where a similar one is; and attributes that an object does not have."""
     given: set[str] | None = None
     for condition in production.conditions:
         key = condition.key
-        if not isinstance(key, str) or not key.isidentifier() or condition.op in ("empty", "call"):
+        if not isinstance(key, str) or key[:1] == "?" or condition.op in ("empty", "call"):
             continue
         target = production.context[condition.name or "self"]
         if isinstance(target, Buffer):
             if given is None:
                 given = slots_given(production.original_func)
-            hint = "" if key in given or target.chunk and key in target.chunk else did_you_mean(key, given, SURE)
-        elif isinstance(target, Model):
-            hint = "" if hasattr(target, key) else did_you_mean(key, [k for k in vars(target) if k[0] != "_"], SURE)
+            if key in given or "." in key or (target.chunk and key in target.chunk):
+                continue
+            hint = did_you_mean(key, given, SURE)
+            what = f"no chunk is ever given a slot '{key}'"
         else:
-            hint = ""
+            missing, hint = _missing_attribute(target, key)
+            what = f"'{condition.name}' has no attribute '{missing}'"
         if hint:
-            what = "no chunk is ever given a slot" if isinstance(target, Buffer) else f"'{condition.name}' has no attribute"
-            say(f"production '{production.name}': {what} '{key}'{hint}", production.original_func)
+            say(f"production '{production.name}': {what}{hint}", production.original_func)
+
+
+def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
+    """Returns the first part of a dotted path that leads nowhere, with what may be meant; empty texts where it leads on."""
+    walked: list[str] = []
+    for name in path.split("."):
+        walked.append(name)
+        found = get_item(target, name)
+        if found is MISSING:
+            known = [k for k in (*getattr(target, "__dict__", ()), *dir(type(target))) if k[0] != "_"]
+            return ".".join(walked), did_you_mean(name, known, SURE)
+        target = found
+    return "", ""
 
 
 # -- bodies
