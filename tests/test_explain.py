@@ -141,8 +141,8 @@ class Agent(ACTR):
 
 
 def test_the_first_failing_condition_is_named_with_what_was_expected_and_found() -> None:
+    agent = agent_of(SIMPLE)
     with pytest.warns(UserWarning, match="sizes"):
-        agent = agent_of(SIMPLE)
         agent.run(0)
     why = agent.explain()
     assert why.production("matching").matches
@@ -165,9 +165,9 @@ def test_the_first_failing_condition_is_named_with_what_was_expected_and_found()
 
 
 def test_a_retrieval_is_told_with_every_candidate_and_why_it_won_or_lost() -> None:
+    agent = agent_of(SIMPLE)
+    agent.traced()
     with pytest.warns(UserWarning, match="sizes"):
-        agent = agent_of(SIMPLE)
-        agent.traced()
         agent.run(0.051)
     (told,) = agent.explain().retrievals
     assert (told.request, told.asked, told.threshold, told.outcome) == ("kind:fruit", "kind:fruit", 0.5, "pending")

@@ -104,7 +104,8 @@ def _check_patterns(production: Production) -> None:
         for part in pattern if isinstance(pattern, (list, tuple)) else (pattern,):
             if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
                 say(
-                    f"production '{production.name}': {name}={part!r} is no pattern and matches anything; write text, such as {name}='{part}'",
+                    f"production '{production.name}': {name}={part!r} is no pattern and matches anything; "
+                    f"write text, such as {name}='{part}'",
                     production.original_func,
                 )
 
@@ -120,7 +121,7 @@ def _check_slots(production: Production) -> None:
         if isinstance(target, Buffer):
             if given is None:
                 given = slots_given(production.original_func)
-            hint = "" if key in given or target.chunk and key in target.chunk else did_you_mean(key, given, SURE)
+            hint = "" if key in given or (target.chunk and key in target.chunk) else did_you_mean(key, given, SURE)
         elif isinstance(target, Model):
             hint = "" if hasattr(target, key) else did_you_mean(key, [k for k in vars(target) if k[0] != "_"], SURE)
         else:
@@ -148,10 +149,11 @@ def _check_body(production: Production) -> None:
 def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapping[str, Any]) -> None:
     """Finds statements that name a method and do not call it."""
     for part in ast.walk(node):
-        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute):
-            if isinstance(_resolve(part.value, names), MethodWrapper):
-                text = ast.unparse(part.value)
-                say(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
+        if not isinstance(part, ast.Expr) or not isinstance(part.value, ast.Attribute):
+            continue
+        if isinstance(_resolve(part.value, names), MethodWrapper):
+            text = ast.unparse(part.value)
+            say(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
 
 
 def _resolve(node: ast.expr, context: Mapping[str, Any]) -> Any:
@@ -267,7 +269,8 @@ def _check_attributes(system: ProductionSystem, part: Model, what: str, known: s
         hint = did_you_mean(name, known, 0.85)
         if hint:
             filename, line = _place_of_class(type(system))
-            warnings.warn_explicit(f"{what} has an attribute '{name}', which is no parameter{hint}", ModelWarning, filename, line, registry={})
+            message = f"{what} has an attribute '{name}', which is no parameter{hint}"
+            warnings.warn_explicit(message, ModelWarning, filename, line, registry={})
 
 
 def _place_of_class(klass: type) -> tuple[str, int]:

@@ -404,5 +404,5 @@ def _each(choices: Sequence[Any]) -> Iterator[Any]:
 
 def _makes_generator(func: Callable[..., Any]) -> bool:
     """Tells whether a call gives a generator, also of a callable object."""
-    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)
+    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)  # noqa: B004 - its code is wanted, not whether there is any
     return code is not None and bool(code.co_flags & CO_GENERATOR)

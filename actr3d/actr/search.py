@@ -36,55 +36,6 @@ class Search(Protocol):
 
     def among(self, store: ChunkStore) -> list[Chunk]:
         """Returns the chunks that match, in the order they came."""
-        ...
-
-
-class PlainSearch:
-    """A search that names plain slots only.
-
-    Args:
-        tests: What is asked, as (slot, sign, word); see `pattern.parse`.
-        bound: The variables that have a value.
-    """
-
-    __slots__ = ("differ", "equal", "partial", "present", "same", "unequal")
-
-    def __init__(self, tests: Sequence[tuple[Slot, str, str]], bound: Mapping[str, Any] | None) -> None:
-        self.partial = None
-        self.equal: list[tuple[Slot, str]] = []
-        self.unequal: list[tuple[Slot, str]] = []
-        self.present: dict[str, Slot] = {}
-        self.same: list[tuple[Slot, str]] = []
-        self.differ: list[tuple[Slot, str]] = []
-        for slot, sign, word in tests:
-            if sign == "is":
-                self.equal.append((slot, word))
-            elif sign == "not":
-                self.unequal.append((slot, word))
-            elif bound is not None and word in bound:
-                value = bound[word]
-                text = value if type(value) is str else as_text(value)
-                (self.equal if sign == "?" else self.unequal).append((slot, text))
-            elif sign == "!?":
-                self.differ.append((slot, word))
-            elif word in self.present:
-                self.same.append((slot, word))
-            else:
-                self.present[word] = slot
-
-    def __str__(self) -> str:
-        words = [f"{slot}:{text}" for slot, text in self.equal]
-        for name, slot in self.present.items():
-            words.append(f"{slot}:?{name}")
-        if self.unequal or self.same or self.differ:
-            words += [f"{slot}:!{text}" for slot, text in self.unequal]
-            words += [f"{slot}:?{name}" for slot, name in self.same]
-            words += [f"{slot}:!?{name}" for slot, name in self.differ]
-        return " ".join(words)
-
-    def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order they came."""
-        ...
 
 
 class PlainSearch:
