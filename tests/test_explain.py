@@ -187,7 +187,7 @@ def test_a_retrieval_is_told_with_every_candidate_and_why_it_won_or_lost() -> No
     (told,) = agent.explain().retrievals
     assert told.outcome == "failed"
     assert told.candidates[0].verdict == "below the threshold by 0.25"
-    assert told.latency == pytest.approx(0.05 * 2.718281828 ** -0.5)
+    assert told.latency == pytest.approx(0.05 * 2.718281828**-0.5)
     assert [r.outcome for r in agent.explain(0.051).retrievals] == ["pending"]
     assert agent.explain(0.0).retrievals == ()
 

@@ -107,5 +107,3 @@ class Past:
 
     def exists(self, production: Production) -> bool:
         return (production.system._path, production.name) not in self._unborn
-
-

@@ -370,4 +370,3 @@ class ACTR(ProductionSystem):
         if production is None:
             return {p.name: self.get_activation(p) for p in self._productions}
         return next((self.get_activation(p) for p in self._productions if p.name == production), None)
-

@@ -42,10 +42,7 @@ HUNDREDS = "\n".join(
         "    goal = Buffer()",
         "    def init():",
         "        goal.set('step:0 count:0')",
-        *(
-            f"    def p{i}(goal='step:{i} count:?n'):\n        goal.modify(step='{(i + 1) % 300}')"
-            for i in range(300)
-        ),
+        *(f"    def p{i}(goal='step:{i} count:?n'):\n        goal.modify(step='{(i + 1) % 300}')" for i in range(300)),
     ]
 )
 """Three hundred productions, one of which matches at any time."""
