@@ -135,7 +135,7 @@ class Present:
         target = system._context[name]
         if isinstance(target, Buffer):
             return [str(key) for key in target.chunk or ()]
-        return [key for key in vars(target) if key[0] != "_"] if hasattr(target, "__dict__") else []
+        return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
     def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
         return calls(condition.value, production.context[condition.name or "self"], dict(bindings))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.chunk import Chunk, Slot, as_text
 from actr3d.actr.pattern import Pattern, parse
@@ -26,16 +26,6 @@ def _plan(text: str) -> tuple[tuple[Slot, str, str], ...] | None:
         if isinstance(slot, str) and (slot[0] == "?" or "." in slot):
             return None
     return tests
-
-
-class Search(Protocol):
-    """What a memory is asked for."""
-
-    partial: Partial | None
-    """What mismatches cost, where similar values may match."""
-
-    def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order they came."""
 
 
 class PlainSearch:
@@ -150,6 +140,10 @@ class PatternSearch:
                 chunks = fewer
         match = self._pattern.match
         return [chunk for chunk in chunks if match(chunk) is not None]
+
+
+Search = PlainSearch | PatternSearch
+"""What a memory is asked for."""
 
 
 def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> Search:

@@ -8,7 +8,7 @@ import importlib.util
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -88,7 +88,7 @@ class Peer:
 
 
 @contextmanager
-def _peer() -> Iterator[Peer]:
+def _peer() -> Generator[Peer]:
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(), redirect_stdout(StringIO()):
         warnings.simplefilter("ignore")
         yield Peer(Path(folder))
