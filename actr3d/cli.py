@@ -10,7 +10,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, TextIO, cast
 
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_file
@@ -49,10 +49,10 @@ def event_line(event: TraceEvent) -> str:
 
 def run_command(options: argparse.Namespace) -> int:
     """Runs a model file."""
-    out: TextIO = sys.stdout
-    if isinstance(out, io.TextIOWrapper):
+    out = sys.stdout
+    if hasattr(out, "reconfigure"):
         # A text that the terminal cannot show must not end a run; JSON is UTF-8 wherever it is made.
-        out.reconfigure(encoding="utf-8" if options.json else None, errors="backslashreplace")
+        cast("Any", out).reconfigure(encoding="utf-8" if options.json else None, errors="backslashreplace")
     level = options.trace or ("all" if options.json else "none")
     trace = Trace(level, keep=False) if level != "none" else None
     limits = RunLimits(seed=options.seed, until=options.until, trace=trace)

@@ -95,7 +95,12 @@ def test_a_chunk_without_numbers_takes_act_r_7s_time_all_the_same() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(
-    rows=st.lists(st.tuples(st.floats(-6, 6), st.floats(-1e3, 1e3).map(lambda value: value + 0.0)), min_size=1, max_size=6, unique_by=lambda row: f"{row[1]:g}"),
+    rows=st.lists(
+        st.tuples(st.floats(-6, 6), st.floats(-1e3, 1e3).map(lambda value: value + 0.0)),
+        min_size=1,
+        max_size=6,
+        unique_by=lambda row: f"{row[1]:g}",
+    ),
     t=st.floats(0.05, 3),
 )
 def test_blends_are_weighted_means(rows: list[tuple[float, float]], t: float) -> None:

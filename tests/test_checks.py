@@ -42,7 +42,11 @@ def warned(body: str, length: float = 0.0) -> list[tuple[str, int]]:
         ("def p(goal=[None, 'a']): pass", "can never match: 'goal' must be empty and hold a chunk at once", 10),
         ("def p(goal='a b', retrieval=['a', 'b']): pass", "retrieval's slot '0' must be 'a' and 'b' at once", 10),
         ("def p(goal=5): pass", "goal=5 is no pattern and matches anything; write text, such as goal='5'", 10),
-        ("def init(): goal.set('count:1')\ndef p(goal='cuont:1'): pass", "no chunk is ever given a slot 'cuont'; did you mean 'count'?", 11),
+        (
+            "def init(): goal.set('count:1')\ndef p(goal='cuont:1'): pass",
+            "no chunk is ever given a slot 'cuont'; did you mean 'count'?",
+            11,
+        ),
         ("def p(memory='eror:True'): pass", "'memory' has no attribute 'eror'; did you mean 'error'?", 10),
         ("def p(eye='bussy:False'): pass", "'eye' has no attribute 'bussy'; did you mean 'busy'?", 10),
         ("def p(eye='colour.depht:3'): pass", "'eye' has no attribute 'colour.depht'; did you mean 'depth'?", 10),

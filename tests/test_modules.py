@@ -6,11 +6,10 @@ from statistics import fmean, stdev
 from typing import Any
 
 import pytest
+from living import near
 
 from actr3d.actr import ACTR, Buffer, ImaginalModule, Model, Motor, SOSVision, TextOutput, Timer, Vision
 from actr3d.actr.limits import RunLimits
-
-approx: Any = getattr(pytest, "approx")  # noqa: B009 - its type is not known
 
 
 class Agent(ACTR):
@@ -63,7 +62,7 @@ def test_pulses_without_noise_grow_by_a_tenth_each() -> None:
     times = pulses(b=0, count=12)
     lengths = [0.011 * 1.1**n for n in range(12)]
     ends = [sum(lengths[: n + 1]) for n in range(12)]
-    assert times == approx(ends, abs=0.0011)
+    assert times == near(ends, abs=0.0011)
 
 
 def test_mean_pulses_with_noise_follow_the_published_equation() -> None:
@@ -84,8 +83,8 @@ def test_mean_pulses_with_noise_follow_the_published_equation() -> None:
         values = [run[n] for run in runs]
         expected = 0.011 * 1.1**n
         # t_n is a product of n factors 1.1 (1 + 0.015 z), so its relative spread is about 0.015 sqrt(n)
-        assert fmean(values) == approx(expected, rel=4 * 0.015 * (n / 300) ** 0.5)
-        assert stdev(values) / expected == approx(0.015 * n**0.5, rel=0.25)
+        assert fmean(values) == near(expected, rel=4 * 0.015 * (n / 300) ** 0.5)
+        assert stdev(values) / expected == near(0.015 * n**0.5, rel=0.25)
 
 
 def test_a_timer_counts_from_0_after_reset_also_before_its_first_pulse() -> None:
@@ -136,7 +135,7 @@ def test_imaginal_delays_of_every_kind() -> None:
     agent.picture.delay, agent.picture.delay_sd = 0.1, 0.1
     times = [agent.picture.delay_time() for _ in range(500)]
     assert min(times) == 0
-    assert fmean(times) == approx(0.108, abs=0.015)  # a normal distribution cut off at 0
+    assert fmean(times) == near(0.108, abs=0.015)  # a normal distribution cut off at 0
 
 
 def test_an_imaginal_change_that_fails_does_not_stay_busy() -> None:
@@ -216,7 +215,7 @@ def test_salience_is_the_probability_of_being_noticed() -> None:
         world.agent.sos.request("color:red")
         world.run(0.1)
         found += not world.agent.sos.error
-    assert found / 2000 == approx(0.3, abs=0.041)  # four standard errors
+    assert found / 2000 == near(0.3, abs=0.041)  # four standard errors
 
 
 def test_variables_of_a_production_mean_nothing_to_sos_vision_as_in_python_actr() -> None:

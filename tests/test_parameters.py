@@ -1,5 +1,8 @@
 """Modules made with parameters that they do not have, or that cannot be."""
 
+# The calls are wrong on purpose.
+# pyright: reportCallIssue=false, reportArgumentType=false
+
 from __future__ import annotations
 
 from collections.abc import Callable

@@ -105,7 +105,11 @@ def world(seed: int) -> str:
     ]
     names = "".join(f"Agent{i}, " for i in range(count))
     beat = pick(("0.0625", "0.125", "self.changes", "(0.375, self.changes)"))
-    return HEAD + "".join(agents) + WORLD.format(beat=beat, agents=names, run=pick(("world.run(1.25)", "for _ in range(3): world.run(limit=0.4)")))
+    return (
+        HEAD
+        + "".join(agents)
+        + WORLD.format(beat=beat, agents=names, run=pick(("world.run(1.25)", "for _ in range(3): world.run(limit=0.4)")))
+    )
 
 
 @pytest.mark.parametrize("seed", range(12))

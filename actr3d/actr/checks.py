@@ -281,7 +281,9 @@ def _check_attributes(system: ProductionSystem, part: Model, what: str, known: s
         hint = did_you_mean(name, known, 0.85)
         if hint:
             filename, line = _place_of_class(type(system))
-            warnings.warn_explicit(f"{what} has an attribute '{name}', which is no parameter{hint}", ModelWarning, filename, line, registry={})
+            warnings.warn_explicit(
+                f"{what} has an attribute '{name}', which is no parameter{hint}", ModelWarning, filename, line, registry={}
+            )
 
 
 def _place_of_class(klass: type) -> tuple[str, int]:

@@ -88,6 +88,8 @@ def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
 _NONE_SUCH = object()
 _LASTING = frozenset({str, int, float, bool, type(None)})
 """The types of value whose text stays the same."""
+_DICT: type[dict[Any, Any]] = dict
+"""Called by name in chunks, which are made and changed too often for `super()`."""
 
 
 class Chunk(dict[Any, Any]):
@@ -104,7 +106,7 @@ class Chunk(dict[Any, Any]):
 
     def __init__(self, contents: object, bound: Mapping[str, Any] | None = None) -> None:
         if type(contents) is Chunk:
-            dict.update(self, cast("Chunk", contents))
+            _DICT.update(self, contents)
             return
         if isinstance(contents, str):
             put = super().__setitem__
@@ -114,12 +116,12 @@ class Chunk(dict[Any, Any]):
         if hasattr(contents, "_chunk_of_buffer"):
             contents = cast("Any", contents)._chunk_of_buffer()
         if isinstance(contents, Mapping):
-            dict.update(self, cast("Mapping[Any, Any]", contents))
+            _DICT.update(self, cast("Mapping[Any, Any]", contents))
         elif hasattr(contents, "__dict__") and not isinstance(contents, type):
-            dict.update(self, object_slots(vars(contents)))
+            _DICT.update(self, object_slots(vars(contents)))
         else:
             try:
-                dict.update(self, cast("Any", contents))
+                _DICT.update(self, cast("Any", contents))
             except (TypeError, ValueError):
                 raise ChunkError(f"a chunk is made of text, a mapping, a chunk or an object (got {contents!r})") from None
 
@@ -165,32 +167,32 @@ class Chunk(dict[Any, Any]):
         return self
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        dict.__setitem__(self, key, value)
+        _DICT.__setitem__(self, key, value)
         self._changed()
 
     def __delitem__(self, key: Any) -> None:
-        dict.__delitem__(self, key)
+        _DICT.__delitem__(self, key)
         self._changed()
 
     def update(self, *args: Any, **keys: Any) -> None:
-        dict.update(self, *args, **keys)
+        _DICT.update(self, *args, **keys)
         self._changed()
 
     def setdefault(self, key: Any, default: Any = None) -> Any:
-        value = dict.setdefault(self, key, default)
+        value = _DICT.setdefault(self, key, default)
         self._changed()
         return value
 
     def pop(self, *args: Any) -> Any:
-        value = dict.pop(self, *args)
+        value = _DICT.pop(self, *args)
         self._changed()
         return value
 
     def popitem(self) -> tuple[Any, Any]:
-        item = dict.popitem(self)
+        item = _DICT.popitem(self)
         self._changed()
         return item
 
     def clear(self) -> None:
-        dict.clear(self)
+        _DICT.clear(self)
         self._changed()

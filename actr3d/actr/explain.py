@@ -135,7 +135,7 @@ class Present:
         target = system._context[name]
         if isinstance(target, Buffer):
             return [str(key) for key in target.chunk or ()]
-        return [key for key in vars(target) if key[0] != "_"] if hasattr(target, "__dict__") else []
+        return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
     def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
         return calls(condition.value, production.context[condition.name or "self"], dict(bindings))
@@ -183,7 +183,8 @@ def _fails(production: Production, condition: Condition, state: State, bindings:
     if op == "empty":
         return None if state.empty(system, name) else (f"{name}: None", "nothing in it", "something")
     if op == "call":
-        return None if state.call(production, condition, bindings) else (text, "anything but False", "False, or an error for want of a slot")
+        agrees = state.call(production, condition, bindings)
+        return None if agrees else (text, "anything but False", "False, or an error for want of a slot")
     if isinstance(key, str) and key[:1] == "?":
         key = bindings.get(key[1:], key)
         key = int(key) if isinstance(key, str) and key.isdecimal() else key

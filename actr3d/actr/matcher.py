@@ -47,7 +47,9 @@ class Matcher:
             if production not in self._attempts:
                 self._attempts[production] = attempt_for(production.conditions, self._context)
         self._order = {production: number for number, production in enumerate(productions)}
-        wanted = {p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions}
+        wanted = {
+            p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions
+        }
         spread: dict[Reading, set[str]] = {}
         for of in wanted.values():
             for reading, value in of:

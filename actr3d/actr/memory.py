@@ -89,9 +89,6 @@ class Memory(Model):
             self.__dict__["_latency_given"] = True
         super().__setattr__(key, value)
 
-    def _is_default(self, name: str, value: Any) -> bool:
-        return (name == "latency" and not self._latency_given) or super()._is_default(name, value)
-
     # -- what is known
 
     def clear(self) -> None:

@@ -365,10 +365,10 @@ class Model:
 
     def _make_path(self) -> str:
         names: list[str] = []
-        above: Model | None = self
-        while above is not None and (up := above.__dict__.get("parent")) is not None and len(names) < 64:
-            names.append(above.name)
-            above = cast("Model", up)
+        part: Model = self
+        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
+            names.append(part.name)
+            part = above
         return ".".join(reversed(names)) or "top"
 
     def traced(self, level: str = "all") -> Trace:

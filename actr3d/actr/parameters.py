@@ -22,7 +22,8 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
     """
     signature = inspect.signature(init)
     names = [name for name in signature.parameters if name != "self"]
-    numbers = {name: p.annotation for name, p in signature.parameters.items() if str(p.annotation) in ("float", "float | None", "int", "int | None")}
+    numeric = ("float", "float | None", "int", "int | None")
+    numbers = {name: p.annotation for name, p in signature.parameters.items() if str(p.annotation) in numeric}
 
     @wraps(init)
     def checked(self: Self, *args: P.args, **keys: P.kwargs) -> None:

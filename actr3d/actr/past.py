@@ -91,7 +91,7 @@ class Past:
         target = system._context[name]
         if isinstance(target, Model):
             return list(self._values(target))
-        return [key for key in vars(target) if key[0] != "_"] if hasattr(target, "__dict__") else []
+        return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
     def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
         # The function is not asked again: things have changed. Where all else holds, it decided whether the production
@@ -107,5 +107,3 @@ class Past:
 
     def exists(self, production: Production) -> bool:
         return (production.system._path, production.name) not in self._unborn
-
-

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +35,7 @@ class ProductionSystem(Model):
     buffers and modules by name.
     """
 
-    production_time: Any = 0.05
+    production_time: float | Callable[[], float] = 0.05
     """How long a production takes to fire [s]; a number, or a function without arguments."""
     production_match_delay: float = 0
     """How long matching takes, as a part of that [s]."""
@@ -201,7 +201,7 @@ class ACTR(ProductionSystem):
     _weighs = True
     production_time_sd: float | None = None
     """The standard deviation of the firing time [s]; None for no noise."""
-    production_threshold: Any = None
+    production_threshold: float | Callable[[], float] | None = None
     """The least utility a production needs to fire; a number, a function without arguments, or None for none."""
 
     @property
@@ -370,4 +370,3 @@ class ACTR(ProductionSystem):
         if production is None:
             return {p.name: self.get_activation(p) for p in self._productions}
         return next((self.get_activation(p) for p in self._productions if p.name == production), None)
-

@@ -54,7 +54,8 @@ class RetrievalReason:
     def __str__(self) -> str:
         limit = "no threshold" if self.threshold is None else f"threshold {self.threshold:g}"
         takes = "" if self.latency is None else f" ({self.latency:.6g} s)"
-        lines = [f"  {self.memory}: request '{self.request}' at {self.time:.3f} s, asked for '{self.asked}', {limit}: {self.outcome}{takes}"]
+        asked = f"request '{self.request}' at {self.time:.3f} s, asked for '{self.asked}'"
+        lines = [f"  {self.memory}: {asked}, {limit}: {self.outcome}{takes}"]
         if self.finsts:
             lines.append(f"      retrieved lately: {'; '.join(self.finsts)}")
         lines += [f"      {chunk}: left out, for it was retrieved lately" for chunk in self.excluded]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import warnings
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from inspect import CO_GENERATOR
 from numbers import Real
 from types import GeneratorType
@@ -64,7 +64,7 @@ class Event:
         args: Sequence[Any] = (),
         keys: Mapping[str, Any] | None = None,
         priority: float = 0,
-        generator: GeneratorType[Any, Any, Any] | None = None,
+        generator: Generator[Any, Any, Any] | None = None,
     ) -> None:
         self.call = call
         self.args = args
@@ -104,7 +104,7 @@ class Event:
     @property
     def innermost(self) -> GeneratorType[Any, Any, Any] | None:
         """The modeller's own generator: the one that `yield from` leads to."""
-        generator = self.generator
+        generator = cast("GeneratorType[Any, Any, Any] | None", self.generator)
         while generator is not None and isinstance(inner := generator.gi_yieldfrom, GeneratorType):
             generator = cast("GeneratorType[Any, Any, Any]", inner)
         return generator
@@ -184,7 +184,7 @@ class Scheduler:
         event = Event(call, args)
         self.queue.push(self.after(delay, event), event)
 
-    def begin(self, generator: GeneratorType[Any, Any, Any], call: Callable[..., Any]) -> Event:
+    def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
         event = Event(call, generator=generator)
         self.queue.push(self.now_us, event)
@@ -429,5 +429,5 @@ def _each(choices: Sequence[Any]) -> Iterator[Any]:
 
 def _makes_generator(func: Callable[..., Any]) -> bool:
     """Tells whether a call gives a generator, also of a callable object."""
-    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)
+    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)  # noqa: B004 - its code is wanted, not whether there is any
     return code is not None and bool(code.co_flags & CO_GENERATOR)

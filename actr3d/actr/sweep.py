@@ -55,8 +55,7 @@ def with_values(source: str, chosen: Mapping[str, Any]) -> str:
     for name, value in chosen.items():
         if name not in known:
             raise ParameterError(
-                f"the model has no parameter '{name}'{did_you_mean(name, known)}; "
-                f"its first lines set: {', '.join(known) or 'nothing'}"
+                f"the model has no parameter '{name}'{did_you_mean(name, known)}; its first lines set: {', '.join(known) or 'nothing'}"
             )
         old = known[name].value
         last = old.end_lineno or old.lineno

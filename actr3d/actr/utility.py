@@ -6,7 +6,7 @@ Each is an attribute of an agent: `pm = PMNew(alpha=0.1)`. An agent's utilities 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.model import Model
 from actr3d.actr.parameters import named_parameters
@@ -113,7 +113,7 @@ class PMPGC(ProceduralSubModule):
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.successes = 1
         prod.failures = 0
-        time = self.parent.production_time  # type: ignore[union-attr]
+        time = cast("Any", self.parent).production_time
         prod.time = time() if callable(time) else time
         prod.lock_pgc = False
 

@@ -8,7 +8,7 @@ import importlib.util
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -42,10 +42,7 @@ HUNDREDS = "\n".join(
         "    goal = Buffer()",
         "    def init():",
         "        goal.set('step:0 count:0')",
-        *(
-            f"    def p{i}(goal='step:{i} count:?n'):\n        goal.modify(step='{(i + 1) % 300}')"
-            for i in range(300)
-        ),
+        *(f"    def p{i}(goal='step:{i} count:?n'):\n        goal.modify(step='{(i + 1) % 300}')" for i in range(300)),
     ]
 )
 """Three hundred productions, one of which matches at any time."""
@@ -91,7 +88,7 @@ class Peer:
 
 
 @contextmanager
-def _peer() -> Iterator[Peer]:
+def _peer() -> Generator[Peer]:
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(), redirect_stdout(StringIO()):
         warnings.simplefilter("ignore")
         yield Peer(Path(folder))
@@ -187,11 +184,12 @@ def measure() -> list[Figure]:
         hundreds = _against_peer(peer, HUNDREDS, "hundreds", 16, 200, 20)
         counting, each_count = _counting(peer)
     small, large = _request_cost(1_000), _request_cost(100_000)
+    speed = "times python_actr's speed"
     return [
         Figure(name="three productions", value=three, sense="at least", bar=1.5, what="times python_actr's cycles a second"),
         Figure(name="300 productions", value=hundreds, sense="at least", bar=10, what="times python_actr's cycles a second"),
-        Figure(name="counting, 2,000 chunks", value=counting, sense="at least", bar=100, what="times python_actr's speed, from learning them on"),
-        Figure(name="a count among 2,000 chunks", value=each_count, sense="at least", bar=40, what="times python_actr's speed, once they are learned"),
+        Figure(name="counting, 2,000 chunks", value=counting, sense="at least", bar=100, what=f"{speed}, from learning them on"),
+        Figure(name="a count among 2,000 chunks", value=each_count, sense="at least", bar=40, what=f"{speed}, once they are learned"),
         Figure(name="request, 100,000 chunks", value=ratio(large, small), sense="at most", bar=2, what="times one among 1,000"),
         Figure(name="idle tick", value=_idle_tick(), sense="at most", bar=3, what="us more than an empty loop"),
         Figure(name="full tracing", value=_traced_ratio(), sense="at most", bar=2, what="times the untraced counting model"),
@@ -203,5 +201,6 @@ def main(*, json_output: bool) -> int:
     try:
         return report(measure(), json_output=json_output)
     except ModuleNotFoundError as error:
-        print(f"the benchmark compares with another library, which is not installed ({error}); use: uv run --group bench actr3d bench core", file=sys.stderr)
+        reason = f"the benchmark compares with another library, which is not installed ({error})"
+        print(f"{reason}; use: uv run --group bench actr3d bench core", file=sys.stderr)
         return 2
