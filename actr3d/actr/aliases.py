@@ -32,6 +32,7 @@ _PARTS: dict[str, tuple[str, ...]] = {
     "production": ("actr3d.actr.production", "actr3d.actr.procedural"),
     "runner": ("actr3d.actr.sweep",),
     "display": ("actr3d.actr.display",),
+    "version": ("actr3d.actr.python_actr_version",),
     "actr.buffer": ("actr3d.actr.buffer", "actr3d.actr.chunk"),
     "actr.dm": tuple(f"actr3d.actr.{part}" for part in ("memory", "activation", "association", "blending", "partial", "spreading")),
     "actr.pm": ("actr3d.actr.utility",),
@@ -47,6 +48,8 @@ _PARTS: dict[str, tuple[str, ...]] = {
 """Each part of the old library, and which of our modules it offers the names of."""
 
 PACKAGES = frozenset({"", "actr", "lib", "lib.actr"})
+ROOT_ONLY = frozenset({"Model", "ProductionSystem", "finished", "log", "log_everything"})
+"""What the root package alone offers; models name variables like these before they import the rest."""
 
 
 class _Aliases(importlib.abc.MetaPathFinder, importlib.abc.Loader):
@@ -71,15 +74,25 @@ class _Aliases(importlib.abc.MetaPathFinder, importlib.abc.Loader):
             ours = importlib.import_module(source)
             public: Sequence[str] = getattr(ours, "__all__", None) or [n for n in vars(ours) if n[0] != "_"]
             names.update({name: getattr(ours, name) for name in public if name != "annotations"})
+        if part in ("actr", "lib.actr"):
+            names = {name: value for name, value in names.items() if name not in ROOT_ONLY}
+        module.__dict__.update(names)
+        # Every part is there after `import ccm`, and those of the root package come with `from ccm import *` too.
+        inner = _inner_parts(part)
+        for short in inner:
+            if short not in names:
+                setattr(module, short, importlib.import_module(f"{module.__name__}.{short}"))
         if names:
-            module.__dict__.update(names)
-            module.__dict__["__all__"] = sorted(names)
-        # `ccm.lib.grid` is there after `import ccm`, as models expect.
-        for child in ("lib", "actr", "lib.actr", "lib.grid"):
-            if part == "" or child.startswith(f"{part}."):
-                short = child.removeprefix(f"{part}.") if part else child
-                if "." not in short and short not in names:
-                    setattr(module, short, importlib.import_module(f"{module.__name__}.{short}"))
+            module.__dict__["__all__"] = sorted({*names, *inner} - {"lib"} if part == "" else names)
+
+
+def _inner_parts(part: str) -> list[str]:
+    """Returns the short names of the parts directly inside a part."""
+    inside = "actr" if part == "lib.actr" else part
+    prefix = f"{inside}." if inside else ""
+    return [
+        name.removeprefix(prefix) for name in _PARTS if name != part and name.startswith(prefix) and "." not in name.removeprefix(prefix)
+    ]
 
 
 def _part(fullname: str) -> str | None:

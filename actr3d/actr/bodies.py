@@ -18,9 +18,11 @@ from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from actr3d.actr.rebinding import BOUND, Names, Rebinder, stored_names, used_names
+from actr3d.actr.sources import for_python_actr
 from actr3d.errors import ProductionException
 
 Body = Callable[[dict[str, Any]], None]
+BUILTINS = vars(builtins)
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
@@ -44,7 +46,8 @@ class Scope(dict[str, Any]):
         cell = cells(func).get(key)
         if cell is not None:
             return cell.cell_contents
-        for names in (func.__globals__, vars(builtins)):
+        layers = (BUILTINS, func.__globals__) if for_python_actr(func.__globals__) else (func.__globals__, BUILTINS)
+        for names in layers:
             if key in names:
                 return names[key]
         raise NameError(f"name '{key}' is not defined", name=key)
@@ -97,6 +100,9 @@ def compile_body(
         ProductionException: If the body contains `yield`, or cannot be compiled.
     """
     around = cells(func)
+    if for_python_actr(func.__globals__):
+        # There, a body does not see its file: what Python itself names so is meant, whatever the file calls by that name.
+        context = {**{n: BUILTINS[n] for n in _names_of(tuple(statements)) if n in BUILTINS}, **context}
     seen = {n for n in _names_of(tuple(statements)) if n in context or n in around}
     # Thousands of agents of one class differ in what their names mean, not in their code.
     places = tuple((statement.lineno, statement.col_offset) for statement in statements)

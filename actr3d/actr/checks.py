@@ -104,7 +104,8 @@ def _check_patterns(production: Production) -> None:
         for part in pattern if isinstance(pattern, (list, tuple)) else (pattern,):
             if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
                 say(
-                    f"production '{production.name}': {name}={part!r} is no pattern and matches anything; write text, such as {name}='{part}'",
+                    f"production '{production.name}': {name}={part!r} is no pattern and matches anything; "
+                    f"write text, such as {name}='{part}'",
                     production.original_func,
                 )
 
@@ -162,10 +163,11 @@ def _check_body(production: Production) -> None:
 def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapping[str, Any]) -> None:
     """Finds statements that name a method and do not call it."""
     for part in ast.walk(node):
-        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute):
-            if isinstance(_resolve(part.value, names), MethodWrapper):
-                text = ast.unparse(part.value)
-                say(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
+        if not (isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute)):
+            continue
+        if isinstance(_resolve(part.value, names), MethodWrapper):
+            text = ast.unparse(part.value)
+            say(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
 
 
 def _resolve(node: ast.expr, context: Mapping[str, Any]) -> Any:

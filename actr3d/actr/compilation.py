@@ -59,6 +59,11 @@ class CompiledProduction(Production):
         """Where its parents stand."""
         return f"compiled from {self.pre.place} and {self.post.place}"
 
+    @property
+    def code(self) -> str:
+        """What its parents' bodies do, as text."""
+        return "\n".join(map(ast.unparse, [*self._kept, *self.post.node.body]))
+
     @cached_property
     def _kept_body(self) -> Body | None:
         return self.pre.body_of(self._kept) if self._kept else None

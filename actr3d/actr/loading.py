@@ -18,9 +18,8 @@ from zlib import crc32
 from actr3d.actr import logger as logs
 from actr3d.actr.aliases import aliases
 from actr3d.actr.limits import EndOfRun, RunLimits
-from actr3d.actr.model import WRITTEN_FOR_PYTHON_ACTR
 from actr3d.actr.python2 import python_2_reason
-from actr3d.actr.sources import SOURCE
+from actr3d.actr.sources import SOURCE, WRITTEN_FOR_PYTHON_ACTR
 from actr3d.errors import ModelFileError, did_you_mean
 
 

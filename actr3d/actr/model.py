@@ -16,6 +16,7 @@ from actr3d.actr.limits import RunLimits
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.saying import warn_modeller
 from actr3d.actr.scheduler import Event, Scheduler, Trigger
+from actr3d.actr.sources import for_python_actr
 from actr3d.errors import SchedulerError
 from actr3d.trace import Trace
 
@@ -511,11 +512,8 @@ def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
 def written_for_python_actr(kind: type) -> bool:
     """Tells whether a class is part of a program that imports python_actr or ccm by name."""
     files = [sys.modules.get(klass.__module__) for klass in kind.__mro__]
-    return logs.LOG.announce or any(vars(file).get(WRITTEN_FOR_PYTHON_ACTR) for file in files if file is not None)
+    return logs.LOG.announce or any(for_python_actr(vars(file)) for file in files if file is not None)
 
-
-WRITTEN_FOR_PYTHON_ACTR = "__written_for_python_actr__"
-"""The global by which a loaded model's module says so."""
 
 RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
 """What a subclass may override, but not turn into something that is waited for or copied."""

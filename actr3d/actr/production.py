@@ -68,6 +68,11 @@ class Production:
             raise ProductionException(f"production '{self.name}': {reason}")
         return node
 
+    @property
+    def code(self) -> str:
+        """The body as text."""
+        return "\n".join(map(ast.unparse, self.node.body))
+
     @cached_property
     def variables(self) -> list[str]:
         """The variables that the patterns bind."""

@@ -6,10 +6,12 @@ import ast
 import dis
 import linecache
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+from actr3d.actr.logger import LOG
 
 SOURCE = "__actr3d_source__"
 """The global under which a module that was loaded from text keeps that text: another may come under the same name later."""
@@ -66,3 +68,12 @@ def assigned_globals(func: Callable[..., Any]) -> set[str]:
 
 
 _STORE_GLOBAL = {dis.opmap["STORE_GLOBAL"]}
+
+
+WRITTEN_FOR_PYTHON_ACTR = "__written_for_python_actr__"
+"""The global by which a loaded model's module says that it imports python_actr or ccm by name."""
+
+
+def for_python_actr(file: Mapping[str, Any]) -> bool:
+    """Tells from a file's globals whether it is part of a program that imports python_actr or ccm by name."""
+    return LOG.announce or bool(file.get(WRITTEN_FOR_PYTHON_ACTR))
