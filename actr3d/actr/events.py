@@ -59,6 +59,12 @@ class Event:
     def __repr__(self) -> str:
         return f"<Event {self.describe()}>"
 
+    def cancel_others(self) -> None:
+        """Drops what else this has waited for, as one of several things."""
+        for other in self.group:
+            other.cancelled = other is not self
+        self.group = ()
+
     def in_milliseconds(self) -> bool:
         """Tells whether the model whose method this is goes by whole milliseconds."""
         owner = getattr(self.call, "__self__", self.call)

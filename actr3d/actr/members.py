@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import copy
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import Any, cast
 
 from actr3d.actr.chunk import PLAIN_TYPES
 from actr3d.actr.methods import Method
+from actr3d.errors import SchedulerError
 
 RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
 """What a subclass may override, but not turn into something that is waited for or copied."""
@@ -59,3 +60,18 @@ def copy_objects(objects: dict[str, Any], living: Callable[[object], bool]) -> d
             except TypeError:
                 copies[name] = obj
     return copies
+
+
+def check_names(kind: type, members: Mapping[str, Any]) -> None:
+    """Checks that a class leaves alone the names that hold the tree together.
+
+    Raises:
+        SchedulerError: If it gives one of them to something else.
+    """
+    for name in ("changes", "log", "parent", "random", "sch"):
+        if name not in members:
+            continue
+        value = members[name]
+        usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
+        if not usable:
+            raise SchedulerError(f"{kind.__name__}.{name}: the name '{name}' is taken by every model; use another")

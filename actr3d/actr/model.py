@@ -11,7 +11,7 @@ from actr3d.actr import logger as logs
 from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
 from actr3d.actr.events import Trigger
 from actr3d.actr.limits import RunLimits
-from actr3d.actr.members import class_members, copy_objects, has_setter
+from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import Profile
 from actr3d.actr.saying import warn_modeller
@@ -89,7 +89,7 @@ class Model(TracedPart):
             self._call(type(self).name)
         parent = own.get("parent") or parent
         methods, objects = class_members(type(self), Model)
-        self._check_names({**objects, **methods})
+        check_names(type(self), {**objects, **methods})
         objects = copy_objects(objects, lambda obj: isinstance(obj, Model) and obj._converted)
         if parent is not None:
             parent._ensure_converted()
@@ -121,16 +121,6 @@ class Model(TracedPart):
         limits = RunLimits.current()
         if parent is None and limits is not None and limits.trace is not None:
             self._attach_trace(limits.trace)
-
-    def _check_names(self, members: dict[str, Any]) -> None:
-        """Raises an error where a class gives one of the names that hold the tree together to something else."""
-        for name in ("changes", "log", "parent", "random", "sch"):
-            if name not in members:
-                continue
-            value = members[name]
-            usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
-            if not usable:
-                raise SchedulerError(f"{type(self).__name__}.{name}: the name '{name}' is taken by every model; use another")
 
     def _warn_of_loss(self, name: str, before: Any, after: Any) -> None:
         """Warns where what was set on the model is lost, because its class says otherwise.
@@ -267,13 +257,7 @@ class Model(TracedPart):
         """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
         if self.sch.now_us != 0:
             raise SchedulerError(f"'{self.name}' has run by itself until {self.sch.time:g} s; put it into its environment before that")
-        while self.sch.queue.heap:
-            time, priority, _, event = self.sch.queue.heap[0]
-            self.sch.queue.pop()
-            sch.queue.push(max(time, sch.now_us), event, -priority)
-        sch.round_ms = sch.round_ms or self.sch.round_ms
-        sch.take_waiting(self.sch)
-        sch.harvests = sch.harvests or self.sch.harvests
+        sch.take_over(self.sch)
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 

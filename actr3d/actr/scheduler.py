@@ -132,13 +132,19 @@ class Scheduler:
         """Returns the trigger of a name."""
         return self._named.setdefault(name, Trigger(name))
 
-    def take_waiting(self, other: Scheduler) -> None:
-        """Takes over from another scheduler whoever waits there for a name, and what other threads have added."""
+    def take_over(self, other: Scheduler) -> None:
+        """Takes everything over from another scheduler: its events, who waits there for a name, what other threads have added."""
+        while other.queue.heap:
+            time, priority, _, event = other.queue.heap[0]
+            other.queue.pop()
+            self.queue.push(max(time, self.now_us), event, -priority)
         for name, trigger in other._named.items():
             self.named(name).waiting += trigger.waiting
         self._incoming += other._incoming
         other._named.clear()
         other._incoming.clear()
+        self.round_ms = self.round_ms or other.round_ms
+        self.harvests = self.harvests or other.harvests
 
     def stop(self) -> None:
         """Ends the run once the present event is over."""
@@ -202,9 +208,7 @@ class Scheduler:
             if event.cancelled:
                 continue
             if event.group:
-                for other in event.group:
-                    other.cancelled = other is not event
-                event.group = ()
+                event.cancel_others()
             generator = event.generator
             if generator is None:
                 result = event.call(*event.args, **event.keys)
