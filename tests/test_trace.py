@@ -142,7 +142,7 @@ def test_a_late_trace_is_complete_from_its_start() -> None:
     assert set(events[0].data) >= {"model", "seed"}
     assert {"chunk": {"step": "b", "value": "value"}} in [e.data for e in events if e.source == "goal"]
     assert "eager" in [e.data.get("mood") for e in events if e.source == "top"]
-    assert True in [e.data.get("busy") for e in events if e.source == "memory"]
+    assert any(e.data.get("busy") is True for e in events if e.source == "memory")
 
 
 def test_times_never_go_back() -> None:

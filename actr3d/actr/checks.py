@@ -12,7 +12,7 @@ import linecache
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakSet
 
 from actr3d.actr.buffer import Buffer
@@ -101,7 +101,8 @@ def _contradiction(conditions: Iterable[Condition]) -> str:
 def _check_patterns(production: Production) -> None:
     """Finds patterns that ask for nothing at all, because they are no patterns."""
     for name, pattern in production.pattern_specs.items():
-        for part in pattern if isinstance(pattern, (list, tuple)) else (pattern,):
+        parts = cast("list[Any]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
+        for part in parts:
             if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
                 say(
                     f"production '{production.name}': {name}={part!r} is no pattern and matches anything; "
@@ -139,7 +140,7 @@ def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
         walked.append(name)
         found = get_item(target, name)
         if found is MISSING:
-            known = [k for k in (*getattr(target, "__dict__", ()), *dir(type(target))) if k[0] != "_"]
+            known = [k for k in (*getattr(target, "__dict__", ()), *dir(cast("object", type(target)))) if k[0] != "_"]
             return ".".join(walked), did_you_mean(name, known, SURE)
         target = found
     return "", ""

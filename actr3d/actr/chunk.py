@@ -12,8 +12,10 @@ if TYPE_CHECKING:
     from actr3d.actr.store import ChunkStore
 
 Slot = int | str
-PLAIN = (str, float, int, bool)
-"""The types of attribute that a chunk takes over from an object."""
+PLAIN_TYPES = frozenset({str, float, int, bool})
+"""The types of value that stand for themselves: what a chunk takes over from an object, and a trace keeps as it is."""
+LASTING_TYPES = PLAIN_TYPES | {type(None)}
+"""The types of value that never change by themselves, and so read the same for ever."""
 
 
 class PlaceName(str):
@@ -78,7 +80,7 @@ def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any
 
 def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Returns what a chunk takes over from an object: its public attributes that are text or numbers."""
-    slots = {key: value for key, value in attributes.items() if type(value) in PLAIN and key[0] != "_"}
+    slots = {key: value for key, value in attributes.items() if type(value) in PLAIN_TYPES and key[0] != "_"}
     name = attributes.get("name")
     if isinstance(name, PlaceName) and name.slot is not None:
         slots["name"] = name.slot
@@ -86,8 +88,6 @@ def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 _NONE_SUCH = object()
-_LASTING = frozenset({str, int, float, bool, type(None)})
-"""The types of value whose text stays the same."""
 _DICT: type[dict[Any, Any]] = dict
 """Called by name in chunks, which are made and changed too often for `super()`."""
 
@@ -138,7 +138,7 @@ class Chunk(dict[Any, Any]):
             rest = [key for key in self if not (type(key) is int and 0 <= key < places)]
             words += [f"{key}:{self[key]}" for key in sorted(rest, key=str) if str(key)[:1] != "_"]
         text = " ".join(words)
-        if self._stores and _LASTING.issuperset(map(type, self.values())):
+        if self._stores and LASTING_TYPES.issuperset(map(type, self.values())):
             self._text = text  # a remembered chunk is named again and again
         return text
 

@@ -195,22 +195,12 @@ class World(Model):
             raise GridError(f"World.add: an agent must be a model (got {agent!r})")
         self._ensure_converted()
         if agent.__dict__.get("parent") is None:
-            number = 1
-            while (name := "agent" if number == 1 else f"agent{number}") in self.__dict__:
-                number += 1
-            setattr(self, name, agent)
+            setattr(self, self._free_name(), agent)
         agent._ensure_converted()
         body = _body_of(agent)
         if body._cell is not None:
             raise GridError(f"this agent stands in a world already, at {body._cell!r}")
-        if (x is None) != (y is None):
-            raise GridError(f"World.add: give both x and y, or neither (got x={x!r}, y={y!r})")
-        if x is not None and y is not None:
-            cell = self.get_cell(x, y)
-        elif cell is None:
-            cell = self._free_cell()
-        elif cell._world is not self:
-            raise GridError(f"World.add: {cell!r} is no cell of this world")
+        cell = self._cell_for(x, y, cell)
         if cell.wall:
             warnings.warn(f"an agent is put into a wall, at ({cell.x}, {cell.y})", ModelWarning, stacklevel=2)
         self.agents.append(agent)
@@ -220,6 +210,25 @@ class World(Model):
         body.__dict__["_agent"] = agent
         body._place(cell)
         body.dir = dir
+
+    def _free_name(self) -> str:
+        """Returns the attribute that the next agent gets: agent, agent2, agent3."""
+        number = 1
+        while (name := "agent" if number == 1 else f"agent{number}") in self.__dict__:
+            number += 1
+        return name
+
+    def _cell_for(self, x: int | None, y: int | None, cell: Cell | None) -> Cell:
+        """Returns the cell that `add` was given a place for, or a free one."""
+        if (x is None) != (y is None):
+            raise GridError(f"World.add: give both x and y, or neither (got x={x!r}, y={y!r})")
+        if x is not None and y is not None:
+            return self.get_cell(x, y)
+        if cell is None:
+            return self._free_cell()
+        if cell._world is not self:
+            raise GridError(f"World.add: {cell!r} is no cell of this world")
+        return cell
 
     def _free_cell(self) -> Cell:
         free = [cell for cell in self.cells if not cell.wall and not cell.agents]

@@ -103,6 +103,13 @@ def _is_in(place: str, folder: Path) -> bool:
     return bool(place) and Path(place).is_relative_to(folder)
 
 
+def _module(name: str, source: str, filename: str) -> ModuleType:
+    """Makes the module that a model's text is to run in."""
+    module = ModuleType(name)
+    module.__dict__.update({"__file__": filename, SOURCE: source})
+    return module
+
+
 def run_text(
     source: str,
     filename: str = "<model>",
@@ -130,16 +137,14 @@ def run_text(
         Exception: Whatever the program raises.
     """
     code = compile_source(source, filename)
-    module = ModuleType("__main__")
-    module.__dict__.update({"__file__": filename, "__builtins__": __builtins__, SOURCE: source, **(names or {})})
+    module = _module("__main__", source, filename)
+    module.__dict__.update({"__builtins__": __builtins__, **(names or {})})
     if prepare is not None:
         prepare(module)
     limits = limits or RunLimits()
-    restore = logs.begin()
-    state = random.getstate()
     with ExitStack() as stack:
-        stack.callback(random.setstate, state)
-        stack.callback(restore)
+        stack.callback(random.setstate, random.getstate())
+        stack.callback(logs.begin())
         stack.enter_context(limits)
         stack.enter_context(aliases())
         stack.enter_context(_as_main(module, (folder or Path.cwd()).resolve()))
@@ -171,8 +176,7 @@ def load_text(source: str, filename: str = "<model>") -> ModuleType:
         Exception: Whatever its top level raises.
     """
     code = compile_source(source, filename)
-    module = ModuleType(f"actr3d_model_{crc32(filename.encode(errors='replace')):08x}")
-    module.__dict__.update({"__file__": filename, SOURCE: source})
+    module = _module(f"actr3d_model_{crc32(filename.encode(errors='replace')):08x}", source, filename)
     sys.modules[module.__name__] = module  # dataclasses and pickling look a class's module up
     before, logs.LOG.announce = logs.LOG.announce, False
     try:

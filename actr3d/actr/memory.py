@@ -182,26 +182,22 @@ class Memory(Model):
         for adaptor in self.adaptors:
             adaptor.matched(matches)
         best = self._weigh(matches, record, partial)
+        choice: Any = pick(self.random, best) if best else None
+        record.chosen = choice
+        record.latency = self._time(self._strength(record, choice.activation)) if best else self._time_of_failure()
         trace = sch.trace
-        if best:
-            choice: Any = pick(self.random, best)
-            record.chosen = choice
-            record.latency = self._time(self._strength(record, choice.activation))
-            if trace is not None and trace.all:
-                trace.emit(self.sch.now_us, self._path, "request", record.snapshot())
-            if type(self).recall is not Memory.recall:
-                self.recall(choice, matches=matches, request_number=number)
-            elif sch.idle_now():
-                # The same as below, but for an event that would do nothing else at this very moment.
-                self.finst.add_after(choice)
-                sch.call_after(record.latency, self._arrive, (choice, number))
-            else:
-                sch.call_after(0, self._begin_recall, (choice, record.latency, number))
-        else:
-            record.latency = self.maximum_time if self.threshold is None else self._time(self.threshold)
-            if trace is not None and trace.all:
-                trace.emit(self.sch.now_us, self._path, "request", record.snapshot())
+        if trace is not None and trace.all:
+            trace.emit(sch.now_us, self._path, "request", record.snapshot())
+        if not best:
             self.fail(number)
+        elif type(self).recall is not Memory.recall:
+            self.recall(choice, matches=matches, request_number=number)
+        elif sch.idle_now():
+            # The same as below, but for an event that would do nothing else at this very moment.
+            self.finst.add_after(choice)
+            sch.call_after(record.latency, self._arrive, (choice, number))
+        else:
+            sch.call_after(0, self._begin_recall, (choice, record.latency, number))
 
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
@@ -239,8 +235,7 @@ class Memory(Model):
 
     def fail(self, request_number: int) -> Iterator[float]:
         """Lets a request fail, after its time."""
-        time = self.maximum_time if self.threshold is None else self._time(self.threshold)
-        yield time
+        yield self._time_of_failure()
         if request_number != self._request_count:
             return
         self.error = True
@@ -280,6 +275,10 @@ class Memory(Model):
         except OverflowError:
             time = self.maximum_time
         return round(time * 1000) / 1000 if self.rules.whole_milliseconds else time
+
+    def _time_of_failure(self) -> float:
+        """Returns how long it takes until a request fails [s]."""
+        return self.maximum_time if self.threshold is None else self._time(self.threshold)
 
     # -- activation
 

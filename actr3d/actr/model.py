@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import copy
 import inspect
 import random
 import sys
-from collections.abc import Callable, Generator, Iterator
-from types import ModuleType
-from typing import Any, TypeVar, cast
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from actr3d.actr import logger as logs
-from actr3d.actr.chunk import Chunk, PlaceName
+from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
+from actr3d.actr.events import Trigger
 from actr3d.actr.limits import RunLimits
-from actr3d.actr.profile import PYTHON_ACTR, Profile
+from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
+from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
+from actr3d.actr.profile import Profile
 from actr3d.actr.saying import warn_modeller
-from actr3d.actr.scheduler import Event, Scheduler, Trigger
+from actr3d.actr.scheduler import Scheduler
 from actr3d.actr.sources import for_python_actr
+from actr3d.actr.traced import UNWATCHED, TracedPart, traceable
 from actr3d.errors import SchedulerError
 from actr3d.trace import Trace
 
-UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
-"""Attributes that hold the tree together; setting them is not a change that productions could see."""
-
-Method = Callable[..., Any]
 Option = TypeVar("Option")
 
 
@@ -36,53 +34,7 @@ def pick(numbers: random.Random, options: list[Option]) -> Option:
     return options[0]
 
 
-class MethodWrapper:
-    """A method of one model; `yield model.method` waits for the end of its next call."""
-
-    def __init__(self, obj: Model, func: Method, name: str) -> None:
-        self.obj = obj
-        self.func = func
-        self.__name__ = name
-        self.begins = Trigger(f"{name} begin")
-        self.ends = Trigger(f"{name} end")
-
-    @property
-    def default_trigger(self) -> Trigger:
-        """What `yield` on the method itself waits for."""
-        return self.ends
-
-    @property
-    def _profile(self) -> Profile | None:
-        return self.obj._profile
-
-    def __call__(self, *args: Any, **keys: Any) -> Any:
-        if self.begins.waiting:
-            self.obj.sch.trigger(self.begins)
-        value = self.func(self.obj, *args, **keys)
-        if self.ends.waiting:
-            self.obj.sch.trigger(self.ends)
-        return value
-
-    def __repr__(self) -> str:
-        return f"<method {self.func.__qualname__}>"
-
-
-class GeneratorWrapper(MethodWrapper):
-    """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
-
-    def __call__(self, *args: Any, **keys: Any) -> Event:
-        return self.obj.sch.begin(self._steps(args, keys), self)
-
-    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
-        """Runs the method, waking whoever waits for its begin or end."""
-        if self.begins.waiting:
-            self.obj.sch.trigger(self.begins)
-        yield from self.func(self.obj, *args, **keys)
-        if self.ends.waiting:
-            self.obj.sch.trigger(self.ends)
-
-
-class Model:
+class Model(TracedPart):
     """A part of a simulation: an agent, one of its modules, an object of its environment, or the environment.
 
     What a class names among its attributes becomes each instance's own: models there become children, and their
@@ -109,7 +61,6 @@ class Model:
     log: Any
     random: random.Random
     parent: Model | None
-    _children: dict[str, Model]
 
     def __init__(self, log: Any = None, **attrs: Any) -> None:
         self._init_log = log
@@ -131,10 +82,6 @@ class Model:
     def _is_converted(self) -> bool:
         return self._converted
 
-    def _get_scheduler(self) -> Scheduler:
-        self._ensure_converted()
-        return self.sch
-
     def _convert(self, parent: Model | None = None) -> None:
         """Brings the model to life: gives it the tree's clock, its own copies of its class's attributes, its methods."""
         own = self.__dict__
@@ -143,9 +90,9 @@ class Model:
         if "name" not in own:
             self._call(type(self).name)
         parent = own.get("parent") or parent
-        methods, objects = class_members(type(self))
-        self._check_names({**objects, **methods})
-        objects = copy_objects(objects)
+        methods, objects = class_members(type(self), Model)
+        check_names(type(self), {**objects, **methods})
+        objects = copy_objects(objects, lambda obj: isinstance(obj, Model) and obj._converted)
         if parent is not None:
             parent._ensure_converted()
             own["sch"], own["log"], own["random"], own["parent"] = parent.sch, logs.dummy, parent.random, parent
@@ -176,16 +123,6 @@ class Model:
         limits = RunLimits.current()
         if parent is None and limits is not None and limits.trace is not None:
             self._attach_trace(limits.trace)
-
-    def _check_names(self, members: dict[str, Any]) -> None:
-        """Raises an error where a class gives one of the names that hold the tree together to something else."""
-        for name in ("changes", "log", "parent", "random", "sch"):
-            if name not in members:
-                continue
-            value = members[name]
-            usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
-            if not usable:
-                raise SchedulerError(f"{type(self).__name__}.{name}: the name '{name}' is taken by every model; use another")
 
     def _warn_of_loss(self, name: str, before: Any, after: Any) -> None:
         """Warns where what was set on the model is lost, because its class says otherwise.
@@ -231,9 +168,6 @@ class Model:
         """
         slot = name if shown or self._converted else None if type(self) is Model else "top"
         self.__dict__["name"] = PlaceName(name, slot)
-
-    def _adopted(self, name: str, child: Model) -> None:
-        self.__dict__.setdefault("_children", {})[name] = child
 
     # -- changes
 
@@ -325,52 +259,11 @@ class Model:
         """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
         if self.sch.now_us != 0:
             raise SchedulerError(f"'{self.name}' has run by itself until {self.sch.time:g} s; put it into its environment before that")
-        while self.sch.queue.heap:
-            time, priority, _, event = self.sch.queue.heap[0]
-            self.sch.queue.pop()
-            sch.queue.push(max(time, sch.now_us), event, -priority)
-        sch.round_ms = sch.round_ms or self.sch.round_ms
-        sch.take_waiting(self.sch)
-        sch.harvests = sch.harvests or self.sch.harvests
+        sch.take_over(self.sch)
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
 
-    def _line(self) -> Iterator[Model]:
-        """Yields the model and its ancestors."""
-        part: Model | None = self
-        while part is not None:
-            yield part
-            part = part.__dict__.get("parent")
-            if part is self:
-                break
-
-    def _tree(self) -> Iterator[Model]:
-        """Yields the model and everything below it."""
-        yield self
-        for child in self.get_children():
-            yield from child._tree()
-
-    # -- the trace
-
-    @property
-    def _path(self) -> str:
-        """The dotted names from below the top model down to this one; «top» for that model itself."""
-        known = self.__dict__.get("_known_path")
-        if known is None:
-            known = self.__dict__["_known_path"] = self._make_path()
-        return known
-
-    def _forget_path(self) -> None:
-        for part in self._tree():
-            part.__dict__.pop("_known_path", None)
-
-    def _make_path(self) -> str:
-        names: list[str] = []
-        part: Model = self
-        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
-            names.append(part.name)
-            part = above
-        return ".".join(reversed(names)) or "top"
+    # -- running
 
     def traced(self, level: str = "all") -> Trace:
         """Starts a trace of the whole run this model belongs to, and returns it.
@@ -382,42 +275,10 @@ class Model:
             ParameterError: If the level is unknown.
         """
         self._ensure_converted()
-        top: Model = self
-        while top.parent is not None:
-            top = top.parent
+        *_, top = self._line()
         trace = Trace(level)
         top._attach_trace(trace)
         return trace
-
-    def _attach_trace(self, trace: Trace) -> None:
-        self.sch.trace = trace
-        if trace.production:
-            data = {"model": type(self).__name__, "seed": self.sch.seed, "profile": (self._profile or PYTHON_ACTR).name}
-            trace.emit(self.sch.now_us, "top", "start", data)
-        if trace.buffer:
-            for part in self._tree():
-                part._trace_state(trace)
-
-    def _trace_state(self, trace: Trace) -> None:
-        """Records the present value of every attribute, so that a trace which starts late can be read from its start."""
-        if trace.all:
-            state = {key: value for key, value in self.__dict__.items() if key[0] != "_" and key not in UNWATCHED}
-            plain = {key: value for key, value in state.items() if value is None or type(value) in PLAIN_TYPES}
-            trace.emit(self.sch.now_us, self._path, "state", plain)
-
-    def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
-        """Records one attribute's new value."""
-        if not trace.all:
-            return
-        if type(value) in PLAIN_TYPES:
-            trace.emit(self.sch.now_us, self._path, "state", {key: value})
-        elif isinstance(value, Model) and value.__dict__.get("parent") is self:
-            for part in value._tree():
-                part._trace_state(trace)
-        else:
-            trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
-
-    # -- running
 
     def start(self) -> Any:
         """Is called when the model comes to life; a generator here runs from time 0. For subclasses."""
@@ -448,89 +309,16 @@ class Model:
         self._ensure_converted()
         return self.sch.now_us / 1_000_000
 
-    def get_children(self) -> list[Model]:
-        """Returns the models that are this one's parts, in the order they came."""
-        return list(self.__dict__.get("_children", {}).values())
-
-
-PLAIN_TYPES = frozenset({int, float, str, bool})
-
-
-def traceable(value: Any) -> Any:
-    """Returns what a trace keeps of a value: plain values as they are, chunks as a copy, others as text without addresses."""
-    if value is None or type(value) in PLAIN_TYPES:
-        return value
-    if isinstance(value, Chunk):
-        return {str(key): item if item is None or type(item) in PLAIN_TYPES else traceable(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [traceable(item) for item in cast("list[Any]", value)]
-    if isinstance(value, Model):
-        return f"<{value._path}>"  # pyright: ignore[reportPrivateUsage]
-    if callable(value):
-        return f"<{getattr(value, '__qualname__', type(value).__name__)}>"
-    text = repr(value)
-    return f"<{type(value).__name__}>" if " at 0x" in text else text
-
 
 def set_with_properties(model: Model, key: str, value: Any) -> None:
     """Sets an attribute of a model whose class has properties that can be set."""
-    if key in model._setters:  # pyright: ignore[reportPrivateUsage]
+    if key in model._setters:
         object.__setattr__(model, key, value)
     else:
         Model.__setattr__(model, key, value)
-
-
-def has_setter(member: object) -> bool:
-    """Tells whether a class's attribute takes care of being set, as properties do."""
-    return hasattr(type(member), "__set__")
-
-
-def class_members(kind: type) -> tuple[dict[str, Method], dict[str, Any]]:
-    """Returns what a class and its ancestors below Model bring, in alphabetical order: methods, and other objects.
-
-    Names that begin with `_` and properties are left out, and so is what Model itself defines.
-    """
-    found: dict[str, Any] = {}
-    for klass in reversed(kind.__mro__):
-        if klass is not object and klass is not Model:
-            found.update(vars(klass))
-    methods: dict[str, Method] = {}
-    objects: dict[str, Any] = {}
-    for name in sorted(found):
-        member = found[name]
-        if name[0] == "_" or name in RESERVED:
-            continue
-        if inspect.isfunction(member):
-            methods[name] = member
-        elif isinstance(member, type) and issubclass(member, Model):
-            objects[name] = member()
-        elif not isinstance(member, (property, staticmethod, classmethod)) and not has_setter(cast("object", member)):
-            objects[name] = member
-    return methods, objects
 
 
 def written_for_python_actr(kind: type) -> bool:
     """Tells whether a class is part of a program that imports python_actr or ccm by name."""
     files = [sys.modules.get(klass.__module__) for klass in kind.__mro__]
     return logs.LOG.announce or any(for_python_actr(vars(file)) for file in files if file is not None)
-
-
-RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
-"""What a subclass may override, but not turn into something that is waited for or copied."""
-
-
-def copy_objects(objects: dict[str, Any]) -> dict[str, Any]:
-    """Copies a class's objects for one instance; what cannot be copied (an open file, a running model) is shared."""
-    memo: dict[int, Any] = {id(obj): obj for obj in objects.values() if isinstance(obj, ModuleType)}
-    copies: dict[str, Any] = {}
-    for name, obj in objects.items():
-        if type(obj) in PLAIN_TYPES or obj is None:
-            copies[name] = obj
-        elif isinstance(obj, Model) and obj._is_converted():  # pyright: ignore[reportPrivateUsage]
-            copies[name] = memo[id(obj)] = obj
-        else:
-            try:
-                copies[name] = copy.deepcopy(obj, memo)
-            except TypeError:
-                copies[name] = obj
-    return copies

@@ -1,20 +1,19 @@
-"""Runs what is to happen: plain calls, generators that wait, and triggers that wake them."""
+"""The clock and the event queue of a run: makes plain calls and lets generators go on when their time comes."""
 
 from __future__ import annotations
 
-import copy
 import warnings
 from collections import deque
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from inspect import CO_GENERATOR
-from numbers import Real
-from types import GeneratorType
-from typing import Any, cast
+from typing import Any
 
+from actr3d.actr.events import Event, Trigger
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
+from actr3d.actr.waiting import wait, warn_of_none
 from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
-from actr3d.errors import ModelWarning, SchedulerError, did_you_mean
+from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
 NEVER = 1 << 62
@@ -27,87 +26,6 @@ END = -9999999
 """The priority of a run's end: everything else of that moment comes before it."""
 FAR = 1e12
 """Delays up to here [s] need no further look."""
-
-
-class Trigger:
-    """Something that generators can wait for (`yield trigger`)."""
-
-    __slots__ = ("_most", "name", "waiting")
-
-    def __init__(self, name: str = "") -> None:
-        self.name = name
-        self.waiting: list[Event] = []
-        self._most = 8
-
-    def __repr__(self) -> str:
-        return f"<Trigger '{self.name}'>"
-
-    def add_one_of_several(self, event: Event) -> None:
-        """Takes in an event that also waits elsewhere, and now and then lets those go that were woken from there."""
-        if len(self.waiting) >= self._most:
-            self.waiting = [other for other in self.waiting if not other.cancelled]
-            self._most = max(8, 2 * len(self.waiting))
-        self.waiting.append(event)
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Trigger:
-        return Trigger(self.name)
-
-
-class Event:
-    """A call that will be made, or a generator that goes on, at a time or when a trigger says so."""
-
-    __slots__ = ("args", "call", "cancelled", "done", "generator", "group", "keys", "origin", "parents", "priority")
-
-    def __init__(
-        self,
-        call: Callable[..., Any],
-        args: Sequence[Any] = (),
-        keys: Mapping[str, Any] | None = None,
-        priority: float = 0,
-        generator: Generator[Any, Any, Any] | None = None,
-    ) -> None:
-        self.call = call
-        self.args = args
-        self.keys: Mapping[str, Any] = keys or {}
-        self.priority = priority
-        self.group: Sequence[Event] = ()
-        self.origin = self
-        """The event as its caller knows it; another one where this waits in its place for one of several things."""
-        self.cancelled = False
-        self.done = False
-        self.parents: list[Event] = []
-        self.generator = generator
-
-    def __repr__(self) -> str:
-        return f"<Event {self.describe()}>"
-
-    def __lt__(self, other: Event) -> bool:
-        return False  # events of one time and priority are equals; the queue alone puts them in order
-
-    def in_milliseconds(self) -> bool:
-        """Tells whether the model whose method this is goes by whole milliseconds."""
-        owner = getattr(self.call, "__self__", self.call)
-        profile = getattr(owner, "_profile", None)
-        return profile is not None and profile.whole_milliseconds
-
-    def describe(self) -> str:
-        """Names the call, and for a generator the line it stands at."""
-        name = getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call))
-        if self.generator is None:
-            return str(name)
-        generator = self.innermost
-        assert generator is not None
-        code = generator.gi_code
-        frame = generator.gi_frame
-        return f"{code.co_qualname} ({code.co_filename}:{frame.f_lineno if frame else code.co_firstlineno})"
-
-    @property
-    def innermost(self) -> GeneratorType[Any, Any, Any] | None:
-        """The modeller's own generator: the one that `yield from` leads to."""
-        generator = cast("GeneratorType[Any, Any, Any] | None", self.generator)
-        while generator is not None and isinstance(inner := generator.gi_yieldfrom, GeneratorType):
-            generator = cast("GeneratorType[Any, Any, Any]", inner)
-        return generator
 
 
 class Scheduler:
@@ -198,19 +116,19 @@ class Scheduler:
         """
         kind = type(delay)
         if (kind is float or kind is int) and 0 <= delay < FAR:
-            wait = round(delay * MICROSECONDS)
+            later = round(delay * MICROSECONDS)
         else:
             what = "a delay" if event is None else f"{event.describe()}: a delay"
-            wait = microseconds(delay, what)
-            if wait < 0:
+            later = microseconds(delay, what)
+            if later < 0:
                 raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
-        if self.round_ms and wait > 0 and event is not None and event.in_milliseconds():
-            return max(self.now_us, round((self.now_us + wait) / 1000) * 1000)
-        return self.now_us + wait
+        if self.round_ms and later > 0 and event is not None and event.in_milliseconds():
+            return max(self.now_us, round((self.now_us + later) / 1000) * 1000)
+        return self.now_us + later
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:
         """Wakes everything that waits for a trigger or for a name."""
-        trigger = self._named.setdefault(key, Trigger(key)) if isinstance(key, str) else key
+        trigger = self.named(key) if isinstance(key, str) else key
         if not trigger.waiting:
             return
         waiting, trigger.waiting = trigger.waiting, []
@@ -219,13 +137,23 @@ class Scheduler:
                 event.priority = priority
             self.queue.push(self.now_us, event, event.priority)
 
-    def take_waiting(self, other: Scheduler) -> None:
-        """Takes over from another scheduler whoever waits there for a name, and what other threads have added."""
+    def named(self, name: str) -> Trigger:
+        """Returns the trigger of a name."""
+        return self._named.setdefault(name, Trigger(name))
+
+    def take_over(self, other: Scheduler) -> None:
+        """Takes everything over from another scheduler: its events, who waits there for a name, what other threads have added."""
+        while other.queue.heap:
+            time, priority, _, event = other.queue.heap[0]
+            other.queue.pop()
+            self.queue.push(max(time, self.now_us), event, -priority)
         for name, trigger in other._named.items():
-            self._named.setdefault(name, Trigger(name)).waiting += trigger.waiting
+            self.named(name).waiting += trigger.waiting
         self._incoming += other._incoming
         other._named.clear()
         other._incoming.clear()
+        self.round_ms = self.round_ms or other.round_ms
+        self.harvests = self.harvests or other.harvests
 
     def stop(self) -> None:
         """Ends the run once the present event is over."""
@@ -286,10 +214,7 @@ class Scheduler:
         while not self.stop_flag:
             if self._incoming:
                 self._take_incoming()
-            if not heap:
-                break
-            time = heap[0][0]
-            if time > end:
+            if not heap or (time := heap[0][0]) > end:
                 break
             if time > self.now_us:
                 self._advance(time)
@@ -297,31 +222,25 @@ class Scheduler:
             else:
                 still += 1
                 if still > STANDSTILL:
-                    raise SchedulerError(
-                        f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; "
-                        f"the last was {heap[0][3].describe()}"
-                        + (f", the production that fired last '{self.fired.name}' ({self.fired.place})" if self.fired is not None else "")
-                    )
+                    raise self._standstill(heap[0][3])
             self.step += 1
             event = queue.pop()
             if event.cancelled:
                 continue
             if event.group:
-                for other in event.group:
-                    other.cancelled = other is not event
-                event.group = ()
+                event.cancel_others()
             generator = event.generator
             if generator is None:
                 result = event.call(*event.args, **event.keys)
                 if result is None:
-                    self._finish(event)
+                    self.finish(event)
                 else:
-                    self._wait(event, result)
+                    wait(self, event, result)
                 continue
             try:
                 result = next(generator)
             except StopIteration:
-                self._finish(event)
+                self.finish(event)
                 continue
             if type(result) is float:
                 queue.push(self.after(result, event), event, event.priority)
@@ -329,8 +248,16 @@ class Scheduler:
                 result.waiting.append(event)
             else:
                 if result is None:
-                    self._warn_of_none(event)
-                self._wait(event, result)
+                    warn_of_none(event)
+                wait(self, event, result)
+
+    def _standstill(self, event: Event) -> SchedulerError:
+        """Makes the error that tells of an endless loop in which no time passes, and what was in it."""
+        last = self.fired
+        return SchedulerError(
+            f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
+        )
 
     def _take_incoming(self) -> None:
         """Schedules what other threads have asked for."""
@@ -349,82 +276,12 @@ class Scheduler:
         self.now_us = time
         LOG.time_us = time
 
-    def _finish(self, event: Event) -> None:
+    def finish(self, event: Event) -> None:
+        """Notes that an event is over, and wakes those that waited for it."""
         event.done = event.origin.done = True
         for parent in event.parents:
             self.queue.push(self.now_us, parent, parent.priority)
         event.parents = []
-
-    def _wait(self, event: Event, result: Any) -> None:
-        """Puts an event where what it yielded says: later, on a trigger, behind another event, or on the first of several."""
-        if isinstance(result, (int, float)):
-            self.queue.push(self.after(result, event), event, event.priority)
-        elif isinstance(result, dict):
-            self._wait_as(event, cast("dict[str, Any]", result))
-        elif isinstance(result, (Trigger, str)):
-            trigger = self._named.setdefault(result, Trigger(result)) if isinstance(result, str) else result
-            if event.group:
-                trigger.add_one_of_several(event)
-            else:
-                trigger.waiting.append(event)
-        elif isinstance(result, (list, tuple)):
-            choices = list(_each(cast("Sequence[Any]", result)))
-            if not choices:
-                raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; nothing is in it")
-            events = [copy.copy(event) for _ in choices]
-            for alternative in events:
-                alternative.group = events
-            for choice, alternative in zip(choices, events, strict=True):
-                self._wait(alternative, choice)
-        elif result is None:
-            self._finish(event)
-        elif isinstance(result, Event):
-            if result.done:
-                self.queue.push(self.now_us, event, event.priority)
-            else:
-                result.parents.append(event)
-        elif hasattr(result, "default_trigger"):
-            self._wait(event, result.default_trigger)
-        elif isinstance(result, Real):  # a number of another kind, such as numpy's
-            self.queue.push(self.after(float(result), event), event, event.priority)
-        else:
-            raise SchedulerError(
-                f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
-                "the event of a called generator method, or a tuple of these"
-            )
-
-    def _wait_as(self, event: Event, how: dict[str, Any]) -> None:
-        """Puts an event where a dict says: after its `delay`, with its `priority` from now on."""
-        for word in how:
-            if word not in ("delay", "priority"):
-                near = did_you_mean(str(word), ("delay", "priority"))
-                raise SchedulerError(f"{event.describe()}: cannot wait for {how!r}: no '{word}'{near or '; use delay and priority'}")
-        priority = how.get("priority", event.priority)
-        if not isinstance(priority, (int, float)):
-            raise SchedulerError(f"{event.describe()}: a priority must be a number (got {priority!r})")
-        event.priority = priority
-        self.queue.push(self.after(how.get("delay", 0), event), event, priority)
-
-    def _warn_of_none(self, event: Event) -> None:
-        generator = event.innermost
-        frame = generator.gi_frame if generator is not None else None
-        if frame is not None:
-            warnings.warn_explicit(
-                f"{frame.f_code.co_qualname} yields None, which ends it here: what it calls may not be a generator, "
-                "or a number of seconds is missing",
-                ModelWarning,
-                frame.f_code.co_filename,
-                frame.f_lineno,
-            )
-
-
-def _each(choices: Sequence[Any]) -> Iterator[Any]:
-    """Yields what is to be waited for, also from sequences inside."""
-    for choice in choices:
-        if isinstance(choice, (list, tuple)):
-            yield from _each(cast("Sequence[Any]", choice))
-        else:
-            yield choice
 
 
 def _makes_generator(func: Callable[..., Any]) -> bool:

@@ -31,8 +31,10 @@ def _plan(text: str) -> tuple[tuple[Slot, str, str], ...] | None:
 class Search(Protocol):
     """What a memory is asked for."""
 
-    partial: Partial | None
-    """What mismatches cost, where similar values may match."""
+    @property
+    def partial(self) -> Partial | None:
+        """What mismatches cost, where similar values may match."""
+        ...
 
     def among(self, store: ChunkStore) -> list[Chunk]:
         """Returns the chunks that match, in the order they came."""

@@ -6,11 +6,9 @@ import copy
 from collections.abc import Callable, Iterable
 from typing import Any, SupportsIndex
 
-from actr3d.actr.chunk import Chunk, Slot, as_text
+from actr3d.actr.chunk import LASTING_TYPES, Chunk, Slot, as_text
 
 Postings = dict[str, list[Chunk]]
-PLAIN = frozenset({str, int, float, bool, type(None)})
-"""The types of value that chunks are indexed by; any other may change by itself, and is compared one by one."""
 
 
 def _mutator(name: str) -> Callable[..., Any]:
@@ -39,9 +37,9 @@ class ChunkStore(list[Chunk]):
         self._slots: dict[Slot, Postings] = {}
         self._holders: dict[Slot, list[Chunk]] = {}
         self._changeable: set[Slot] = set()
-        """The indexed slots in which some chunk has a value that is not plain."""
+        """The indexed slots in which some chunk has a value that may change by itself, so that it is compared one by one."""
         self._equals: dict[frozenset[Any] | None, list[Chunk]] | None = None
-        """Chunks with the same items; under None those that hold a value which is not plain."""
+        """Chunks with the same items; under None those that hold a value that may change by itself."""
 
     def forget_order(self) -> None:
         """Throws the indexes away: chunks came, went or changed."""
@@ -131,7 +129,7 @@ class ChunkStore(list[Chunk]):
         """Enters a chunk in the index of one slot."""
         if slot in chunk:
             value = chunk[slot]
-            if type(value) not in PLAIN:
+            if type(value) not in LASTING_TYPES:
                 self._changeable.add(slot)
             postings.setdefault(as_text(value), []).append(chunk)
 
@@ -142,8 +140,8 @@ class ChunkStore(list[Chunk]):
 
 
 def _likeness(chunk: Chunk) -> frozenset[Any] | None:
-    """Returns a key that equal chunks share, their items; None where a value is not plain."""
+    """Returns a key that equal chunks share, their items; None where a value may change by itself."""
     for value in chunk.values():
-        if type(value) not in PLAIN:
+        if type(value) not in LASTING_TYPES:
             return None
     return frozenset(chunk.items())

@@ -1,0 +1,94 @@
+"""What the scheduler deals with: events, and the triggers that wake them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Mapping, Sequence
+from types import GeneratorType
+from typing import Any, cast
+
+
+class Trigger:
+    """Something that generators can wait for (`yield trigger`)."""
+
+    __slots__ = ("_most", "name", "waiting")
+
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        self.waiting: list[Event] = []
+        self._most = 8
+
+    def __repr__(self) -> str:
+        return f"<Trigger '{self.name}'>"
+
+    def add_one_of_several(self, event: Event) -> None:
+        """Takes in an event that also waits elsewhere, and now and then lets those go that were woken from there."""
+        if len(self.waiting) >= self._most:
+            self.waiting = [other for other in self.waiting if not other.cancelled]
+            self._most = max(8, 2 * len(self.waiting))
+        self.waiting.append(event)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Trigger:
+        return Trigger(self.name)
+
+
+class Event:
+    """A call that will be made, or a generator that goes on, at a time or when a trigger says so."""
+
+    __slots__ = ("args", "call", "cancelled", "done", "generator", "group", "keys", "origin", "parents", "priority")
+
+    def __init__(
+        self,
+        call: Callable[..., Any],
+        args: Sequence[Any] = (),
+        keys: Mapping[str, Any] | None = None,
+        priority: float = 0,
+        generator: Generator[Any, Any, Any] | None = None,
+    ) -> None:
+        self.call = call
+        self.args = args
+        self.keys: Mapping[str, Any] = keys or {}
+        self.priority = priority
+        self.group: Sequence[Event] = ()
+        self.origin = self
+        """The event as its caller knows it; another one where this waits in its place for one of several things."""
+        self.cancelled = False
+        self.done = False
+        self.parents: list[Event] = []
+        self.generator = generator
+
+    def __repr__(self) -> str:
+        return f"<Event {self.describe()}>"
+
+    def __lt__(self, other: Event) -> bool:
+        return False  # events of one time and priority are equals; the queue alone puts them in order
+
+    def cancel_others(self) -> None:
+        """Drops what else this has waited for, as one of several things."""
+        for other in self.group:
+            other.cancelled = other is not self
+        self.group = ()
+
+    def in_milliseconds(self) -> bool:
+        """Tells whether the model whose method this is goes by whole milliseconds."""
+        owner = getattr(self.call, "__self__", self.call)
+        profile = getattr(owner, "_profile", None)
+        return profile is not None and profile.whole_milliseconds
+
+    def describe(self) -> str:
+        """Names the call, and for a generator the line it stands at."""
+        name = getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call))
+        if self.generator is None:
+            return str(name)
+        generator = self.innermost
+        assert generator is not None
+        code = generator.gi_code
+        frame = generator.gi_frame
+        return f"{code.co_qualname} ({code.co_filename}:{frame.f_lineno if frame else code.co_firstlineno})"
+
+    @property
+    def innermost(self) -> GeneratorType[Any, Any, Any] | None:
+        """The modeller's own generator: the one that `yield from` leads to."""
+        generator = cast("GeneratorType[Any, Any, Any] | None", self.generator)
+        while generator is not None and isinstance(inner := generator.gi_yieldfrom, GeneratorType):
+            generator = cast("GeneratorType[Any, Any, Any]", inner)
+        return generator

@@ -1,0 +1,60 @@
+"""Methods of models: what happens when one is called, so that others can wait for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import TYPE_CHECKING, Any
+
+from actr3d.actr.events import Event, Trigger
+from actr3d.actr.profile import Profile
+
+if TYPE_CHECKING:
+    from actr3d.actr.model import Model
+
+Method = Callable[..., Any]
+
+
+class MethodWrapper:
+    """A method of one model; `yield model.method` waits for the end of its next call."""
+
+    def __init__(self, obj: Model, func: Method, name: str) -> None:
+        self.obj = obj
+        self.func = func
+        self.__name__ = name
+        self.begins = Trigger(f"{name} begin")
+        self.ends = Trigger(f"{name} end")
+
+    @property
+    def default_trigger(self) -> Trigger:
+        """What `yield` on the method itself waits for."""
+        return self.ends
+
+    @property
+    def _profile(self) -> Profile | None:
+        return self.obj._profile
+
+    def __call__(self, *args: Any, **keys: Any) -> Any:
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
+        value = self.func(self.obj, *args, **keys)
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)
+        return value
+
+    def __repr__(self) -> str:
+        return f"<method {self.func.__qualname__}>"
+
+
+class GeneratorWrapper(MethodWrapper):
+    """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
+
+    def __call__(self, *args: Any, **keys: Any) -> Event:
+        return self.obj.sch.begin(self._steps(args, keys), self)
+
+    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
+        """Runs the method, waking whoever waits for its begin or end."""
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
+        yield from self.func(self.obj, *args, **keys)
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)

@@ -1,0 +1,59 @@
+"""The tree that the parts of a simulation form, and the names by which it is walked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from actr3d.actr.model import Model
+
+
+class Part:
+    """A part of a tree: it has at most one parent, and children in the order they came."""
+
+    name: str
+    parent: Model | None
+    _children: dict[str, Model]
+
+    def get_children(self) -> list[Model]:
+        """Returns the models that are this one's parts, in the order they came."""
+        return list(self.__dict__.get("_children", {}).values())
+
+    def _adopted(self, name: str, child: Model) -> None:
+        self.__dict__.setdefault("_children", {})[name] = child
+
+    def _line(self) -> Iterator[Any]:
+        """Yields the model and its ancestors."""
+        part: Any = self
+        while part is not None:
+            yield part
+            part = part.__dict__.get("parent")
+            if part is self:
+                break
+
+    def _tree(self) -> Iterator[Any]:
+        """Yields the model and everything below it."""
+        yield self
+        for child in self.get_children():
+            yield from child._tree()
+
+    @property
+    def _path(self) -> str:
+        """The dotted names from below the top model down to this one; «top» for that model itself."""
+        known = self.__dict__.get("_known_path")
+        if known is None:
+            known = self.__dict__["_known_path"] = self._make_path()
+        return known
+
+    def _forget_path(self) -> None:
+        for part in self._tree():
+            part.__dict__.pop("_known_path", None)
+
+    def _make_path(self) -> str:
+        names: list[str] = []
+        part: Any = self
+        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
+            names.append(part.name)
+            part = above
+        return ".".join(reversed(names)) or "top"

@@ -1,0 +1,89 @@
+"""What a generator may wait for: puts its event where what it yielded says."""
+
+from __future__ import annotations
+
+import copy
+import warnings
+from collections.abc import Iterator, Sequence
+from numbers import Real
+from typing import TYPE_CHECKING, Any, cast
+
+from actr3d.actr.events import Event, Trigger
+from actr3d.errors import ModelWarning, SchedulerError, did_you_mean
+
+if TYPE_CHECKING:
+    from actr3d.actr.scheduler import Scheduler
+
+
+def wait(sch: Scheduler, event: Event, result: Any) -> None:
+    """Puts an event where what it yielded says: later, on a trigger, behind another event, or on the first of several."""
+    if isinstance(result, (int, float)):
+        sch.queue.push(sch.after(result, event), event, event.priority)
+    elif isinstance(result, dict):
+        _wait_as(sch, event, cast("dict[str, Any]", result))
+    elif isinstance(result, (Trigger, str)):
+        trigger = sch.named(result) if isinstance(result, str) else result
+        if event.group:
+            trigger.add_one_of_several(event)
+        else:
+            trigger.waiting.append(event)
+    elif isinstance(result, (list, tuple)):
+        choices = list(_each(cast("Sequence[Any]", result)))
+        if not choices:
+            raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; nothing is in it")
+        events = [copy.copy(event) for _ in choices]
+        for alternative in events:
+            alternative.group = events
+        for choice, alternative in zip(choices, events, strict=True):
+            wait(sch, alternative, choice)
+    elif result is None:
+        sch.finish(event)
+    elif isinstance(result, Event):
+        if result.done:
+            sch.queue.push(sch.now_us, event, event.priority)
+        else:
+            result.parents.append(event)
+    elif hasattr(result, "default_trigger"):
+        wait(sch, event, result.default_trigger)
+    elif isinstance(result, Real):  # a number of another kind, such as numpy's
+        sch.queue.push(sch.after(float(result), event), event, event.priority)
+    else:
+        raise SchedulerError(
+            f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
+            "the event of a called generator method, or a tuple of these"
+        )
+
+
+def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
+    """Puts an event where a dict says: after its `delay`, with its `priority` from now on."""
+    for word in how:
+        if word not in ("delay", "priority"):
+            near = did_you_mean(str(word), ("delay", "priority"))
+            raise SchedulerError(f"{event.describe()}: cannot wait for {how!r}: no '{word}'{near or '; use delay and priority'}")
+    priority = how.get("priority", event.priority)
+    if not isinstance(priority, (int, float)):
+        raise SchedulerError(f"{event.describe()}: a priority must be a number (got {priority!r})")
+    event.priority = priority
+    sch.queue.push(sch.after(how.get("delay", 0), event), event, priority)
+
+
+def warn_of_none(event: Event) -> None:
+    generator = event.innermost
+    frame = generator.gi_frame if generator is not None else None
+    if frame is not None:
+        warnings.warn_explicit(
+            f"{frame.f_code.co_qualname} yields None, which ends it here: what it calls may not be a generator, "
+            "or a number of seconds is missing",
+            ModelWarning,
+            frame.f_code.co_filename,
+            frame.f_lineno,
+        )
+
+
+def _each(choices: Sequence[Any]) -> Iterator[Any]:
+    """Yields what is to be waited for, also from sequences inside."""
+    for choice in choices:
+        if isinstance(choice, (list, tuple)):
+            yield from _each(cast("Sequence[Any]", choice))
+        else:
+            yield choice
