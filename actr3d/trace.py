@@ -17,6 +17,25 @@ from actr3d.errors import ParameterError, did_you_mean
 LEVELS = ("none", "production", "buffer", "all")
 """What a trace may hold: nothing; selections and firings; also buffer changes; everything."""
 
+KINDS = {
+    "start": "a run begins to be traced: its model, seed and profile",
+    "buffer": "a buffer holds another chunk, or none",
+    "state": "attributes of a module or model have these values",
+    "observe": "what productions look at beyond that has these values",
+    "conflict": "the productions that match, with their utilities and the parts of these",
+    "select": "a production is chosen",
+    "fire": "a production fires, with what it bound",
+    "changed": "a chosen production matches no longer and does not fire",
+    "compile": "a production is learned from two others",
+    "reward": "an agent gets a reward",
+    "utility": "a production's utility has become this by learning",
+    "request": "a module is asked for something; a memory's request with all candidates",
+    "retrieval": "a memory's answer arrives, or its failure",
+    "output": "the model prints a line",
+    "command": "a user changes the run",
+}
+"""What events there are."""
+
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
 """The particulars of an event, or a function that makes them of what it has kept, when somebody reads them."""
 Record = tuple[int, str, str, Data]
@@ -30,7 +49,7 @@ class TraceEvent(NamedTuple):
     source: str
     """Who: the dotted path below the top model, or «top» for that model itself."""
     kind: str
-    """What: buffer, state, conflict, select, fire, changed, request, retrieval, reward, utility, log, output, ..."""
+    """What: one of `KINDS`."""
     data: dict[str, Any]
     """The particulars; plain values, lists and dicts only."""
 

@@ -11,7 +11,7 @@ from actr3d.actr import Buffer, Model
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import ParameterError
-from actr3d.trace import LEVELS, Trace, TraceEvent
+from actr3d.trace import KINDS, LEVELS, Trace, TraceEvent
 
 TEXT = """
 from actr3d.actr import *
@@ -179,3 +179,40 @@ def test_tracing_changes_nothing_in_the_run() -> None:
             agent.run(1)
         ends.append((agent.now(), agent.random.random(), agent.mood))
     assert len(set(ends)) == 1
+
+
+def test_every_module_tells_what_it_is_asked_for() -> None:
+    module: Any = load_text(
+        """
+from actr3d.actr import *
+class Room(Model):
+    lamp = Model(kind='lamp', salience=1.0, x=1, y=2)
+    def key_pressed(self, key): pass
+class Agent(ACTR):
+    goal, seen, place, image = Buffer(), Buffer(), Buffer(), Buffer()
+    eye = SOSVision(seen)
+    vision = Vision(seen, place)
+    hand = Motor()
+    imaginal = ImaginalModule(image)
+    def init(): goal.set('go')
+    def go(goal='go'):
+        eye.request('kind:lamp')
+        vision.attendTo('x:1')
+        hand.press('a')
+        imaginal.set('shape:round')
+        goal.clear()
+""",
+        "asking.py",
+    )
+    room = module.Room()
+    room.agent = module.Agent()
+    trace = room.traced()
+    room.run(1)
+    asked = {event.source: event.data for event in trace.select("request")}
+    assert asked == {
+        "agent.eye": {"call": "request", "pattern": "kind:lamp", "noticed": ["<lamp>"]},
+        "agent.vision": {"call": "attendTo", "pattern": "x:1", "unattended": False, "new": False},
+        "agent.hand": {"call": "press", "key": "a"},
+        "agent.imaginal": {"call": "set", "chunk": {"shape": "round"}},
+    }
+    assert {event.kind for event in trace} <= set(KINDS)

@@ -148,12 +148,12 @@ def run_text(
         stack.enter_context(limits)
         stack.enter_context(aliases())
         stack.enter_context(_as_main(module, (folder or Path.cwd()).resolve()))
-        if limits.seed is not None:
-            random.seed(limits.seed)
+        random.seed(limits.program_seed)
         logs.LOG.source = filename
         stack.callback(logs.finished)  # also where the program fails: what it logged until then is kept
         with suppress(EndOfRun):
             exec(code, module.__dict__)
+        module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = logs.LOG.announce
     return module
 
 

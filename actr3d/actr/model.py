@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from actr3d.actr import logger as logs
 from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
 from actr3d.actr.events import Trigger
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import Profile
@@ -143,10 +143,7 @@ class Model(TracedPart):
         sch = own["sch"] = Scheduler(first_come=not written_for_python_actr(type(self)))
         wanted = self._init_log
         own["log"] = logs.log() if wanted is True else logs.dummy if wanted is None else wanted
-        seed = limits.next_seed() if limits is not None else None
-        if seed is None:
-            seed = random.SystemRandom().getrandbits(64)
-        sch.seed = seed
+        seed = sch.seed = fresh_seed() if limits is None else limits.next_seed()
         own["random"] = random.Random(seed)
         own["parent"] = None
 

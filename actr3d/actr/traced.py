@@ -55,6 +55,13 @@ class TracedPart(Part):
             plain = {key: value for key, value in state.items() if value is None or type(value) in PLAIN_TYPES}
             trace.emit(self.sch.now_us, self._path, "state", plain)
 
+    def _trace_request(self, call: str, **particulars: Any) -> None:
+        """Records that a module was asked for something."""
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            data = {"call": call, **{key: traceable(value) for key, value in particulars.items()}}
+            trace.emit(self.sch.now_us, self._path, "request", data)
+
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         """Records one attribute's new value."""
         if not trace.all:

@@ -39,6 +39,7 @@ class ImaginalModule(Model):
         if self.busy:
             return
         new = Chunk(chunk, self.sch.bound)
+        self._trace_request("set", chunk=new)
         self.busy = True
         yield self.delay_time()
         self._finish(self._buffer.set, new)
@@ -47,6 +48,7 @@ class ImaginalModule(Model):
         """Changes slots of the buffer's chunk."""
         if self.busy:
             return
+        self._trace_request("modify", slots=Chunk(args))
         self.busy = True
         yield self.delay_time()
         self._finish(self._buffer.modify, **args)
@@ -55,6 +57,7 @@ class ImaginalModule(Model):
         """Empties the buffer."""
         if self.busy:
             return
+        self._trace_request("clear")
         self.busy = True
         yield self.delay_time()
         self._finish(self._buffer.clear)

@@ -24,6 +24,7 @@ class Motor(Model):
         """Presses a key, unless a press is under way."""
         if self.busy:
             return
+        self._trace_request("press", key=key)
         self.busy = True
         self.log._ = "Pressing key preparation"
         yield 0.25
