@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.bodies import Body, Scope, compile_body
-from actr3d.actr.pattern import Bindings, Condition, conditions
+from actr3d.actr.pattern import Bindings, conditions
 from actr3d.actr.rebinding import stored_names
 from actr3d.actr.sources import assigned_globals, function_node, has_file, place
 from actr3d.errors import PatternException, ProductionException, did_you_mean
@@ -152,8 +152,3 @@ def defaults_of(func: Callable[..., Any]) -> dict[str, Any] | None:
     if len(spec.kwonlyargs) != len(named):
         return None
     return {**dict(zip(spec.args, spec.defaults or (), strict=True)), **named}
-
-
-def condition_text(condition: Condition) -> str:
-    """Returns a production's condition with the name of what it looks at."""
-    return f"{condition.name}: {condition}"

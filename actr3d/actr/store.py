@@ -22,6 +22,7 @@ def _mutator(name: str) -> Callable[..., Any]:
             self.forget_order()
 
     method.__name__ = name
+    method.__doc__ = f"Does what `list.{name}` does, and throws the indexes away."
     return method
 
 

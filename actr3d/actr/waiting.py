@@ -68,6 +68,7 @@ def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
 
 
 def warn_of_none(event: Event) -> None:
+    """Warns, at the line that did so, of a generator that yielded None."""
     generator = event.innermost
     frame = generator.gi_frame if generator is not None else None
     if frame is not None:
