@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from types import GeneratorType
-from typing import Any, cast
+from typing import Any, Final, cast
+
+
+AGAIN: Final = object()
+"""What the library's own generators yield to go on at the same moment, with the priority their event has."""
 
 
 class Trigger:

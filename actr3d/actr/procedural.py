@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
+from actr3d.actr.events import AGAIN
 from actr3d.actr.model import Method, pick
 from actr3d.actr.production import Production
 from actr3d.actr.production_system import ProductionSystem
@@ -67,10 +68,9 @@ class ACTR(ProductionSystem):
             for adaptor in adaptors:
                 adaptor.firing(choice)
             self._fire(choice)
-            if sch.idle_now():
-                process.priority = LAST
-            else:
-                yield {"delay": 0, "priority": LAST}
+            process.priority = LAST
+            if not sch.idle_now():
+                yield AGAIN
 
     def _choose(self, matching: list[Production]) -> Production | None:
         """Returns one of those with the highest utility, or None where that is below the threshold."""

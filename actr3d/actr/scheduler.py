@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from inspect import CO_GENERATOR
 from typing import Any
 
-from actr3d.actr.events import Event, Trigger
+from actr3d.actr.events import AGAIN, Event, Trigger
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
 from actr3d.actr.waiting import wait, warn_of_none
@@ -246,6 +246,8 @@ class Scheduler:
                 queue.push(self.after(result, event), event, event.priority)
             elif type(result) is Trigger:
                 result.waiting.append(event)
+            elif result is AGAIN:
+                queue.push(self.now_us, event, event.priority)
             else:
                 if result is None:
                     warn_of_none(event)
