@@ -6,7 +6,6 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from types import GeneratorType
 from typing import Any, Final, cast
 
-
 AGAIN: Final = object()
 """What the library's own generators yield to go on at the same moment, with the priority their event has."""
 
