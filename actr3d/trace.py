@@ -7,6 +7,7 @@ event first looks at the trace's level flags, so that nothing is computed which 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite
 from typing import Any, NamedTuple, cast
@@ -65,9 +66,14 @@ class TraceEvent(NamedTuple):
         """
         record = {"time": self.time, "source": self.source, "kind": self.kind, "data": self.data}
         try:
-            return json.dumps(record, ensure_ascii=False, allow_nan=False)
+            line = json.dumps(record, ensure_ascii=False, allow_nan=False)
         except (TypeError, ValueError):
-            return json.dumps({**record, "data": _plain(self.data)}, ensure_ascii=False, allow_nan=False)
+            line = json.dumps({**record, "data": _plain(self.data)}, ensure_ascii=False, allow_nan=False)
+        # Where an object's text tells where it lies in memory, that differs from run to run.
+        return _ADDRESS.sub("", line) if " at 0x" in line else line
+
+
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 
 def _plain(value: Any) -> Any:

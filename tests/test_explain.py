@@ -272,3 +272,57 @@ def test_a_trace_of_a_lower_level_cannot_tell_the_past() -> None:
     agent.run(0.1)
     with pytest.raises(ParameterError, match="only a run traced"):
         agent.explain(0.05)
+
+
+def test_neither_tracing_nor_asking_reads_a_property_or_calls_a_pattern() -> None:
+    source = """
+from actr3d.actr import *
+calls = []
+def third(chunk, bound):
+    calls.append(1)
+    return len(calls) % 3 == 0
+class Coin(Model):
+    @property
+    def side(self):
+        return 'head' if self.random.random() < 0.5 else 'tail'
+class Agent(ACTR):
+    goal, coin = Buffer(), Coin()
+    def init(): goal.set('go')
+    def head(goal='go', coin='side:head'): self.what = 'head'
+    def other(goal=['go', third]): self.what = 'third'
+    def plain(goal='go'): self.what = 'plain'
+"""
+    runs: list[list[tuple[float, Any]]] = []
+    for asks, traced in ((False, False), (False, True), (True, True)):
+        agent = agent_of(source)
+        if traced:
+            agent.traced()
+        seen: list[tuple[float, Any]] = []
+        for _ in range(150):
+            agent.run(0.01)
+            if asks:
+                agent.explain()
+                agent.explain(agent.now())
+            seen.append((agent.now(), getattr(agent, "what", None)))
+        runs.append(seen)
+    assert runs[0] == runs[1] == runs[2]
+    assert len({what for _, what in runs[0]}) > 2
+
+
+def test_a_modellers_own_activation_is_told() -> None:
+    agent = agent_of(
+        """
+from actr3d.actr import *
+class Own(Memory):
+    def get_activation(self, chunk): return 2.5
+class Agent(ACTR):
+    goal, retrieval = Buffer(), Buffer()
+    memory = Own(retrieval)
+    def init():
+        memory.add('a b')
+        memory.request('a ?')
+"""
+    )
+    agent.run(0)
+    (told,) = agent.explain().retrievals
+    assert told.candidates[0].parts == {"get_activation": 2.5}

@@ -216,3 +216,19 @@ class Agent(ACTR):
         "agent.imaginal": {"call": "set", "chunk": {"shape": "round"}},
     }
     assert {event.kind for event in trace} <= set(KINDS)
+
+
+def test_no_address_enters_a_line_and_a_list_in_itself_does_no_harm() -> None:
+    class Thing:
+        pass
+
+    agent = agent_of()
+    trace = agent.traced()
+    agent.goal.set({"thing": Thing(), "b": 1})
+    looped: list[Any] = []
+    looped.append(looped)
+    agent.looped = looped
+    agent.run(0.2)
+    lines = [event.to_json() for event in trace]
+    assert any("Thing" in line for line in lines)
+    assert not any(" at 0x" in line for line in lines)

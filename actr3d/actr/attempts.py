@@ -39,12 +39,15 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     return read_anything
 
 
-def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any]) -> Callable[[], Bindings | None]:
+def attempt_for(
+    conditions: Sequence[Condition], context: Mapping[str, Any], reader: Callable[[str, Any], Callable[[], Any]]
+) -> Callable[[], Bindings | None]:
     """Returns a function that tries a production now: it gives what the patterns bind, or None where they do not match.
 
     Args:
         conditions: The production's conditions.
         context: The objects they look at, by name.
+        reader: Makes what reads a slot, given as a name and a key, that is not one of a buffer's chunk.
     """
     buffers: list[Buffer] = []
     readers: list[Callable[[], Any]] = []
@@ -66,7 +69,7 @@ def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any]) -> 
         else:
             number = places.setdefault((name, key), len(readers))
             if number == len(readers):
-                readers.append(reader_of(target, key))
+                readers.append(reader(name, key))
             shapes.append((op, "reader", number, None, value))
     attempt = _compile(tuple(shapes))
     return lambda: attempt(buffers, readers, extra)

@@ -20,9 +20,10 @@ from actr3d.actr.chunk import parse_slots
 from actr3d.actr.memory import Memory
 from actr3d.actr.model import MethodWrapper, Model
 from actr3d.actr.modules.imaginal import ImaginalModule
-from actr3d.actr.pattern import MISSING, Condition, get_item
+from actr3d.actr.pattern import MISSING, Condition
+from actr3d.actr.plain import UNKNOWN, plain_value
 from actr3d.actr.sources import function_node
-from actr3d.actr.vocabulary import slots_given
+from actr3d.actr.vocabulary import slots_given, slots_named
 from actr3d.errors import ModelWarning, did_you_mean
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def _check_slots(production: Production) -> None:
                 given = slots_given(production.original_func)
             if key in given or "." in key or (target.chunk and key in target.chunk):
                 continue
-            hint = did_you_mean(key, given, SURE)
+            hint = did_you_mean(key, slots_named(production.original_func), SURE)
             what = f"no chunk is ever given a slot '{key}'"
         else:
             missing, hint = _missing_attribute(target, key)
@@ -134,14 +135,19 @@ def _check_slots(production: Production) -> None:
 
 
 def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
-    """Returns the first part of a dotted path that leads nowhere, with what may be meant; empty texts where it leads on."""
+    """Returns the first part of a dotted path that leads nowhere, with what may be meant; empty texts where it leads on.
+
+    No code of the modeller's is run for that.
+    """
     walked: list[str] = []
     for name in path.split("."):
         walked.append(name)
-        found = get_item(target, name)
+        found = plain_value(target, name)
         if found is MISSING:
             known = [k for k in (*getattr(target, "__dict__", ()), *dir(cast("object", type(target)))) if k[0] != "_"]
             return ".".join(walked), did_you_mean(name, known, SURE)
+        if found is UNKNOWN:
+            break
         target = found
     return "", ""
 

@@ -13,7 +13,8 @@ from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Slot, as_text
 from actr3d.actr.memory import Memory
 from actr3d.actr.model import Model
-from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, holds_empty, look_up
+from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, holds_empty
+from actr3d.actr.plain import UNKNOWN, plain_value
 from actr3d.actr.retrievals import RetrievalReason, live_retrieval, past_retrieval
 from actr3d.clock import microseconds
 from actr3d.errors import ParameterError, did_you_mean
@@ -125,8 +126,12 @@ class Present:
         self.time = agent.now()
 
     def slot(self, system: ProductionSystem, name: str, key: Slot) -> str | Missing:
-        value = look_up(system._context[name], key)
-        return MISSING if value is MISSING else as_text(value)
+        target = system._context[name]
+        value = plain_value(target, key)
+        if value is not UNKNOWN:
+            return MISSING if value is MISSING else as_text(value)
+        looked = system._matcher.looked.get(f"{name}.{key}") if system._matcher is not None else None
+        return MISSING if looked is None else looked
 
     def empty(self, system: ProductionSystem, name: str) -> bool:
         return holds_empty(system._context[name], name)
@@ -138,7 +143,10 @@ class Present:
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
     def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
-        return calls(condition.value, production.context[condition.name or "self"], dict(bindings))
+        # Asking a modeller's function might change something. Where all else holds, its answer decided whether the
+        # production was among those that matched.
+        matcher = production.system._matcher
+        return matcher is not None and production in matcher.last
 
     def parts(self, production: Production) -> dict[str, float | None]:
         return production.system._utility_parts(production)

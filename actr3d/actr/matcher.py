@@ -8,9 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.attempts import attempt_for, has_slots, reader_of
+from actr3d.actr.chunk import LASTING_TYPES
 from actr3d.actr.model import Model
-from actr3d.actr.pattern import MISSING, Bindings, is_empty
+from actr3d.actr.pattern import MISSING, Bindings
 from actr3d.actr.production import Production
+from actr3d.actr.traced import UNWATCHED
 
 Reading = tuple[str, Any]
 """What is read: the name of an object, and a slot; a slot of None asks whether the object is empty."""
@@ -22,7 +24,9 @@ def is_recorded(target: Any, key: Any) -> bool:
         return False
     if key is None or has_slots(target, key):
         return hasattr(target, "chunk")
-    return isinstance(target, Model) and key in vars(target) and type(target).__getitem__ is Model.__getitem__
+    if not isinstance(target, Model) or type(target).__getitem__ is not Model.__getitem__ or key in UNWATCHED or key[:1] == "_":
+        return False
+    return type(vars(target).get(key, MISSING)) in LASTING_TYPES
 
 
 class Matcher:
@@ -38,14 +42,18 @@ class Matcher:
         self._order: dict[Production, int] = {}
         self._always: list[Production] = []
         self._by_value: list[tuple[Callable[[], Any], dict[Any, list[Production]]]] = []
-        self.unrecorded: dict[str, Callable[[], Any]] = {}
-        self._seen: dict[str, Any] = {}
+        self.looked: dict[str, Any] = {}
+        """What productions saw when they last looked, where no model's change records it; None for what was not there."""
+        self.last: list[Production] = []
+        """The productions that matched when they were last tried."""
+        self._told: dict[str, Any] = {}
+        self._listener: object = None
 
     def build(self, productions: Sequence[Production]) -> None:
         """Takes in all productions of the system, in their order."""
         for production in productions:
             if production not in self._attempts:
-                self._attempts[production] = attempt_for(production.conditions, self._context)
+                self._attempts[production] = attempt_for(production.conditions, self._context, self._reader)
         self._order = {production: number for number, production in enumerate(productions)}
         wanted = {
             p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions
@@ -63,27 +71,34 @@ class Matcher:
                 indexes.setdefault(best[0], {}).setdefault(best[1], []).append(production)
             else:
                 self._always.append(production)
-        self._by_value = [(reader_of(self._context[name], key), index) for (name, key), index in indexes.items()]
-        self._note_unrecorded(productions)
+        self._by_value = [(self._reader(name, key), index) for (name, key), index in indexes.items()]
 
-    def _note_unrecorded(self, productions: Sequence[Production]) -> None:
-        for condition in (c for p in productions for c in p.conditions if c.op != "call" and not _by_variable(c.key)):
-            name, key = condition.name or "self", None if condition.op == "empty" else condition.key
-            target = self._context[name]
-            label = f"{name}=None" if key is None else f"{name}.{key}"
-            if label not in self.unrecorded and not is_recorded(target, key):
-                self.unrecorded[label] = _emptiness_of(target) if key is None else reader_of(target, key)
+    def _reader(self, name: str, key: Any) -> Callable[[], Any]:
+        """Returns a reader that remembers what it read, where the trace would not know otherwise.
 
-    def observed(self) -> dict[str, Any]:
-        """Returns what has changed, since it was last asked, of what productions look at and no model's change records:
+        It is not read again for that: a property may answer otherwise, or change something, each time it is asked.
+        """
+        target = self._context[name]
+        read = reader_of(target, key)
+        if is_recorded(target, key):
+            return read
+        label, looked = f"{name}.{key}", self.looked
+
+        def remember() -> Any:
+            value = read()
+            looked[label] = None if value is MISSING else value
+            return value
+
+        return remember
+
+    def observed(self, listener: object) -> dict[str, Any]:
+        """Returns what has changed, since the same listener last asked, of what productions saw beyond buffers and modules:
         attributes of plain objects, dotted paths, and properties. None stands for what is not there.
         """
-        changed: dict[str, Any] = {}
-        for label, reader in self.unrecorded.items():
-            value = reader()
-            value = None if value is MISSING else value
-            if self._seen.get(label, _UNREAD) != value:
-                changed[label] = self._seen[label] = value
+        if listener is not self._listener:
+            self._listener, self._told = listener, {}
+        changed = {label: value for label, value in self.looked.items() if self._told.get(label, _UNREAD) != value}
+        self._told.update(changed)
         return changed
 
     def matching(self) -> list[Production]:
@@ -100,7 +115,7 @@ class Matcher:
             elif candidates or len(self._by_value) > 1:
                 found = sorted(candidates + found, key=self._order.__getitem__)
             candidates = found
-        result: list[Production] = []
+        self.last = result = list[Production]()
         attempts = self._attempts
         for production in candidates:
             bound = attempts[production]()
@@ -123,7 +138,3 @@ _UNREAD: Any = object()
 
 def _by_variable(key: Any) -> bool:
     return isinstance(key, str) and key[:1] == "?"
-
-
-def _emptiness_of(target: Any) -> Callable[[], bool]:
-    return lambda: is_empty(target)

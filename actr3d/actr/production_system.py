@@ -129,8 +129,8 @@ class ProductionSystem(Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            if matcher.unrecorded:
-                seen = matcher.observed()
+            if matcher.looked:
+                seen = matcher.observed(trace)
                 if seen:
                     trace.emit(self.sch.now_us, self._path, "observe", seen)
             if not matching or not self._weighs:

@@ -82,7 +82,8 @@ def _reason(memory: str, time: float, data: Mapping[str, Any], outcome: str) -> 
             verdict = "lost a draw by lot"
         else:
             verdict = f"lost by {best - activation:.4g}"
-        named = dict(zip(_numbered(data["modules"]), parts, strict=True))
+        modules = data["modules"] if len(data["modules"]) == len(parts) else ["get_activation"]
+        named = dict(zip(_numbered(modules), parts, strict=True))
         if data["partial"]:
             named["partial"] = partial
         candidates.append(CandidateReason(chunk=chunk, activation=activation, parts=named, verdict=verdict))

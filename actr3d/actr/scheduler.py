@@ -18,7 +18,7 @@ from actr3d.trace import Trace
 
 NEVER = 1 << 62
 """A time that does not come [us]."""
-STANDSTILL = 1_000_000
+STANDSTILL = 200_000
 """So many events without any time passing are an endless loop, not a model."""
 
 
@@ -165,7 +165,7 @@ class Scheduler:
         Events at exactly the end belong to this run. After a run that was not stopped the clock stands at its end.
 
         Raises:
-            SchedulerError: If time stands still for a million events, or something cannot be waited for.
+            SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
         until = None
         if duration is not None:

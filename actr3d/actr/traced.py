@@ -17,14 +17,20 @@ UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
 """Attributes that hold the tree together; setting them is not a change that productions could see."""
 
 
-def traceable(value: Any) -> Any:
+DEEPEST = 8
+"""How many levels of lists in lists a trace keeps; one may contain itself."""
+
+
+def traceable(value: Any, depth: int = 0) -> Any:
     """Returns what a trace keeps of a value: plain values as they are, chunks as a copy, others as text without addresses."""
     if value is None or type(value) in PLAIN_TYPES:
         return value
+    if depth > DEEPEST:
+        return "..."
     if isinstance(value, Chunk):
-        return {str(key): item if item is None or type(item) in PLAIN_TYPES else traceable(item) for key, item in value.items()}
+        return {str(key): item if item is None or type(item) in PLAIN_TYPES else traceable(item, depth + 1) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [traceable(item) for item in cast("list[Any]", value)]
+        return [traceable(item, depth + 1) for item in cast("list[Any]", value)]
     if isinstance(value, Part):
         return f"<{value._path}>"
     if callable(value):

@@ -20,16 +20,22 @@ def slots_given(func: Callable[..., Any]) -> set[str]:
     return set(_given("".join(linecache.getlines(func.__code__.co_filename, func.__globals__))))
 
 
+def slots_named(func: Callable[..., Any]) -> set[str]:
+    """Returns the names in the file of a function that texts show to be slots: what may have been meant by another."""
+    return set(_named("".join(linecache.getlines(func.__code__.co_filename, func.__globals__))))
+
+
+@lru_cache(maxsize=16)
+def _named(text: str) -> frozenset[str]:
+    nodes = _outside_patterns(_tree(text))
+    texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    return frozenset(name for text in texts for name in _NAMED.findall(text))
+
+
 @lru_cache(maxsize=16)
 def _given(text: str) -> frozenset[str]:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text)
-    except (SyntaxError, ValueError):
-        return frozenset()
     found: set[str] = set()
-    for node in _outside_patterns(tree):
+    for node in _outside_patterns(_tree(text)):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             found.update(_NAMED.findall(node.value))
             if node.value.isidentifier():
@@ -44,6 +50,15 @@ def _given(text: str) -> frozenset[str]:
         elif isinstance(node, ast.Name):
             found.add(node.id)
     return frozenset(found)
+
+
+def _tree(text: str) -> ast.AST:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
+            return ast.parse(text)
+    except (SyntaxError, ValueError):
+        return ast.Module([], [])
 
 
 def _outside_patterns(node: ast.AST) -> Iterator[ast.AST]:
