@@ -20,6 +20,7 @@ from actr3d.actr import (
     Partial,
     ProductionSystem,
 )
+from actr3d.actr.loading import load_text
 from actr3d.actr.profile import ACT_R_7
 from actr3d.errors import ParameterError
 
@@ -261,3 +262,19 @@ def test_an_unknown_profile() -> None:
     with pytest.raises(ParameterError, match=r"Agent.profile: no profile 'lisp'"):
         living("lisp")
     assert Memory(Buffer(), profile=ACT_R_7).latency == 1.0
+
+
+def test_an_environment_chooses_for_all_its_agents() -> None:
+    module: Any = load_text(
+        "from actr3d.actr import *\n"
+        "class Agent(ACTR):\n    retrieval = Buffer()\n    memory = Memory(retrieval)\n"
+        "class World(Model):\n    profile = 'act-r-7'\n    agent = Agent()\n"
+        "class Other(Model):\n    agent = Agent()\n"
+    )
+    for world in (module.World(), module.Other(profile="act-r-7")):
+        world.run(0)
+        assert world.agent.memory.latency == 1.0
+        assert world.sch.round_ms
+    plain = module.Other()
+    plain.run(0)
+    assert plain.agent.memory.latency == 0.05

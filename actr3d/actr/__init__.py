@@ -8,6 +8,7 @@ from actr3d.actr.blending import BlendingMemory
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.compilation import PMCompile
+from actr3d.actr.display import display
 from actr3d.actr.logger import finished, log, log_everything
 from actr3d.actr.memory import Memory
 from actr3d.actr.model import Model
@@ -20,6 +21,7 @@ from actr3d.actr.modules.vision import Vision
 from actr3d.actr.partial import Partial
 from actr3d.actr.procedural import ACTR, ProductionSystem
 from actr3d.actr.spreading import DMSalience, DMSpreading
+from actr3d.actr.sweep import run
 from actr3d.actr.utility import PMPGC, PMTD, PMNew, PMNoise, PMPGCMixedWeighted, PMPGCSuccessWeighted, ProceduralSubModule
 
 __all__ = [
@@ -53,7 +55,9 @@ __all__ = [
     "TextOutput",
     "Timer",
     "Vision",
+    "display",
     "finished",
     "log",
     "log_everything",
+    "run",
 ]

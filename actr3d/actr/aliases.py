@@ -48,7 +48,7 @@ _PARTS: dict[str, tuple[str, ...]] = {
 """Each part of the old library, and which of our modules it offers the names of."""
 
 PACKAGES = frozenset({"", "actr", "lib", "lib.actr"})
-ROOT_ONLY = frozenset({"Model", "ProductionSystem", "finished", "log", "log_everything"})
+ROOT_ONLY = frozenset({"Model", "ProductionSystem", "display", "finished", "log", "log_everything", "run"})
 """What the root package alone offers; models name variables like these before they import the rest."""
 
 

@@ -14,7 +14,7 @@ from actr3d.actr.events import Trigger
 from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
-from actr3d.actr.profile import Profile
+from actr3d.actr.profile import PROFILES, Profile
 from actr3d.actr.saying import warn_modeller
 from actr3d.actr.scheduler import Scheduler
 from actr3d.actr.sources import for_python_actr
@@ -151,9 +151,15 @@ class Model(TracedPart):
         """Goes by the numbers of its parent, unless it has been given its own; for subclasses to act upon."""
         if self._profile is None:
             self.__dict__["_profile"] = profile
+            if profile is not None and profile.whole_milliseconds:
+                self.sch.round_ms = True
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         """Looks at what the class brings, before its objects come to life; for subclasses."""
+        own = self.__dict__
+        wanted = own.get("profile") or objects.get("profile")
+        if isinstance(wanted, str) and wanted in PROFILES:  # an environment's, for all its agents
+            own["_profile"] = PROFILES[wanted]
 
     def _call(self, name: str, shown: bool = False) -> None:
         """Names the model after its place in the tree.
@@ -284,7 +290,8 @@ class Model(TracedPart):
         """Runs the whole tree until nothing is left to do, `stop` is called, or `limit` seconds more have passed.
 
         Args:
-            limit: How long [s from now]; calls can follow one another for ever without drift.
+            limit: How long [s from now], to the nearest microsecond; calls with whole microseconds, such as 0.01, can
+                follow one another for ever without drift.
             func: Called first.
 
         Raises:

@@ -119,7 +119,7 @@ class ProductionSystem(Model):
                 if name not in context:
                     raise ProductionException(
                         f"production '{production.name}' ({production.place}) matches on '{name}', which neither the agent "
-                        f"nor its ancestors have{did_you_mean(name, context)}"
+                        f"nor its ancestors have{did_you_mean(name, [*context, 'utility'])}"
                     )
 
     def _match(self) -> list[Production]:
