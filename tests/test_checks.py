@@ -47,6 +47,7 @@ def warned(body: str, length: float = 0.0) -> list[tuple[str, int]]:
             "no chunk is ever given a slot 'cuont'; did you mean 'count'?",
             11,
         ),
+        ("def init(): goal.set('word:go')\ndef p(goal='wrod:go'): pass", "given a slot 'wrod'; did you mean 'word'?", 11),
         ("def p(memory='eror:True'): pass", "'memory' has no attribute 'eror'; did you mean 'error'?", 10),
         ("def p(eye='bussy:False'): pass", "'eye' has no attribute 'bussy'; did you mean 'busy'?", 10),
         ("def p(eye='colour.depht:3'): pass", "'eye' has no attribute 'colour.depht'; did you mean 'depth'?", 10),

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from actr3d.actr.production import Production
 
 _CHECKED: WeakSet[type] = WeakSet()
-SURE = 0.8
+SURE = 0.74
 """How near a name must be to another (0 to 1) to be taken for a slip."""
 
 
