@@ -14,6 +14,7 @@ from typing import Any, TextIO, cast
 
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_file
+from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError
 from actr3d.trace import LEVELS, Trace, TraceEvent
 
@@ -33,6 +34,11 @@ class _Lines(io.TextIOBase):
         for line in lines:
             self._take(line)
         return len(text)
+
+    encoding = "utf-8"
+
+    def reconfigure(self, **options: Any) -> None:
+        """Takes what a model says of its output's form; lines of JSON have one form only."""
 
     def finish(self) -> None:
         """Hands on what was printed without an end of line."""
@@ -90,6 +96,9 @@ def _complain(error: BaseException) -> int:
         if not report.stack:
             text = text.removeprefix("Traceback (most recent call last):\n")
         text = text.replace(f"{type(error).__module__}.{type(error).__qualname__}: ", "error: ")
+    name = getattr(error, "name", None)
+    if name in PYTHON_2_NAMES and isinstance(error, (NameError, ImportError, AttributeError)):
+        text += f"'{name}' is a name of Python 2: this file is written for Python 2; convert it to Python 3\n"
     print(text, end="", file=sys.stderr)
     return 1
 
@@ -154,6 +163,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # The order of sets of texts must not differ between two runs of one seed.
         os.environ["PYTHONHASHSEED"] = "0"
         os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+    if sys.stdout is None:  # it was closed before we came
+        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays until the end
     options: Any = _parser().parse_args(arguments)
     try:
         return options.function(options)

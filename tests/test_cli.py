@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from actr3d.cli import main
+
 COMMAND = [sys.executable, "-c", "import sys; from actr3d.cli import main; sys.exit(main(sys.argv[1:]))"]
 
 NOISY = """
@@ -214,3 +216,14 @@ def test_the_order_of_sets_does_not_differ_between_runs(tmp_path: Path) -> None:
     command = [str(Path(sys.executable).parent / "actr3d"), "run", "model.py", "--seed", "1"]
     runs = [subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, timeout=60, check=True).stdout for _ in range(3)]
     assert len(set(runs)) == 1
+
+
+@pytest.mark.parametrize("line", ["for i in xrange(3): pass", "import Tkinter", "{}.has_key(1)", "print(raw_input())"])
+def test_a_name_of_python_2_is_called_that(line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "old.py"
+    file.write_text(f"import ccm\n{line}\n", encoding="utf-8")
+    assert main(["run", str(file)]) == 1
+    said = capsys.readouterr().err
+    assert "old.py" in said
+    assert "line 2" in said
+    assert "this file is written for Python 2" in said

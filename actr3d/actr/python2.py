@@ -4,6 +4,39 @@ from __future__ import annotations
 
 import re
 
+PYTHON_2_NAMES = frozenset(
+    {
+        "xrange",
+        "raw_input",
+        "unicode",
+        "unichr",
+        "long",
+        "basestring",
+        "cmp",
+        "execfile",
+        "reduce",
+        "file",
+        "iteritems",
+        "itervalues",
+        "iterkeys",
+        "has_key",
+        "izip",
+        "imap",
+        "ifilter",
+        "cPickle",
+        "cStringIO",
+        "StringIO",
+        "Tkinter",
+        "tkMessageBox",
+        "Queue",
+        "ConfigParser",
+        "urllib2",
+        "sets",
+        "commands",
+    }
+)
+"""Names of Python 2 that Python 3 does not know; a file that compiles may still use them."""
+
 _SIGNS: tuple[tuple[re.Pattern[str], str], ...] = (
     (re.compile(r"^\s*print\s+[^(=\s]|^\s*print\s+\(.*\)\s*[%,]|[:;]\s*print\s+[\"'\w]|^\s*print\s*>>"), "a print statement"),
     (re.compile(r"^\s*except\s+[\w.()\s,]+,\s*\w+\s*:"), "'except Error, name'"),
