@@ -22,7 +22,7 @@ from actr3d.actr.model import MethodWrapper, Model
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.pattern import MISSING, Condition
 from actr3d.actr.plain import UNKNOWN, plain_value
-from actr3d.actr.sources import function_node
+from actr3d.actr.sources import function_node, source_of, syntax_tree
 from actr3d.actr.vocabulary import slots_given, slots_named
 from actr3d.errors import ModelWarning, did_you_mean
 
@@ -253,22 +253,14 @@ def _class_node(klass: type, func: Callable[..., Any]) -> ast.ClassDef | None:
     """Returns the definition of a class that a function of it stands in."""
     line = func.__code__.co_firstlineno
     found: ast.ClassDef | None = None
-    for node in _classes("".join(linecache.getlines(func.__code__.co_filename))):
+    for node in _classes(source_of(func)):
         if node.name == klass.__name__ and node.lineno <= line <= (node.end_lineno or 0):
             found = node
     return found
 
 
 def _classes(text: str) -> Iterator[ast.ClassDef]:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text)
-    except (SyntaxError, ValueError):
-        return
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ClassDef):
-            yield node
+    return (node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.ClassDef))
 
 
 def _check_parameters(system: ProductionSystem) -> None:

@@ -82,9 +82,6 @@ class Past:
         return attributes
 
     def empty(self, system: ProductionSystem, name: str) -> bool:
-        seen = self._seen.get(system._path, {})
-        if f"{name}=None" in seen:
-            return seen[f"{name}=None"]
         return not self._values(system._context[name])
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:

@@ -18,13 +18,21 @@ SOURCE = "__actr3d_source__"
 
 
 @lru_cache(maxsize=64)
+def syntax_tree(text: str) -> ast.Module:
+    """Parses a file's text; an empty tree where it is no Python now (the file has changed since it was loaded)."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
+            return ast.parse(text)
+    except (SyntaxError, ValueError):
+        return ast.Module([], [])
+
+
+@lru_cache(maxsize=64)
 def _functions(text: str) -> dict[tuple[str, int], ast.FunctionDef]:
     """Returns every function of a file by its name and first line (that of its first decorator)."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
-        tree = ast.parse(text)
     found: dict[tuple[str, int], ast.FunctionDef] = {}
-    for node in ast.walk(tree):
+    for node in ast.walk(syntax_tree(text)):
         if isinstance(node, ast.FunctionDef):
             line = min([node.lineno, *(d.lineno for d in node.decorator_list)])
             found[node.name, line] = node
@@ -34,13 +42,10 @@ def _functions(text: str) -> dict[tuple[str, int], ast.FunctionDef]:
 def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
     """Returns the syntax tree of a function's definition, or None where its source is not to be had."""
     code = func.__code__
-    try:
-        return _functions(_source(func)).get((code.co_name, code.co_firstlineno))
-    except (SyntaxError, ValueError):  # the file has changed since, and is no Python now
-        return None
+    return _functions(source_of(func)).get((code.co_name, code.co_firstlineno))
 
 
-def _source(func: Callable[..., Any]) -> str:
+def source_of(func: Callable[..., Any]) -> str:
     """Returns the text of a function's file: as it was loaded, where this library loaded it, or as it is now."""
     names = func.__globals__
     filename = func.__code__.co_filename

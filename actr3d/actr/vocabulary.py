@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ast
-import linecache
 import re
-import warnings
 from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Any
+
+from actr3d.actr.sources import source_of, syntax_tree
 
 _NAMED = re.compile(r"(?:^|\s)(\w+):\S")
 
@@ -17,17 +17,17 @@ def slots_given(func: Callable[..., Any]) -> set[str]:
     """Returns every name in the file of a function that may become a slot of a chunk: named slots in texts, keyword
     arguments, keys of dicts, attributes, and names that are assigned; patterns of productions do not count.
     """
-    return set(_given("".join(linecache.getlines(func.__code__.co_filename, func.__globals__))))
+    return set(_given(source_of(func)))
 
 
 def slots_named(func: Callable[..., Any]) -> set[str]:
     """Returns the names in the file of a function that texts show to be slots: what may have been meant by another."""
-    return set(_named("".join(linecache.getlines(func.__code__.co_filename, func.__globals__))))
+    return set(_named(source_of(func)))
 
 
 @lru_cache(maxsize=16)
 def _named(text: str) -> frozenset[str]:
-    nodes = _outside_patterns(_tree(text))
+    nodes = _outside_patterns(syntax_tree(text))
     texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
     return frozenset(name for text in texts for name in _NAMED.findall(text))
 
@@ -35,7 +35,7 @@ def _named(text: str) -> frozenset[str]:
 @lru_cache(maxsize=16)
 def _given(text: str) -> frozenset[str]:
     found: set[str] = set()
-    for node in _outside_patterns(_tree(text)):
+    for node in _outside_patterns(syntax_tree(text)):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             found.update(_NAMED.findall(node.value))
             if node.value.isidentifier():
@@ -50,15 +50,6 @@ def _given(text: str) -> frozenset[str]:
         elif isinstance(node, ast.Name):
             found.add(node.id)
     return frozenset(found)
-
-
-def _tree(text: str) -> ast.AST:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
-            return ast.parse(text)
-    except (SyntaxError, ValueError):
-        return ast.Module([], [])
 
 
 def _outside_patterns(node: ast.AST) -> Iterator[ast.AST]:
