@@ -30,6 +30,30 @@ class ParameterError(Actr3dError):
     """A parameter has a wrong name, type or value."""
 
 
+class ConfigurationError(Actr3dError):
+    """A field of a configuration has a wrong name, type or value."""
+
+
+class WorldError(Actr3dError):
+    """A scene cannot be built, or something in a world is not there or cannot be done."""
+
+
+class MeshError(WorldError):
+    """A mesh cannot be read, or is not fit for a world."""
+
+
+class CameraError(Actr3dError):
+    """A camera cannot be made, or cannot look."""
+
+
+class SimulationError(Actr3dError):
+    """A simulation cannot be set up, stepped or brought to a time, as asked."""
+
+
+class RecordingError(Actr3dError):
+    """A recording cannot be written or read."""
+
+
 class GridError(Actr3dError):
     """A grid world cannot be made, or a body in it placed or moved, as asked."""
 

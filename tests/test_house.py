@@ -18,13 +18,14 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "trace"}
+BASE = {"errors", "clock", "trace", "configuration"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
 PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
+    "configuration": {"errors"},
     "trace": {"errors", "clock"},
     "actr": BASE,
     "world": BASE,
@@ -41,7 +42,7 @@ PARTS: dict[str, set[str]] = {
     "models": BASE | BODILY | SENSES | RUNNING,
 }
 """Every part of the library, and the parts that it may import."""
-NOT_IN_THE_CORE = {"numpy", "scipy", "mujoco", "trimesh"}
+NOT_IN_THE_CORE = {"numpy", "numba", "scipy", "mujoco", "trimesh"}
 NOT_IN_THE_LIBRARY = {"workbench", "fastapi", "starlette", "uvicorn", "websockets", "viser", "mjviser"}
 
 

@@ -1,0 +1,139 @@
+"""The base of every configuration: frozen values whose types and bounds are checked once, here."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+from functools import cache
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import annotated_types
+
+from actr3d.errors import ConfigurationError, did_you_mean
+
+
+class Configuration:
+    """Checks the fields of a frozen dataclass against the types and bounds they are declared with.
+
+    A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds stand in its type, as
+    `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MultipleOf`), its unit and source in the
+    docstring below it. Whole numbers are taken for `float`; NaN and infinities are refused unless bounds say `None`.
+    """
+
+    def __post_init__(self) -> None:
+        """Checks every field.
+
+        Raises:
+            ConfigurationError: Names the class and field, what was given, and what would be right.
+        """
+        hints = _hints(type(self))
+        for field in fields(self):  # pyright: ignore[reportArgumentType] # subclasses are dataclasses
+            value = getattr(self, field.name)
+            checked = _checked(value, hints[field.name], f"{type(self).__name__}.{field.name}")
+            if checked is not value:
+                object.__setattr__(self, field.name, checked)
+
+    @classmethod
+    def from_mapping(cls, values: Mapping[str, Any]) -> Any:
+        """Makes a configuration from names and values, as they come from a file or a page.
+
+        Raises:
+            ConfigurationError: If a name is not a field, or a value is not what its field takes.
+        """
+        known = [field.name for field in fields(cls)]  # pyright: ignore[reportArgumentType]
+        for name in values:
+            if name not in known:
+                raise ConfigurationError(f"{cls.__name__} has no field '{name}'{did_you_mean(name, known)}")
+        return cls(**values)
+
+
+@cache
+def _hints(of: type) -> dict[str, Any]:
+    return get_type_hints(of, include_extras=True)
+
+
+def _checked(value: Any, declared: Any, where: str) -> Any:
+    """Returns the value as its declared type has it (an int for a float becomes a float, a list a tuple)."""
+    origin = get_origin(declared)
+    if origin is Annotated:
+        inner, *bounds = get_args(declared)
+        checked = _checked(value, inner, where)
+        for bound in bounds:
+            _hold(bound, checked, where)
+        return checked
+    if origin in (Union, UnionType):
+        return _one_of(value, get_args(declared), where)
+    if origin is Literal:
+        if value in get_args(declared):
+            return value
+        options = get_args(declared)
+        near = did_you_mean(value, options) if isinstance(value, str) else ""
+        raise ConfigurationError(f"{where}: must be one of {', '.join(map(repr, options))} (got {value!r}){near}")
+    if origin is tuple:
+        return _tuple(value, get_args(declared), where)
+    return _plain(value, origin or declared, where)
+
+
+def _plain(value: Any, declared: Any, where: str) -> Any:
+    if declared is Any:
+        return value
+    if declared is float:
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            if math.isfinite(value):
+                return float(value)
+            raise ConfigurationError(f"{where}: must be a finite number (got {value!r})")
+    elif declared is int:
+        if isinstance(value, int) and not isinstance(value, bool):
+            return value
+    elif isinstance(declared, type) and isinstance(value, declared):
+        return value
+    names = {float: "a number", int: "a whole number", str: "text", bool: "True or False"}
+    name = names.get(declared) or getattr(declared, "__name__", str(declared))
+    raise ConfigurationError(f"{where}: must be {name} (got {value!r})")
+
+
+def _one_of(value: Any, options: tuple[Any, ...], where: str) -> Any:
+    if value is None and NoneType in options:
+        return None
+    refused: list[ConfigurationError] = []
+    for option in options:
+        if option is NoneType:
+            continue
+        try:
+            return _checked(value, option, where)
+        except ConfigurationError as error:
+            refused.append(error)
+    raise refused[0]
+
+
+def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        raise ConfigurationError(f"{where}: must be a tuple (got {value!r})")
+    values: tuple[Any, ...] = tuple(value)
+    if len(items) == 2 and items[1] is Ellipsis:
+        items = (items[0],) * len(values)
+    if len(values) != len(items):
+        raise ConfigurationError(f"{where}: must have {len(items)} values (got {len(values)}: {value!r})")
+    return tuple(_checked(item, declared, f"{where}[{n}]") for n, (item, declared) in enumerate(zip(values, items, strict=True)))
+
+
+def _hold(bound: object, value: Any, where: str) -> None:
+    if value is None:
+        return
+    match bound:
+        case annotated_types.Gt(gt=limit):
+            holds, says = value > limit, f"> {limit}"
+        case annotated_types.Ge(ge=limit):
+            holds, says = value >= limit, f">= {limit}"
+        case annotated_types.Lt(lt=limit):
+            holds, says = value < limit, f"< {limit}"
+        case annotated_types.Le(le=limit):
+            holds, says = value <= limit, f"<= {limit}"
+        case annotated_types.MinLen(min_length=least):
+            holds, says = len(value) >= least, f"at least {least} long"
+        case _:
+            return
+    if not holds:
+        raise ConfigurationError(f"{where}: must be {says} (got {value!r})")

@@ -1,0 +1,1 @@
+"""The bodies that minds can live in, one a file."""

@@ -1,0 +1,70 @@
+"""Configurations check their fields once, and say what is wrong and what would be right."""
+
+from __future__ import annotations
+
+from dataclasses import FrozenInstanceError, dataclass
+from typing import Annotated, Any, Literal
+
+import pytest
+from annotated_types import Ge, Gt, Le, Lt, MinLen
+
+from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lamp(Configuration):
+    power: Annotated[float, Gt(0), Le(100)] = 60.0
+    bulbs: Annotated[int, Ge(1), Lt(10)] = 1
+    name: Annotated[str, MinLen(1)] = "lamp"
+    shade: Literal["paper", "glass"] = "paper"
+    position: tuple[float, float] = (0.0, 0.0)
+    hours: tuple[Annotated[float, Ge(0)], ...] = ()
+    limit: Annotated[float, Gt(0)] | None = None
+    lit: bool = False
+
+
+def test_right_values_are_taken_and_brought_to_their_types() -> None:
+    lamp = Lamp(power=40, position=[1, 2], hours=[3], limit=5)  # pyright: ignore[reportArgumentType]
+    assert lamp == Lamp(power=40.0, position=(1.0, 2.0), hours=(3.0,), limit=5.0)
+    assert type(lamp.power) is float
+    assert Lamp(limit=None).limit is None
+
+
+def test_it_is_frozen() -> None:
+    with pytest.raises(FrozenInstanceError):
+        Lamp().power = 3  # pyright: ignore[reportAttributeAccessIssue]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "message"),
+    [
+        ("power", 0, r"Lamp\.power: must be > 0 \(got 0\.0\)"),
+        ("power", 101, r"Lamp\.power: must be <= 100"),
+        ("power", "60", r"Lamp\.power: must be a number \(got '60'\)"),
+        ("power", True, r"Lamp\.power: must be a number \(got True\)"),
+        ("power", float("nan"), r"Lamp\.power: must be a finite number"),
+        ("power", float("inf"), r"Lamp\.power: must be a finite number"),
+        ("power", None, r"Lamp\.power: must be a number \(got None\)"),
+        ("bulbs", 1.5, r"Lamp\.bulbs: must be a whole number"),
+        ("bulbs", 0, r"Lamp\.bulbs: must be >= 1"),
+        ("bulbs", 10, r"Lamp\.bulbs: must be < 10"),
+        ("name", "", r"Lamp\.name: must be at least 1 long"),
+        ("shade", "papr", r"must be one of 'paper', 'glass' \(got 'papr'\); did you mean 'paper'\?"),
+        ("position", (1, 2, 3), r"Lamp\.position: must have 2 values \(got 3"),
+        ("position", "ab", r"Lamp\.position: must be a tuple"),
+        ("position", (1, "a"), r"Lamp\.position\[1\]: must be a number"),
+        ("hours", (1, -1), r"Lamp\.hours\[1\]: must be >= 0"),
+        ("limit", -1, r"Lamp\.limit: must be > 0"),
+        ("lit", 1, r"Lamp\.lit: must be True or False"),
+    ],
+)
+def test_wrong_values_are_refused_with_a_reason(field: str, value: Any, message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        Lamp(**{field: value})
+
+
+def test_names_that_are_not_fields_are_refused() -> None:
+    assert Lamp.from_mapping({"power": 20}) == Lamp(power=20.0)
+    with pytest.raises(ConfigurationError, match="Lamp has no field 'powr'; did you mean 'power'"):
+        Lamp.from_mapping({"powr": 20})

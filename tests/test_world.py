@@ -1,0 +1,102 @@
+"""A world is compiled from a scene, keeps exact time, and goes on exactly from a state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+import pytest
+from living import near
+
+from actr3d.errors import Actr3dError
+from actr3d.world import Aperture, Floor, Loose, Scene, Track, Wall, World
+
+
+def doorway(width: float = 0.7, heading: float = 0.0) -> World:
+    return World(Scene(parts=(Floor(), Aperture(width=width, heading=heading, position=(3.0, 1.0)), Loose(name="box"))))
+
+
+def faces(world: World) -> float:
+    """Returns the free width [m], measured between the inner faces of the two segments by a ray each way."""
+    world.refresh()
+    across = np.array([-np.sin(world.scene.parts[1].heading), np.cos(world.scene.parts[1].heading), 0.0])
+    start, geom = np.array([3.0, 1.0, 1.0]), np.zeros(1, dtype=np.int32)
+    reach = [mujoco.mj_ray(world.mj_model, world.mj_data, start, way, None, 1, -1, geom, None) for way in (across, -across)]
+    return sum(reach)
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.4, 2.0])
+def test_the_aperture_is_as_wide_as_it_says_before_and_during_a_run(heading: float) -> None:
+    world = doorway(0.7, heading)
+    assert world.aperture_width() == near(0.7, abs=1e-12)
+    assert faces(world) == near(0.7, abs=1e-9)
+    world.step(10)
+    world.set_aperture_width(0.45)
+    assert world.aperture_width() == near(0.45, abs=1e-12)
+    world.step(10)
+    assert faces(world) == near(0.45, abs=1e-9)
+
+
+def test_going_on_from_a_state_gives_the_same_bytes() -> None:
+    world = doorway()
+    world.step(100)
+    world.set_aperture_width(0.5)
+    world.step(13)
+    state = world.state()
+    world.step(200)
+    first = world.state()
+    world.set_aperture_width(0.9)
+    world.restore(state)
+    assert world.aperture_width() == near(0.5, abs=1e-12)
+    world.step(200)
+    assert world.state().mj_state.tobytes() == first.mj_state.tobytes()
+    assert (world.time, first.steps) == (626_000, 313)
+
+
+def test_looking_at_positions_changes_nothing() -> None:
+    watched, unwatched = doorway(), doorway()
+    for _ in range(50):
+        watched.refresh()
+        watched.step(5)
+        unwatched.step(5)
+    assert watched.state().mj_state.tobytes() == unwatched.state().mj_state.tobytes()
+
+
+def test_a_loose_object_falls_and_lies_on_the_floor() -> None:
+    world = doorway()
+    world.step(1000)
+    world.refresh()
+    assert world.mj_data.body("box").xpos[2] == near(0.15, abs=2e-3)
+
+
+def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
+    world = World(Scene(parts=(Track(points=((0, 0), (10, 0)), width=4),)))
+    assert sorted(world.mj_model.geom_pos[:, 1]) == [-2, 2]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: Wall(name="w", start=(1, 1), end=(1, 1)), "Wall 'w': start and end are the same point"),
+        (lambda: Loose(name="b", shape="cylinder", size=(1, 2, 3)), r"a cylinder takes radius and height \(got \(1\.0, 2\.0, 3\.0\)\)"),
+        (lambda: Loose(name="b", mass=0), r"Loose\.mass: must be > 0"),
+        (lambda: Track(points=((0, 0),)), r"Track\.points: must be at least 2 long"),
+        (lambda: Scene(parts=(Floor(), Floor())), "two parts are named 'floor'"),
+        (lambda: Scene(parts=("floor",)), "'floor' is not a part"),
+        (lambda: Scene(timestep=0.0000015), "must be a whole number of microseconds"),
+        (lambda: doorway().set_aperture_width(-1), r"Aperture\.width: must be >= 0 \(got -1\.0\)"),
+        (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
+        (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
+    ],
+)
+def test_wrong_scenes_are_refused_with_a_reason(wrong: Callable[[], object], message: str) -> None:
+    with pytest.raises(Actr3dError, match=message):
+        wrong()
+
+
+def test_physics_that_diverges_says_so() -> None:
+    world = doorway()
+    world.mj_data.qvel[0] = 1e20
+    with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
