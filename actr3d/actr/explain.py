@@ -18,6 +18,7 @@ from actr3d.actr.plain import UNKNOWN, plain_value
 from actr3d.actr.retrievals import RetrievalReason, live_retrieval, past_retrieval
 from actr3d.clock import microseconds
 from actr3d.errors import ParameterError, did_you_mean
+from actr3d.trace import TraceEvent
 
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
@@ -197,6 +198,10 @@ def _fails(production: Production, condition: Condition, state: State, bindings:
         key = bindings.get(key[1:], key)
         key = int(key) if isinstance(key, str) and key.isdecimal() else key
     found = state.slot(system, name, key)
+    if found is UNKNOWN:
+        # Only the object's own code can tell its text, and did so when the productions were matched.
+        agrees = state.call(production, condition, bindings)
+        return None if agrees else (text, f"'{value}'", "an object whose text only its own code can tell")
     if op == "bind" and not isinstance(found, Missing):
         bindings[value] = found
         return None
@@ -237,9 +242,12 @@ def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
         raise ParameterError("explain(at): only a run traced from before that time can tell its past; call traced() before the run")
     if time > agent.sch.now_us:
         raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
-    events = list(trace)
+    *_, top = agent._line()
+    run = TraceEvent(0, top._path, "", {}).run
+    events = [event for event in trace if event.run == run]
     if not events or time < events[0].time_us:
-        raise ParameterError(f"explain(at): the trace begins at {events[0].time if events else agent.now():g} s (got {at:g} s)")
+        begin = events[0].time if events else agent.now()
+        raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
     state = Past(events, time)
     return _explanation(agent, state, [past_retrieval(memory._path, events, time) for memory in _memories(agent)])
 

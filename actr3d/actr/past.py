@@ -9,8 +9,10 @@ from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Slot, as_text
 from actr3d.actr.model import Model
 from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing
+from actr3d.actr.plain import UNKNOWN
 from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
+from actr3d.values import Opaque
 
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
@@ -44,6 +46,10 @@ class Past:
         source, data = event.source, event.data
         if event.kind in ("state", "buffer"):
             self._attributes.setdefault(source, {}).update(data)
+        elif event.kind == "productions":
+            self._matched[source] = dict.fromkeys(data["matched"])
+            self._drawn[source] = data["drawn"]
+            self._chosen[source] = data["chosen"]
         elif event.kind == "observe":
             self._seen.setdefault(source, {}).update(data)
         elif event.kind == "conflict":
@@ -68,8 +74,9 @@ class Past:
         if f"{name}.{key}" in seen:
             return MISSING if seen[f"{name}.{key}"] is None else seen[f"{name}.{key}"]
         values = self._values(target)
-        if str(key) in values:
-            return as_text(values[str(key)])
+        value = values.get(str(key), MISSING)
+        if value is not MISSING:
+            return UNKNOWN if isinstance(value, Opaque) else as_text(value)
         return MISSING
 
     def _values(self, target: Any) -> Mapping[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -10,6 +10,7 @@ from actr3d.actr.events import AGAIN
 from actr3d.actr.model import Method, pick
 from actr3d.actr.production import Production
 from actr3d.actr.production_system import ProductionSystem
+from actr3d.actr.traced import traceable
 from actr3d.actr.utility import ProceduralSubModule
 from actr3d.trace import Trace
 
@@ -117,26 +118,33 @@ class ACTR(ProductionSystem):
         if self._weighed:
             names = self._adaptor_names()
             data["parts"] = {p.name: dict(zip(names, parts, strict=True)) for p, parts in self._weighed.items()}
-            data["drawn"] = [adaptor.name for adaptor in self._adaptors if adaptor.draws]
+            data["drawn"] = self._drawn_names()
         trace.emit(self.sch.now_us, self._path, "conflict", data)
 
     def _trace_state(self, trace: Trace) -> None:
         super()._trace_state(trace)
         if trace.all:
+            # A modeller's own module might change something when it is asked.
+            own = {adaptor.name for adaptor in self._adaptors if not type(adaptor).utility.__module__.startswith("actr3d.actr.")}
             for production in self._productions:
-                for name, value in self._utility_parts(production).items():
+                for name, value in self._utility_parts(production, leave_out=own).items():
                     if value is not None:
                         data = {"production": production.name, "part": name, "value": value}
                         trace.emit(self.sch.now_us, self._path, "utility", data)
 
+    def _drawn_names(self) -> list[str]:
+        return [adaptor.name for adaptor in self._adaptors if adaptor.draws]
+
     def _adaptor_names(self) -> list[str]:
         return [adaptor.name for adaptor in self._adaptors]
 
-    def _utility_parts(self, production: Production) -> dict[str, float | None]:
+    def _utility_parts(self, production: Production, leave_out: Collection[str] = ()) -> dict[str, float | None]:
         drawn = self._weighed.get(production) if self._chosen is not None else None
         parts: dict[str, float | None] = {}
         for number, adaptor in enumerate(self._adaptors):
-            if adaptor.draws:
+            if adaptor.name in leave_out:
+                parts[adaptor.name] = None
+            elif adaptor.draws:
                 parts[adaptor.name] = None if drawn is None else drawn[number]
             else:
                 parts[adaptor.name] = adaptor.utility(production)
@@ -169,7 +177,7 @@ class ACTR(ProductionSystem):
         """Gives a reward to the productions that led here."""
         trace = self.sch.trace
         if trace is not None and trace.production:
-            trace.emit(self.sch.now_us, self._path, "reward", {"value": value})
+            trace.emit(self.sch.now_us, self._path, "reward", {"value": traceable(value)})
         for adaptor in self._adaptors:
             adaptor.reward(value)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.checks import check_names, check_rules
@@ -12,7 +12,9 @@ from actr3d.actr.model import Method, MethodWrapper, Model, pick
 from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
+from actr3d.actr.traced import traceable
 from actr3d.errors import ProductionException, did_you_mean
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
@@ -87,6 +89,9 @@ class ProductionSystem(Model):
         unchecked = check_rules(self)
         for production in self._initializers:
             production.bound = {}
+            trace = self.sch.trace
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "initialize", {"method": production.name})
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
@@ -138,12 +143,31 @@ class ProductionSystem(Model):
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
         return matching
 
+    def _trace_state(self, trace: Trace) -> None:
+        super()._trace_state(trace)
+        if trace.all:
+            matcher, chosen = self._matcher, self._chosen
+            data = {
+                "productions": [production.name for production in self._productions],
+                "initializers": [production.name for production in self._initializers],
+                "chosen": None if chosen is None else chosen.name,
+                "matched": [] if matcher is None else [production.name for production in matcher.last],
+                "drawn": self._drawn_names(),
+            }
+            trace.emit(self.sch.now_us, self._path, "productions", data)
+            if matcher is not None and matcher.looked:
+                trace.emit(self.sch.now_us, self._path, "observe", dict(matcher.looked))
+
+    def _drawn_names(self) -> list[str]:
+        """Returns the names of the modules whose part of a utility is drawn anew at each choice."""
+        return []
+
     def _adaptor_names(self) -> list[str]:
         """Returns the names of the modules that add to utilities."""
         return []
 
-    def _utility_parts(self, production: Production) -> dict[str, float | None]:
-        """Returns what each of these adds now; None for what is drawn only at a choice."""
+    def _utility_parts(self, production: Production, leave_out: Collection[str] = ()) -> dict[str, float | None]:
+        """Returns what each of these adds now; None for what is drawn only at a choice, and for what is to be left out."""
         return {}
 
     def _select(self, choice: Production) -> None:
@@ -163,7 +187,8 @@ class ProductionSystem(Model):
         self.__dict__["_chosen"] = None
         trace = self.sch.trace
         if trace is not None and trace.production:
-            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": choice.bound or {}})
+            bound = traceable(choice.bound) if choice.more_bound else dict(choice.bound or {})
+            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": bound})
         if self.log is not dummy:
             self.log.production = None
         choice.fire()

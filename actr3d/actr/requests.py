@@ -8,7 +8,8 @@ from functools import partial
 from typing import Any
 
 from actr3d.actr.chunk import Chunk
-from actr3d.actr.search import Search
+from actr3d.actr.search import PlainSearch, Search
+from actr3d.actr.traced import chunk_text, traceable
 
 
 @dataclass(slots=True)
@@ -53,15 +54,17 @@ class Retrieval:
 
     def snapshot(self) -> Callable[[], dict[str, Any]]:
         """Returns a function that makes plain values of the request; what may change later is taken down now."""
-        names = [str(candidate.chunk) for candidate in self.candidates]
-        return partial(self._data, names, [str(chunk) for chunk in self.marked], [str(chunk) for chunk in self.excluded])
+        names = [chunk_text(candidate.chunk) for candidate in self.candidates]
+        pattern = self.pattern if type(self.pattern) is str else str(traceable(self.pattern))
+        asked = None if type(self.search) is PlainSearch else str(self.search)
+        return partial(self._data, names, [chunk_text(c) for c in self.marked], [chunk_text(c) for c in self.excluded], pattern, asked)
 
-    def _data(self, names: list[str], marked: list[str], excluded: list[str]) -> dict[str, Any]:
+    def _data(self, names: list[str], marked: list[str], excluded: list[str], pattern: str, asked: str | None) -> dict[str, Any]:
         chosen = next((number for number, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
         rows = [[name, list(c.parts), c.partial, c.activation] for name, c in zip(names, self.candidates, strict=True)]
         return {
-            "pattern": str(self.pattern),
-            "asked": str(self.search),
+            "pattern": pattern,
+            "asked": str(self.search) if asked is None else asked,
             "threshold": self.threshold,
             "require_new": self.require_new,
             "finsts": marked,

@@ -124,7 +124,7 @@ def past_retrieval(memory: str, events: Sequence[TraceEvent], time: int) -> Retr
         if event.time_us > time:
             break
         if event.source == memory and event.kind == "request":
-            request, outcome = event, "pending"
+            request, outcome = event, event.data.get("outcome", "pending")
         elif event.source == memory and event.kind == "retrieval":
             outcome = "failed" if event.data["failed"] else "retrieved"
-    return None if request is None else _reason(memory, request.time, request.data, outcome)
+    return None if request is None else _reason(memory, request.data.get("made", request.time), request.data, outcome)

@@ -40,7 +40,10 @@ class Part:
 
     @property
     def _path(self) -> str:
-        """The dotted names from below the top model down to this one; «top» for that model itself."""
+        """The dotted names from below the top model down to this one; «top» for that model itself.
+
+        Below the top model of a trace's second run they begin with `top#2`. A part that has left the tree keeps its path.
+        """
         known = self.__dict__.get("_known_path")
         if known is None:
             known = self.__dict__["_known_path"] = self._make_path()
@@ -50,10 +53,22 @@ class Part:
         for part in self._tree():
             part.__dict__.pop("_known_path", None)
 
+    def _keep_path(self) -> None:
+        """Lets this part, and all below it, keep their paths when they leave the tree."""
+        for part in self._tree():
+            part.__dict__["_known_path"] = part._path
+
     def _make_path(self) -> str:
         names: list[str] = []
         part: Any = self
         while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
             names.append(part.name)
             part = above
-        return ".".join(reversed(names)) or "top"
+        top = part.__dict__.get("_top_path", "top")
+        if top != "top" or not names:
+            names.append(top)
+        return ".".join(reversed(names))
+
+    def _path_of(self, name: str) -> str:
+        """Returns the path of something below this part that is no part itself."""
+        return name if self._path == "top" else f"{self._path}.{name}"
