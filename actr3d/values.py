@@ -29,7 +29,7 @@ NAMED = (FunctionType, BuiltinFunctionType, MethodType, type)
 DEEPEST = 16
 """How many levels of lists in lists a record keeps."""
 MOST = 10_000
-"""How many lists in lists a record keeps; more are a net in which every way is gone again and again."""
+"""How often a record keeps a list once more that it has kept before; beyond that it is a net in which every way would be gone."""
 LONGEST = 14_000
 """How long a whole number may be to be written in decimals [bits]; JSON's readers take no longer ones."""
 
@@ -64,6 +64,7 @@ class _Copy:
     def __init__(self, name: Namer | None) -> None:
         self._name = name
         self._above: list[int] = []
+        self._seen: set[int] = set()
         self._left = MOST
 
     def of(self, value: Any) -> Any:
@@ -83,7 +84,8 @@ class _Copy:
         return self._text(value, kind)
 
     def _collection(self, value: Any, kind: Any) -> Any:
-        self._left -= 1
+        self._left -= id(value) in self._seen
+        self._seen.add(id(value))
         if self._left < 0 or len(self._above) >= DEEPEST or id(value) in self._above:
             return "..."
         self._above.append(id(value))
@@ -113,10 +115,11 @@ def to_json(value: Any) -> str:
 
     What JSON has no word for becomes what `plain` makes of it, and the numbers it does not have `"inf"`, `"-inf"` and `"nan"`.
     """
+    value = plain(value)
     try:
         line = json.dumps(value, ensure_ascii=False, allow_nan=False)
-    except (TypeError, ValueError, RecursionError):
-        line = json.dumps(_finite(plain(value)), ensure_ascii=False, allow_nan=False)
+    except ValueError:
+        line = json.dumps(_finite(value), ensure_ascii=False, allow_nan=False)
     # Half a character, which no encoding has, is written as JSON's own escape.
     return line if line.isascii() else line.encode("utf-8", "backslashreplace").decode("utf-8")
 

@@ -114,6 +114,8 @@ def test_deep_cyclic_and_tangled_values_come_to_an_end() -> None:
     for node in net:
         node.extend(net)
     assert len(to_json(plain(net))) < 10_000_000
+    many = [[number] for number in range(50_000)]
+    assert plain(many) == many
     shared = [1]
     assert plain([shared, shared]) == [[1], [1]]
 

@@ -27,12 +27,16 @@ def _known_part(value: object) -> str | None:
 
 def traceable(value: Any) -> Any:
     """Returns what a trace keeps of a value: plain values as they are, chunks, lists and dicts as a copy, parts by their path."""
-    return value if type(value) in LASTING_TYPES else plain(value, _known_part)
+    if type(value) in LASTING_TYPES:
+        return value
+    if type(value) is Chunk and LASTING_TYPES.issuperset(map(type, value.values())):
+        return {key if type(key) is str else str(plain(key)): item for key, item in value.items()}
+    return plain(value, _known_part)
 
 
 def chunk_text(chunk: Chunk) -> str:
     """Returns a chunk as text, without asking the objects in its slots for theirs."""
-    if LASTING_TYPES.issuperset(map(type, chunk.values())):
+    if chunk._text is not None or LASTING_TYPES.issuperset(map(type, chunk.values())):
         return str(chunk)
     return str(Chunk({key: traceable(value) for key, value in chunk.items()}))
 
