@@ -12,7 +12,7 @@ from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.keywords import check_keywords
 from actr3d.actr.model import Model, pick
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters, warn_of_slip
 from actr3d.actr.partial import Partial
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.requests import Candidate, Retrieval
@@ -22,7 +22,7 @@ from actr3d.actr.store import ChunkStore
 from actr3d.errors import ChunkError
 
 
-class Memory(Model):
+class Memory(WithParameters, Model):
     """Declarative memory: keeps chunks, and brings the most active one that matches a request to a buffer.
 
     Args:
@@ -87,7 +87,9 @@ class Memory(Model):
             value = ChunkStore(value)  # a modeller's own list of chunks
         elif key == "latency":
             self.__dict__["_latency_given"] = True
-        super().__setattr__(key, value)
+        elif key not in self.__dict__:
+            warn_of_slip(self, key)
+        Model.__setattr__(self, key, value)
 
     # -- what is known
 

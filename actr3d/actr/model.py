@@ -12,7 +12,7 @@ from actr3d.actr import logger as logs
 from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
 from actr3d.actr.events import Trigger
 from actr3d.actr.limits import RunLimits, fresh_seed
-from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
+from actr3d.actr.members import check_names, class_members, copy_objects, has_setter, minding_properties
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import PROFILES, Profile
 from actr3d.actr.saying import warn_modeller
@@ -179,8 +179,8 @@ class Model(TracedPart):
         setters = {name for name, member in vars(cls).items() if has_setter(member)}
         if setters:
             cls._setters = cls._setters | setters
-            if "__setattr__" not in vars(cls):
-                type.__setattr__(cls, "__setattr__", set_with_properties)
+            if "__setattr__" not in vars(cls) and cls.__setattr__.__name__ != "set_with_properties":
+                type.__setattr__(cls, "__setattr__", minding_properties(cls.__setattr__))
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
@@ -298,7 +298,10 @@ class Model(TracedPart):
             SchedulerError: If time stands still, or something cannot be waited for.
         """
         if not self._converted:
+            from actr3d.actr.checks import check_classes
+
             self._convert()
+            check_classes(self)
         if func is not None:
             self.sch.add(func)
         self.sch.run(limit)
@@ -312,14 +315,6 @@ class Model(TracedPart):
         """Returns the present [s]."""
         self._ensure_converted()
         return self.sch.now_us / 1_000_000
-
-
-def set_with_properties(model: Model, key: str, value: Any) -> None:
-    """Sets an attribute of a model whose class has properties that can be set."""
-    if key in model._setters:
-        object.__setattr__(model, key, value)
-    else:
-        Model.__setattr__(model, key, value)
 
 
 def written_for_python_actr(kind: type) -> bool:
