@@ -37,16 +37,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         else:
             trigger.waiting.append(event)
     elif isinstance(result, (list, tuple)):
-        choices = list(_each(cast("Sequence[Any]", result)))
-        if any(choice is None for choice in choices):
-            warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
-        if not choices:
-            raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; nothing is in it")
-        events = [copy.copy(event) for _ in choices]
-        for alternative in events:
-            alternative.group = events
-        for choice, alternative in zip(choices, events, strict=True):
-            wait(sch, alternative, choice)
+        _wait_for_first(sch, event, cast("Sequence[Any]", result))
     elif result is None:
         sch.finish(event)
     elif isinstance(result, Event):
@@ -63,6 +54,20 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
             f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
             "the event of a called generator method, or a tuple of these"
         )
+
+
+def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> None:
+    """Puts an event where each of several things says; the first that comes about counts."""
+    choices = list(_each(several))
+    if any(choice is None for choice in choices):
+        warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
+    if not choices:
+        raise SchedulerError(f"{event.describe()}: cannot wait for {several!r}; nothing is in it")
+    events = [copy.copy(event) for _ in choices]
+    for alternative in events:
+        alternative.group = events
+    for choice, alternative in zip(choices, events, strict=True):
+        wait(sch, alternative, choice)
 
 
 def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
