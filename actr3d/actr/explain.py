@@ -226,7 +226,15 @@ def _systems(agent: ProductionSystem) -> Iterator[ProductionSystem]:
 
 
 def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
-    """Explains an agent, the parallel systems inside it, and its memories; see `ProductionSystem.explain`."""
+    """Explains an agent, the parallel systems inside it, and its memories; see `ProductionSystem.explain`.
+
+    Args:
+        agent: The agent.
+        at: A past time of a traced run [s]; None for now.
+
+    Raises:
+        ParameterError: If the run was not traced (level «all») at that time, or it lies in the future.
+    """
     agent._ensure_converted()
     if at is None:
         numbers = agent.random.getstate()

@@ -13,7 +13,7 @@ from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
 from actr3d.actr.events import Trigger
 from actr3d.actr.joining import Joining
 from actr3d.actr.limits import RunLimits, fresh_seed
-from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
+from actr3d.actr.members import check_names, class_members, copy_objects, has_setter, minding_properties
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import PROFILES, Profile
 from actr3d.actr.saying import warn_modeller
@@ -183,8 +183,8 @@ class Model(Joining):
         setters = {name for name, member in vars(cls).items() if has_setter(member)}
         if setters:
             cls._setters = cls._setters | setters
-            if "__setattr__" not in vars(cls):
-                type.__setattr__(cls, "__setattr__", set_with_properties)
+            if "__setattr__" not in vars(cls) and cls.__setattr__.__name__ != "set_with_properties":
+                type.__setattr__(cls, "__setattr__", minding_properties(cls.__setattr__))
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
@@ -278,7 +278,10 @@ class Model(Joining):
             Exception: What a listener of the trace has raised.
         """
         if not self._converted:
+            from actr3d.actr.checks import check_classes
+
             self._convert()
+            check_classes(self)
         sch = self.sch
         if func is not None:
             sch.add(func)
@@ -298,14 +301,6 @@ class Model(Joining):
         """Returns the present [s]."""
         self._ensure_converted()
         return self.sch.now_us / 1_000_000
-
-
-def set_with_properties(model: Model, key: str, value: Any) -> None:
-    """Sets an attribute of a model whose class has properties that can be set."""
-    if key in model._setters:
-        object.__setattr__(model, key, value)
-    else:
-        Model.__setattr__(model, key, value)
 
 
 def written_for_python_actr(kind: type) -> bool:

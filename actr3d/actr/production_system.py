@@ -9,6 +9,7 @@ from actr3d.actr.checks import check_names, check_rules
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model, pick
+from actr3d.actr.parameters import WithParameters
 from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
@@ -24,7 +25,7 @@ FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
 """Parameters that may be functions without arguments, which are no productions then."""
 
 
-class ProductionSystem(Model):
+class ProductionSystem(WithParameters, Model):
     """A model whose methods with patterns are productions; it chooses at random among those that match.
 
     It may be an agent, or stand inside one as a parallel system with a cycle time of its own; it sees its ancestors'
@@ -65,6 +66,11 @@ class ProductionSystem(Model):
             if patterns is not None:
                 own["_productions" if patterns else "_initializers"].append(Production(self, name, func))
         own["_process"] = self.sch.add(self._process_productions)
+
+    def _settable(self) -> set[str]:
+        """Returns the parameters of an agent; all other attributes of agents are the modeller's own."""
+        library = [vars(klass) for klass in type(self).__mro__ if klass.__module__.startswith("actr3d.")]
+        return {name for names in library for name in names if name.startswith("production_")} | {"profile"}
 
     # -- the cycle
 
