@@ -24,6 +24,8 @@ STANDSTILL = 200_000
 
 END = -9999999
 """The priority of a run's end: everything else of that moment comes before it."""
+NO_PART = 1e-15
+"""A smaller part of a duration's microseconds is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
 FAR = 1e12
 """Delays up to here [s] need no further look."""
 
@@ -58,6 +60,11 @@ class Scheduler:
         self.limits: RunLimits | None = RunLimits.current()
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
+        self._spent_us = 0
+        """How much of its time the limits know of [us]."""
+        self._left = 0.0
+        """What rounding has left over of the latest `run(limit)` [us], and when that was to end."""
+        self._left_at = 0
         self._running = False
         self._named: dict[str, Trigger] = {}
         self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
@@ -167,24 +174,23 @@ class Scheduler:
         Raises:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
-        until = None
-        if duration is not None:
-            until = self.now_us + microseconds(duration, "the limit of a run")
-            if until < self.now_us:
-                raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
-        bound = self.limits.clip(self.now_us) if self.limits is not None else None
-        if bound is not None:
-            until = bound if until is None else min(until, bound)
+        end = until = None if duration is None else self._end_after(duration)
+        if self.limits is not None:
+            self._spend()
+            bound = self.limits.clip(self.now_us)
+            if bound is not None:
+                until = bound if until is None else min(until, bound)
         self.stop_flag = False
         heap = self.queue.heap
         idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
-        if duration is not None and not self.queue.first_come:
+        if end is not None and not self.queue.first_come:
             self._run_number += 1
-            self.queue.push(self.now_us + round(duration * MICROSECONDS), Event(self._end, (self._run_number,)), END)
+            self.queue.push(end, Event(self._end, (self._run_number,)), END)
             if idle:
                 self.queue.pop()
         if until is not None and idle:
             self._advance(until)
+            self._spend()
             return
         if self._running:
             warnings.warn(
@@ -196,10 +202,38 @@ class Scheduler:
         before, self._running = self._running, True
         try:
             self._run_events(until)
+            if until is not None and not self.stop_flag and until > self.now_us:
+                self._advance(until)
         finally:
             self._running = before
-        if until is not None and not self.stop_flag and until > self.now_us:
-            self._advance(until)
+            self._spend()
+
+    def _end_after(self, duration: float) -> int:
+        """Returns when a run of `duration` seconds is to end [us].
+
+        That is the whole microsecond nearest to the exact end: what rounding leaves over, the next run takes in, if it
+        begins where this one has ended.
+        """
+        length = microseconds(duration, "the limit of a run")
+        left = float(duration) * MICROSECONDS - length
+        if -NO_PART * length <= left <= NO_PART * length:
+            left = 0.0
+        if self._left and self._left_at == self.now_us:
+            left += self._left
+            more = round(left)
+            length += more
+            left -= more
+        if length < 0:
+            raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
+        self._left = left
+        self._left_at = end = self.now_us + length
+        return end
+
+    def _spend(self) -> None:
+        """Lets the limits know how much time has passed."""
+        if self.limits is not None:
+            self.limits.spend(self.now_us - self._spent_us)
+            self._spent_us = self.now_us
 
     def _end(self, run_number: int) -> None:
         """Ends the run that asked for it; one that was stopped before leaves this without effect."""
