@@ -8,17 +8,17 @@ import sys
 import traceback
 import warnings
 from collections.abc import Generator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn, TextIO, cast
+from typing import Any, NoReturn, TextIO
 
 from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_file
 from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
-from actr3d.output import ModelOutput, finished, kept_apart
+from actr3d.output import ModelOutput, all_written, standard_output
 from actr3d.trace import LEVELS, Trace, TraceEvent
 
 
@@ -30,12 +30,8 @@ def event_line(event: TraceEvent) -> str:
 
 def run_command(options: argparse.Namespace) -> int:
     """Runs a model file."""
-    out = sys.stdout
-    if hasattr(out, "reconfigure"):
-        # A text that the terminal cannot show must not end a run; JSON is UTF-8 wherever it is made.
-        cast("Any", out).reconfigure(encoding="utf-8" if options.json else None, errors="backslashreplace")
-    with kept_apart(out) if options.json else nullcontext(out) as to:
-        return _run(options, to)
+    with standard_output(apart=options.json) as out:
+        return _run(options, out)
 
 
 def _run(options: argparse.Namespace, out: TextIO) -> int:
@@ -52,16 +48,16 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
     limits.last_resort = partial(_leave, out, printed)
     trouble: Exception | None = None
     try:
-        with warnings.catch_warnings(), _printing_to(printed):
+        with warnings.catch_warnings(), _printing_to(printed or out):
             warnings.showwarning = _show_warning
             run_file(options.file, limits=limits)
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
         trouble = error
     except (SystemExit, KeyboardInterrupt):
-        if unwritten := _all_written(out, printed):
+        if unwritten := all_written(out, printed):
             return _complain_of_output(unwritten)
         raise
-    unwritten = _all_written(out, printed)
+    unwritten = all_written(out, printed)
     if trouble is not None and not (unwritten and isinstance(trouble, OSError)):
         _complain(trouble)
     if unwritten:
@@ -70,28 +66,14 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
 
 
 @contextmanager
-def _printing_to(printed: ModelOutput | None) -> Generator[None]:
-    """Lets a model print to something else than standard output inside the block."""
-    if printed is None:
-        yield
-        return
+def _printing_to(out: TextIO) -> Generator[None]:
+    """Lets `out` be what a model prints to inside the block."""
     before = sys.stdout, sys.__stdout__
-    sys.stdout = printed
-    sys.__dict__["__stdout__"] = printed
+    sys.stdout = sys.__dict__["__stdout__"] = out
     try:
         yield
     finally:
         sys.stdout, sys.__dict__["__stdout__"] = before
-
-
-def _all_written(out: TextIO, printed: ModelOutput | None) -> OSError | None:
-    """Writes what is still to be written; returns what is wrong with the output, if anything."""
-    try:
-        if printed is not None:
-            printed.finish()
-    except OSError:
-        pass  # `out` still has it, and says so again
-    return finished(out)
 
 
 def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
@@ -103,7 +85,7 @@ def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
     with suppress(Exception):
         logs.finished()
         sys.stdout.flush()
-    unwritten = _all_written(out, printed)
+    unwritten = all_written(out, printed)
     code = 0 if unwritten is None else _complain_of_output(unwritten)
     with suppress(Exception):
         sys.stderr.flush()

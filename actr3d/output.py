@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, suppress
 from typing import Any, TextIO
@@ -66,66 +67,92 @@ def _text(line: bytes) -> str:
         return line.decode("utf-8", "backslashreplace")
 
 
-@contextmanager
-def kept_apart(out: TextIO) -> Generator[TextIO]:
-    """Keeps standard output for one writer inside the block.
-
-    What else is written to file descriptor 1, by this process or by those that it starts, goes to standard error: it can
-    neither stand in the middle of a line nor be lost.
+class StandardOutput(io.TextIOWrapper):
+    """Standard output as a file of our own, which says once what is wrong with it and takes no more from then on.
 
     Args:
-        out: The present standard output; one that is no file, or another, is left as it is.
-
-    Yields:
-        What to write to instead.
+        number: The file descriptor.
+        like: Whose encoding and buffering it has.
     """
-    if not _is_standard_output(out):
-        yield out
-        return
-    out.flush()
-    with _moved(out) as own:
-        yield own
+
+    def __init__(self, number: int, like: TextIO) -> None:
+        self._raw = _Raw(number, "wb", closefd=False)
+        at_once = bool(getattr(like, "write_through", False))
+        buffer = io.BufferedWriter(self._raw, io.DEFAULT_BUFFER_SIZE)
+        super().__init__(buffer, like.encoding, "backslashreplace", None, bool(like.line_buffering) or at_once, at_once)
+
+    @property
+    def trouble(self) -> OSError | None:
+        """What is wrong with it, if anything."""
+        return self._raw.trouble
 
 
-def _is_standard_output(out: TextIO) -> bool:
-    try:
-        return out.fileno() == 1
-    except (OSError, ValueError):
-        return False
+class _Raw(io.FileIO):
+    trouble: OSError | None = None
+
+    def write(self, data: Any, /) -> int:
+        if self.trouble is None:
+            try:
+                return super().write(data)
+            except OSError as error:
+                self.trouble = error
+                raise
+        return memoryview(data).nbytes
 
 
 @contextmanager
-def _moved(out: TextIO) -> Generator[TextIO]:
-    kept = os.dup(1)
+def standard_output(apart: bool) -> Generator[TextIO]:
+    """Gives standard output to one writer inside the block.
+
+    Args:
+        apart: Whether to keep everybody else away from it: what this process, or one that it starts, writes to file
+            descriptor 1 goes to standard error then, so that it cannot stand in the middle of a line.
+
+    Yields:
+        What to write to: a `StandardOutput`; or `sys.stdout` as it is, where that is no file, or another.
+    """
+    out = sys.stdout
     try:
-        os.dup2(2, 1)
+        ours = out.fileno() == 1
+        out.flush()
+    except (OSError, ValueError):
+        ours = False
+    if not ours:
+        yield out
+    elif apart:
+        with _moved(out) as number:
+            own = StandardOutput(number, out)
+            own.reconfigure(encoding="utf-8", errors="backslashreplace")
+            yield own
+    else:
+        yield StandardOutput(1, out)
+
+
+@contextmanager
+def _moved(out: TextIO) -> Generator[int]:
+    """Lets file descriptor 1 be standard error inside the block, and yields another that is standard output."""
+    try:
+        os.fstat(2)
     except OSError:  # standard error is closed
-        _to_nowhere(1)
-    own = open(kept, "w", buffering=1 if os.isatty(kept) else -1, encoding="utf-8", errors="backslashreplace", newline="\n")  # noqa: PTH123, SIM115
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        if nowhere != 2:
+            os.close(nowhere)
+    kept = os.dup(1)
+    os.dup2(2, 1)
     try:
-        yield own
+        yield kept
     finally:
         with suppress(OSError, ValueError):
             out.flush()  # what a model has written past its own `sys.stdout`
         os.dup2(kept, 1)
-        own.close()
+        os.close(kept)
 
 
-def finished(out: TextIO) -> OSError | None:
-    """Writes what is still to be written; returns what is wrong with the output, which then takes no more."""
-    try:
+def all_written(out: TextIO, printed: ModelOutput | None) -> OSError | None:
+    """Writes what is still to be written; returns what is wrong with the output, if anything."""
+    with suppress(OSError, ValueError):  # it is full, or the model has closed it
+        if printed is not None:
+            printed.finish()
         out.flush()
-    except OSError as error:
-        with suppress(OSError, ValueError):
-            _to_nowhere(out.fileno())
-        return error
-    except ValueError:  # the model has closed it
-        return None
-    return None
-
-
-def _to_nowhere(number: int) -> None:
-    """Lets a file descriptor swallow what is written to it."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, number)
-    os.close(nowhere)
+    return out.trouble if isinstance(out, StandardOutput) else None
