@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar, Token
 from dataclasses import dataclass, field
+from math import inf
 from types import TracebackType
 from typing import Any, Self
 from weakref import WeakSet
@@ -41,10 +42,9 @@ class RunLimits:
     """Tells the time of the latest run [us]."""
     last_resort: Callable[[], Any] | None = field(default=None, repr=False)
     """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
-    ended: bool = field(default=False, init=False)
-    """Whether the end has come."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)
     _used_us: int = field(default=0, init=False, repr=False)
+    _begun: bool = field(default=False, init=False, repr=False)
     _refused: int = field(default=0, init=False, repr=False)
     _drawn: int = field(default=0, init=False, repr=False)
     _models: int = field(default=0, init=False, repr=False)
@@ -74,6 +74,14 @@ class RunLimits:
 
     # -- the end
 
+    @property
+    def ended(self) -> bool:
+        """Whether the end has come: a run has begun, and there is no time left."""
+        return self._begun and self._left_us() <= 0
+
+    def _left_us(self) -> float:
+        return inf if self.until is None else microseconds(self.until, "until") - self._used_us
+
     def spend(self, time_us: int) -> None:
         """Takes note of time that a run has used [us]."""
         if self.until is not None:
@@ -91,15 +99,14 @@ class RunLimits:
         outer = self._outer.clip(now_us) if self._outer is not None else None
         if self.until is None:
             return outer
-        left = microseconds(self.until, "until") - self._used_us
-        if left <= 0 and (self.ended or self._used_us > 0):
-            self.ended = True
+        if self.ended:
             self._refused += 1
             if self._refused > MOST_REFUSALS and self.last_resort is not None:
                 self.last_resort()
             raise EndOfRun
-        self.ended = self.ended or left <= 0
-        return now_us + left if outer is None else min(now_us + left, outer)
+        self._begun = True
+        end = now_us + int(self._left_us())
+        return end if outer is None else min(end, outer)
 
     # -- where they are in force
 
@@ -107,7 +114,7 @@ class RunLimits:
         if not self._tokens:  # the same limits may serve one program after another
             self._drawn = fresh_seed()
             self._models = self._used_us = self._refused = 0
-            self.ended = False
+            self._begun = False
             self._outer = _CURRENT.get()
         self._tokens.append(_CURRENT.set(self))
         _follow_threads(1)

@@ -161,7 +161,7 @@ def load_text(source: str, filename: str = "<model>", *, folder: Path | str | No
             name = f"{stem}_{number}"
         module = _module(name, filename, program)
         # dataclasses and pickling look a class's module up; `sys.modules` is not to keep it alive.
-        known: dict[str, Any] = {name: weakref.proxy(module), **program.as_package(f"{name}_files")}
+        known: dict[str, Any] = {name: _Loaded(module), **program.as_package(f"{name}_files")}
         sys.modules.update(known)
     weakref.finalize(module, _forget, known).atexit = False
     try:
@@ -172,6 +172,31 @@ def load_text(source: str, filename: str = "<model>", *, folder: Path | str | No
     if program.used_old_names:
         module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = True
     return module
+
+
+class _Loaded(ModuleType):
+    """Stands for a loaded text in `sys.modules` without keeping it alive; it is empty when the text's module is gone."""
+
+    def __init__(self, module: ModuleType) -> None:
+        super().__init__(module.__name__)
+        _MODULES[self] = weakref.ref(module)
+
+    @property
+    def __dict__(self) -> dict[str, Any]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        module = _MODULES[self]()
+        return {} if module is None else module.__dict__
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self.__dict__[name]
+        except KeyError:
+            raise AttributeError(f"module '{self.__name__}' has no attribute '{name}'", name=name, obj=self) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self.__dict__[name] = value
+
+
+_MODULES: weakref.WeakKeyDictionary[_Loaded, weakref.ref[ModuleType]] = weakref.WeakKeyDictionary()
 
 
 def _forget(known: dict[str, Any]) -> None:

@@ -12,7 +12,7 @@ from actr3d.actr.events import AGAIN, Event, Trigger
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
 from actr3d.actr.waiting import wait, warn_of_none
-from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
+from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
 from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
@@ -24,8 +24,6 @@ STANDSTILL = 200_000
 
 END = -9999999
 """The priority of a run's end: everything else of that moment comes before it."""
-NO_PART = 1e-15
-"""A smaller part of a duration's microseconds is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
 FAR = 1e12
 """Delays up to here [s] need no further look."""
 
@@ -62,9 +60,7 @@ class Scheduler:
             self.limits.clock = lambda: self.now_us
         self._spent_us = 0
         """How much of its time the limits know of [us]."""
-        self._left = 0.0
-        """What rounding has left over of the latest `run(limit)` [us], and when that was to end."""
-        self._left_at = 0
+        self._ends = Ends()
         self._running = False
         self._named: dict[str, Trigger] = {}
         self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
@@ -174,7 +170,7 @@ class Scheduler:
         Raises:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
-        end = until = None if duration is None else self._end_after(duration)
+        end = until = None if duration is None else self._ends.after(self.now_us, duration)
         if self.limits is not None:
             self._spend()
             bound = self.limits.clip(self.now_us)
@@ -207,27 +203,6 @@ class Scheduler:
         finally:
             self._running = before
             self._spend()
-
-    def _end_after(self, duration: float) -> int:
-        """Returns when a run of `duration` seconds is to end [us].
-
-        That is the whole microsecond nearest to the exact end: what rounding leaves over, the next run takes in, if it
-        begins where this one has ended.
-        """
-        length = microseconds(duration, "the limit of a run")
-        left = float(duration) * MICROSECONDS - length
-        if -NO_PART * length <= left <= NO_PART * length:
-            left = 0.0
-        if self._left and self._left_at == self.now_us:
-            left += self._left
-            more = round(left)
-            length += more
-            left -= more
-        if length < 0:
-            raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
-        self._left = left
-        self._left_at = end = self.now_us + length
-        return end
 
     def _spend(self) -> None:
         """Lets the limits know how much time has passed."""
@@ -290,8 +265,10 @@ class Scheduler:
     def _standstill(self, event: Event) -> SchedulerError:
         """Makes the error that tells of an endless loop in which no time passes, and what was in it."""
         last = self.fired
+        whose = getattr(getattr(event.call, "__self__", None), "_path", None)
         return SchedulerError(
             f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            + (f" of '{whose}'" if whose else "")
             + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
         )
 
