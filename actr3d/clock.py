@@ -47,11 +47,13 @@ class Ends:
     What rounding leaves over of one run, the next takes in, if it begins where that one was to end.
     """
 
-    __slots__ = ("_at", "_left")
+    __slots__ = ("_at", "_duration", "_left", "_length")
 
     def __init__(self) -> None:
         self._left = 0.0
         self._at = 0
+        self._duration = 0.0  # the latest of whole microseconds; most calls ask for the same again
+        self._length = 0
 
     def after(self, now_us: int, duration: float) -> int:
         """Returns when a run that starts now is to end [us].
@@ -63,10 +65,14 @@ class Ends:
         Raises:
             SchedulerError: If the duration is negative or not a finite number.
         """
+        if duration == self._duration and not self._left:
+            return now_us + self._length
         length = microseconds(duration, "the limit of a run")
         left = float(duration) * MICROSECONDS - length
         if -NO_PART * length <= left <= NO_PART * length:
             left = 0.0
+            if length >= 0:
+                self._duration, self._length = duration, length
         if self._left and self._at == now_us:
             left += self._left
             more = round(left)

@@ -244,9 +244,8 @@ def test_a_helper_that_lies_elsewhere_on_the_programs_path_counts_too(folder: Pa
 
 
 def test_a_program_is_over_when_its_threads_are() -> None:
-    source = (
-        "import threading, time\nseen = []\ndef late():\n    time.sleep(0.05)\n    seen.append(1)\nthreading.Thread(target=late).start()\n"
-    )
+    source = "import threading\nseen = []\ndef late():\n    threading.Event().wait(0.05)\n    seen.append(1)\n"
+    source += "threading.Thread(target=late).start()\n"
     module: Any = run_text(source)
     assert module.seen == [1]
 

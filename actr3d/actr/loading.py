@@ -15,7 +15,7 @@ from collections.abc import Callable, Generator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import Lock
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 from zlib import crc32
 
@@ -90,7 +90,12 @@ def run_text(
     module.__dict__.update(names or {})
     if prepare is not None:
         prepare(module)
-    limits = limits or RunLimits()
+    _execute(code, module, program, limits or RunLimits())
+    return module
+
+
+def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLimits) -> None:
+    """Runs a program's code under its limits, and puts everything back afterwards."""
     outer = RunLimits.current()
     with ExitStack() as stack:
         stack.callback(random.setstate, random.getstate())
@@ -99,7 +104,7 @@ def run_text(
         stack.enter_context(aliases(program.old))
         stack.enter_context(_as_main(module, program))
         random.seed(limits.program_seed)
-        logs.LOG.source = filename
+        logs.LOG.source = module.__file__
         stack.callback(_finish)  # also where the program fails: what it logged until then is kept
         try:
             exec(code, module.__dict__)
@@ -109,7 +114,6 @@ def run_text(
         finally:
             limits.wait_for_threads()
         module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = logs.LOG.announce
-    return module
 
 
 def _finish() -> None:

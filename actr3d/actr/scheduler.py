@@ -186,7 +186,8 @@ class Scheduler:
                 self.queue.pop()
         if until is not None and idle:
             self._advance(until)
-            self._spend()
+            if self.limits is not None:
+                self._spend()
             return
         if self._running:
             warnings.warn(
@@ -202,7 +203,8 @@ class Scheduler:
                 self._advance(until)
         finally:
             self._running = before
-            self._spend()
+            if self.limits is not None:
+                self._spend()
 
     def _spend(self) -> None:
         """Lets the limits know how much time has passed."""
