@@ -244,3 +244,10 @@ def test_a_change_anywhere_below_is_a_change_of_the_whole() -> None:
     world.mover()
     world.run(5)
     assert woken == [1]
+
+
+def test_limits_that_are_no_whole_microseconds_do_not_drift() -> None:
+    model: Any = Model()
+    for _ in range(3000):
+        model.run(1 / 30)
+    assert model.now() == 100

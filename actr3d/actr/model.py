@@ -269,8 +269,9 @@ class Model(Joining):
         """Runs the whole tree until nothing is left to do, `stop` is called, or `limit` seconds more have passed.
 
         Args:
-            limit: How long [s from now], to the nearest microsecond; calls with whole microseconds, such as 0.01, can
-                follow one another for ever without drift.
+            limit: How long [s from now]. The clock knows whole microseconds, so a run ends at the one nearest to its
+                exact end, and the next run goes on from there: `run(1/3)` ends at 0.333333, 0.666667 and 1 s. So calls
+                can follow one another for ever without drift.
             func: Called first.
 
         Raises:

@@ -12,7 +12,7 @@ from actr3d.actr.events import AGAIN, Event, Trigger
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
 from actr3d.actr.waiting import wait, warn_of_none
-from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
+from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
 from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
@@ -60,6 +60,9 @@ class Scheduler:
         self.limits: RunLimits | None = RunLimits.current()
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
+        self._spent_us = 0
+        """How much of its time the limits know of [us]."""
+        self._ends = Ends()
         self._running = False
         self._named: dict[str, Trigger] = {}
         self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
@@ -169,24 +172,24 @@ class Scheduler:
         Raises:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
-        until = None
-        if duration is not None:
-            until = self.now_us + microseconds(duration, "the limit of a run")
-            if until < self.now_us:
-                raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
-        bound = self.limits.clip(self.now_us) if self.limits is not None else None
-        if bound is not None:
-            until = bound if until is None else min(until, bound)
+        end = until = None if duration is None else self._ends.after(self.now_us, duration)
+        if self.limits is not None:
+            self._spend()
+            bound = self.limits.clip(self.now_us)
+            if bound is not None:
+                until = bound if until is None else min(until, bound)
         self.stop_flag = False
         heap = self.queue.heap
         idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
-        if duration is not None and not self.queue.first_come:
+        if end is not None and not self.queue.first_come:
             self._run_number += 1
-            self.queue.push(self.now_us + round(duration * MICROSECONDS), Event(self._end, (self._run_number,)), END)
+            self.queue.push(end, Event(self._end, (self._run_number,)), END)
             if idle:
                 self.queue.pop()
         if until is not None and idle:
             self._advance(until)
+            if self.limits is not None:
+                self._spend()
             return
         if self._running:
             warnings.warn(
@@ -198,10 +201,18 @@ class Scheduler:
         before, self._running = self._running, True
         try:
             self._run_events(until)
+            if until is not None and not self.stop_flag and until > self.now_us:
+                self._advance(until)
         finally:
             self._running = before
-        if until is not None and not self.stop_flag and until > self.now_us:
-            self._advance(until)
+            if self.limits is not None:
+                self._spend()
+
+    def _spend(self) -> None:
+        """Lets the limits know how much time has passed."""
+        if self.limits is not None:
+            self.limits.spend(self.now_us - self._spent_us)
+            self._spent_us = self.now_us
 
     def _end(self, run_number: int) -> None:
         """Ends the run that asked for it; one that was stopped before leaves this without effect."""
@@ -258,8 +269,10 @@ class Scheduler:
     def _standstill(self, event: Event) -> SchedulerError:
         """Makes the error that tells of an endless loop in which no time passes, and what was in it."""
         last = self.fired
+        whose = getattr(getattr(event.call, "__self__", None), "_path", None)
         return SchedulerError(
             f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            + (f" of '{whose}'" if whose else "")
             + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
         )
 
