@@ -1,4 +1,4 @@
-"""Limits: the time of all runs together, and threads that keep to them."""
+"""Limits: when runs end at the latest, and threads that keep to them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr import Model
-from actr3d.actr.limits import MOST_REFUSALS, EndOfRun, RunLimits
+from actr3d.actr.limits import MOST_REFUSALS, RUNS_TOGETHER, EndOfRun, RunLimits
 from actr3d.trace import Trace
 
 
@@ -21,22 +21,44 @@ class Clock(Model):
             yield 0.25
 
 
-def test_all_runs_together_end_in_time() -> None:
+def test_the_first_run_that_is_cut_short_is_the_last() -> None:
     with RunLimits(until=2) as limits:
         first: Any = Clock()
         first.run(0.75)
-        second: Any = Clock()
-        second.run(0.5)
-        second.run()
-        assert (first.now(), second.now()) == (0.75, 1.25)
-        for model in (first, second, Clock()):
+        for _ in range(5):  # each run has its own clock, and its own end
+            other: Any = Clock()
+            other.run(2)
+            assert other.now() == 2
+        assert not limits.ended
+        first.run(3)
+        assert first.now() == 2
+        assert limits.ended
+        for model in (first, Clock()):
             with pytest.raises(EndOfRun):
                 model.run(0.01)
-        assert limits.ended
     with limits:  # the same limits again
         again: Any = Clock()
         again.run()
         assert again.now() == 2
+
+
+def test_a_run_that_has_come_to_the_end_by_itself_gets_no_more_time() -> None:
+    with RunLimits(until=1) as limits:
+        model: Any = Clock()
+        for _ in range(4):
+            model.run(0.25)
+        assert not limits.ended
+        with pytest.raises(EndOfRun):
+            model.run(0.25)
+        assert limits.ended
+
+
+def test_short_runs_without_end_come_to_an_end() -> None:
+    with RunLimits(until=1):
+        for _ in range(2 * RUNS_TOGETHER):
+            Clock().run(0.5)
+        with pytest.raises(EndOfRun):
+            Clock().run(0.5)
 
 
 def test_runs_inside_runs_count_once() -> None:
@@ -46,12 +68,10 @@ def test_runs_inside_runs_count_once() -> None:
             Clock().run(1)
             yield 9
 
-    with RunLimits(until=2):
+    with RunLimits(until=2) as limits:
         outer: Any = Outer()
         outer.run(0.75)
-        last: Any = Clock()
-        last.run()
-        assert last.now() == 0.25
+        assert limits._used_us == 1_750_000
 
 
 def test_limits_inside_others_end_with_them() -> None:

@@ -231,3 +231,9 @@ def test_one_text_is_called_the_same_each_time_it_is_loaded_alone() -> None:
     del first, second
     gc.collect()
     assert load_text("x = 1", "a.py").__name__ == name
+
+
+def test_a_class_without_functions_keeps_its_text_in_use() -> None:
+    agent = load_text("class Bare:\n    colour = 'red'\n", "bare.py").Bare
+    gc.collect()
+    assert sys.modules[agent.__module__].Bare is agent

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar, Token
 from dataclasses import dataclass, field
-from math import inf
 from types import TracebackType
 from typing import Any, Self
 from weakref import WeakSet
@@ -24,6 +23,8 @@ class EndOfRun(BaseException):
     """
 
 
+RUNS_TOGETHER = 1000
+"""How many times `until` all runs together may last: a program that makes one short run after another never ends by itself."""
 MOST_REFUSALS = 100
 """A program that has asked so often for time after its end swallows every error: it is never going to end by itself."""
 
@@ -35,7 +36,8 @@ class RunLimits:
     seed: int | str | None = None
     """What all random choices come from; None draws a seed for each block, which its runs record."""
     until: float | None = None
-    """How much time all runs together may use [s of simulated time]; the first run ends there at the latest. None for no end."""
+    """When every run ends at the latest [s of its own simulated time]; the program ends with the first run that is cut short
+    there, or when all its runs together have lasted `RUNS_TOGETHER` times as long. None for no end."""
     trace: Trace | None = None
     """Where events go; None for no trace."""
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
@@ -44,7 +46,7 @@ class RunLimits:
     """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)
     _used_us: int = field(default=0, init=False, repr=False)
-    _begun: bool = field(default=False, init=False, repr=False)
+    _ended: bool = field(default=False, init=False, repr=False)
     _refused: int = field(default=0, init=False, repr=False)
     _drawn: int = field(default=0, init=False, repr=False)
     _models: int = field(default=0, init=False, repr=False)
@@ -76,11 +78,8 @@ class RunLimits:
 
     @property
     def ended(self) -> bool:
-        """Whether the end has come: a run has begun, and there is no time left."""
-        return self._begun and self._left_us() <= 0
-
-    def _left_us(self) -> float:
-        return inf if self.until is None else microseconds(self.until, "until") - self._used_us
+        """Whether the end has come: no run gets any more time."""
+        return self._ended
 
     def spend(self, time_us: int) -> None:
         """Takes note of time that a run has used [us]."""
@@ -99,14 +98,26 @@ class RunLimits:
         outer = self._outer.clip(now_us) if self._outer is not None else None
         if self.until is None:
             return outer
-        if self.ended:
+        end = self._last_us(now_us)
+        if self._ended or end <= now_us:
+            self._ended = True
             self._refused += 1
             if self._refused > MOST_REFUSALS and self.last_resort is not None:
                 self.last_resort()
             raise EndOfRun
-        self._begun = True
-        end = now_us + int(self._left_us())
         return end if outer is None else min(end, outer)
+
+    def cut(self, now_us: int) -> None:
+        """Takes note that a run was cut short now [us]: those limits that did it give no more time."""
+        if self.until is not None and self._last_us(now_us) <= now_us:
+            self._ended = True
+        if self._outer is not None:
+            self._outer.cut(now_us)
+
+    def _last_us(self, now_us: int) -> int:
+        """Returns the last moment of a run whose clock stands at `now_us`."""
+        until = microseconds(self.until or 0, "until")
+        return min(until, now_us + RUNS_TOGETHER * until - self._used_us)
 
     # -- where they are in force
 
@@ -114,7 +125,7 @@ class RunLimits:
         if not self._tokens:  # the same limits may serve one program after another
             self._drawn = fresh_seed()
             self._models = self._used_us = self._refused = 0
-            self._begun = False
+            self._ended = False
             self._outer = _CURRENT.get()
         self._tokens.append(_CURRENT.set(self))
         _follow_threads(1)

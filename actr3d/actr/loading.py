@@ -175,6 +175,10 @@ def load_text(source: str, filename: str = "<model>", *, folder: Path | str | No
         raise
     if program.used_old_names:
         module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = True
+    for value in list(vars(module).values()):
+        if isinstance(value, type) and value.__module__ == name:
+            # A function holds the names of its module; a class without functions holds nothing of it.
+            type.__setattr__(value, "__actr3d_module__", module)
     return module
 
 

@@ -173,6 +173,7 @@ class Scheduler:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
         end = until = None if duration is None else self._ends.after(self.now_us, duration)
+        bound = None
         if self.limits is not None:
             self._spend()
             bound = self.limits.clip(self.now_us)
@@ -189,7 +190,7 @@ class Scheduler:
         if until is not None and idle:
             self._advance(until)
             if self.limits is not None:
-                self._spend()
+                self._spend(bound, end)
             return
         if self._running:
             warnings.warn(
@@ -206,13 +207,15 @@ class Scheduler:
         finally:
             self._running = before
             if self.limits is not None:
-                self._spend()
+                self._spend(bound, end)
 
-    def _spend(self) -> None:
-        """Lets the limits know how much time has passed."""
+    def _spend(self, bound: int | None = None, end: int | None = None) -> None:
+        """Lets the limits know how much time has passed, and whether their bound came before the run's own end [us]."""
         if self.limits is not None:
             self.limits.spend(self.now_us - self._spent_us)
             self._spent_us = self.now_us
+            if bound is not None and self.now_us >= bound and (end is None or end > bound):
+                self.limits.cut(self.now_us)
 
     def _end(self, run_number: int) -> None:
         """Ends the run that asked for it; one that was stopped before leaves this without effect."""
