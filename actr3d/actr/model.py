@@ -191,18 +191,11 @@ class Model(TracedPart):
         else:
             own[key] = value
             if "_converted" in own:
-                # Wakes whoever waits for a change here or further up.
-                part = own
-                while True:
-                    changes: Trigger = part["changes"]
+                sch: Scheduler = own["sch"]
+                for changes in own.get("_known_line_changes") or self._line_changes():
                     if changes.waiting:
-                        own["sch"].trigger(changes, -1)
-                    above: Model | None = part["parent"]
-                    if above is None or above is self:
-                        break
-                    part = above.__dict__
-                trace = own["sch"].trace
-                if own["log"] is not logs.dummy or (trace is not None and trace.buffer):
+                        sch.wake(changes, -1)
+                if sch.trace is not None or own["log"] is not logs.dummy:
                     self._record(key, value)
 
     def _record(self, key: str, value: Any) -> None:
@@ -222,15 +215,16 @@ class Model(TracedPart):
             siblings = own["parent"].__dict__.get("_children", {})
             for known in [name for name, part in siblings.items() if part is self]:
                 del siblings[known]
-            self._forget_path()
         own[key] = value
+        if key == "parent":
+            self._forget_place()
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
             self._take_in(key, value)
         if self._converted and key not in UNWATCHED:
-            for part in self._line():
-                if part.changes.waiting:
-                    self.sch.trigger(part.changes, priority=-1)
+            for changes in self._line_changes():
+                if changes.waiting:
+                    self.sch.wake(changes, -1)
             self._record(key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
@@ -249,7 +243,7 @@ class Model(TracedPart):
         value.parent = self
         value._call(key, shown=type(value) is Model)
         self._adopted(key, value)
-        value._forget_path()
+        value._forget_place()
         if not value._converted:
             value._convert(self)
         else:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.search import Search
 
+Row = tuple[Chunk, tuple[float, ...], float, float]
+"""A candidate as it is kept, of which there may be thousands: (chunk, parts, partial, activation)."""
 
-@dataclass(slots=True)
+
+@dataclass(frozen=True, slots=True)
 class Candidate:
     """A chunk that matched a request, and how it stood."""
 
@@ -40,12 +43,18 @@ class Retrieval:
     require_new: bool
     marked: list[Chunk]
     """What had been retrieved lately (finsts)."""
+    rows: list[Row]
+    """The candidates, as they are weighed one after another."""
     excluded: Sequence[Chunk] = ()
     """Matching chunks that were left out for being marked."""
-    candidates: list[Candidate] = field(default_factory=list[Candidate])
     chosen: Chunk | None = None
     latency: float | None = None
     """How long the retrieval or its failure takes [s]."""
+
+    @property
+    def candidates(self) -> list[Candidate]:
+        """The chunks that stood for the request, in the order they came."""
+        return [Candidate(*row) for row in self.rows]
 
     def to_data(self) -> dict[str, Any]:
         """Returns the request as plain values, for the trace and for explanations."""
@@ -53,12 +62,12 @@ class Retrieval:
 
     def snapshot(self) -> Callable[[], dict[str, Any]]:
         """Returns a function that makes plain values of the request; what may change later is taken down now."""
-        names = [str(candidate.chunk) for candidate in self.candidates]
+        names = [str(row[0]) for row in self.rows]
         return partial(self._data, names, [str(chunk) for chunk in self.marked], [str(chunk) for chunk in self.excluded])
 
     def _data(self, names: list[str], marked: list[str], excluded: list[str]) -> dict[str, Any]:
-        chosen = next((number for number, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
-        rows = [[name, list(c.parts), c.partial, c.activation] for name, c in zip(names, self.candidates, strict=True)]
+        chosen = next((number for number, row in enumerate(self.rows) if row[0] is self.chosen), None)
+        rows = [[name, list(parts), cost, activation] for name, (_, parts, cost, activation) in zip(names, self.rows, strict=True)]
         return {
             "pattern": str(self.pattern),
             "asked": str(self.search),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from actr3d.actr.events import Trigger
     from actr3d.actr.model import Model
 
 
@@ -46,9 +47,18 @@ class Part:
             known = self.__dict__["_known_path"] = self._make_path()
         return known
 
-    def _forget_path(self) -> None:
+    def _line_changes(self) -> tuple[Trigger, ...]:
+        """Returns what wakes those who wait for a change of this model or of an ancestor, whose part it is."""
+        known = self.__dict__.get("_known_line_changes")
+        if known is None:
+            known = self.__dict__["_known_line_changes"] = tuple([part.changes for part in self._line()])
+        return known
+
+    def _forget_place(self) -> None:
+        """Forgets what was made of the model's place in the tree, and so of that of everything below it."""
         for part in self._tree():
             part.__dict__.pop("_known_path", None)
+            part.__dict__.pop("_known_line_changes", None)
 
     def _make_path(self) -> str:
         names: list[str] = []
