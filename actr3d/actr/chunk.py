@@ -65,7 +65,7 @@ def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:
 
 
 @lru_cache(maxsize=4096)
-def _contents_of(text: str) -> tuple[dict[Slot, str], tuple[tuple[Slot, str], ...]]:
+def _contents_of(text: str) -> tuple[dict[Slot, Any], tuple[tuple[Slot, str], ...]]:
     """Returns a chunk's slots with their values as they are written, and those of them, in order, that hold variables."""
     slots = parse_slots(text)
     variable = {slot for slot, value in slots if value[:1] == "?"}
@@ -117,9 +117,11 @@ class Chunk(dict[Any, Any]):
             return
         if isinstance(contents, str):
             slots, variable = _contents_of(contents)
+            if variable:
+                slots = slots.copy()
+                for slot, value in variable:
+                    slots[slot] = variable_value(value[1:], bound, contents) if value[:1] == "?" else value
             _DICT.update(self, slots)
-            for slot, value in variable:
-                _DICT.__setitem__(self, slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
             return
         if hasattr(contents, "_chunk_of_buffer"):
             contents = cast("Any", contents)._chunk_of_buffer()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, cast
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from actr3d.actr.activation import MemorySubModule
 from actr3d.actr.buffer import Buffer
@@ -16,8 +16,7 @@ from actr3d.actr.model import Model, pick
 from actr3d.actr.parameters import named_parameters
 from actr3d.actr.partial import Partial
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
-from actr3d.actr.requests import Retrieval
-from actr3d.actr.saying import warn_modeller
+from actr3d.actr.requests import Retrieval, total
 from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
 from actr3d.errors import ChunkError
@@ -177,7 +176,7 @@ class Memory(Model):
             matches = [chunk for chunk in matches if chunk not in marked]
         for adaptor in self.adaptors:
             adaptor.matched(matches)
-        best = self._weigh(matches, record, partial)
+        best = self._weigh(matches, record)
         chosen: Any = pick(self.random, best) if best else None
         record.chosen = chosen
         record.latency = self._time(self._strength(record, chosen.activation)) if best else self._time_of_failure()
@@ -197,31 +196,10 @@ class Memory(Model):
             self._buffer.clear()
         return number
 
-    def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
+    def _weigh(self, matches: list[Chunk], record: Retrieval) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
-        parts_of = self._way_of_weighing()
-        parts: tuple[float, ...] = ()
-        add = record.rows.append
-        best = -math.inf
-        winners: list[Chunk] = []
-        for chunk in cast("list[Any]", matches):
-            activation: float = 0
-            cost = 0.0
-            if parts_of is not None:
-                parts = parts_of(chunk)
-                activation = total(parts)
-            if partial is not None:
-                cost = chunk._partial
-                activation += cost
-            chunk.activation = activation
-            add((chunk, parts, cost, activation))
-            if activation > best:
-                best, winners = activation, [chunk]
-            elif activation == best:
-                winners.append(chunk)
-            elif activation != activation:
-                warn_modeller(f"memory '{self.name}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
-        if not winners or (self.threshold is not None and self._strength(record, best) < self.threshold):
+        winners = record.weigh(matches, self._way_of_weighing(), self.name)
+        if not winners or (self.threshold is not None and self._strength(record, record.best) < self.threshold):
             return []
         return winners
 
@@ -324,11 +302,3 @@ class Memory(Model):
     def add_adaptor(self, a: MemorySubModule) -> None:
         """Takes in an activation module; done by the module itself."""
         self.adaptors.append(a)
-
-
-def total(parts: Iterable[float]) -> float:
-    """Adds numbers up one by one; `sum` rounds otherwise from Python 3.12 on, and the same model is to give the same numbers."""
-    result: float = 0
-    for part in parts:
-        result += part
-    return result

@@ -191,11 +191,10 @@ class Model(TracedPart):
         else:
             own[key] = value
             if "_converted" in own:
-                sch: Scheduler = own["sch"]
                 for changes in own.get("_known_line_changes") or self._line_changes():
                     if changes.waiting:
-                        sch.wake(changes, -1)
-                if sch.trace is not None or own["log"] is not logs.dummy:
+                        own["sch"].wake(changes, -1)
+                if own["sch"].trace is not None or own["log"] is not logs.dummy:
                     self._record(key, value)
 
     def _record(self, key: str, value: Any) -> None:
@@ -243,7 +242,6 @@ class Model(TracedPart):
         value.parent = self
         value._call(key, shown=type(value) is Model)
         self._adopted(key, value)
-        value._forget_place()
         if not value._converted:
             value._convert(self)
         else:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
+from actr3d.actr.saying import warn_modeller
 from actr3d.actr.search import Search
 
 Row = tuple[Chunk, tuple[float, ...], float, float]
@@ -45,11 +47,46 @@ class Retrieval:
     """What had been retrieved lately (finsts)."""
     rows: list[Row]
     """The candidates, as they are weighed one after another."""
+    best: float = -math.inf
+    """The highest activation."""
     excluded: Sequence[Chunk] = ()
     """Matching chunks that were left out for being marked."""
     chosen: Chunk | None = None
     latency: float | None = None
     """How long the retrieval or its failure takes [s]."""
+
+    def weigh(self, matches: Sequence[Chunk], parts_of: Callable[[Chunk], tuple[float, ...]] | None, memory: str) -> list[Chunk]:
+        """Weighs every chunk that matches, and returns the most active ones.
+
+        Args:
+            matches: The chunks; each gets its activation.
+            parts_of: Gives the parts of a chunk's activation; None where it is 0 for all.
+            memory: The memory's name, for warnings.
+        """
+        partial = self.search.partial
+        parts: tuple[float, ...] = ()
+        add = self.rows.append
+        best = -math.inf
+        winners: list[Chunk] = []
+        for chunk in cast("Sequence[Any]", matches):
+            activation: float = 0
+            cost = 0.0
+            if parts_of is not None:
+                parts = parts_of(chunk)
+                activation = total(parts)
+            if partial is not None:
+                cost = chunk._partial
+                activation += cost
+            chunk.activation = activation
+            add((chunk, parts, cost, activation))
+            if activation > best:
+                best, winners = activation, [chunk]
+            elif activation == best:
+                winners.append(chunk)
+            elif activation != activation:
+                warn_modeller(f"memory '{memory}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
+        self.best = best
+        return winners
 
     @property
     def candidates(self) -> list[Candidate]:
@@ -81,3 +118,11 @@ class Retrieval:
             "chosen": chosen,
             "latency": self.latency,
         }
+
+
+def total(parts: Iterable[float]) -> float:
+    """Adds numbers up one by one; `sum` rounds otherwise from Python 3.12 on, and the same model is to give the same numbers."""
+    result: float = 0
+    for part in parts:
+        result += part
+    return result

@@ -133,9 +133,7 @@ class Scheduler:
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:
         """Wakes everything that waits for a trigger or for a name."""
-        trigger = self.named(key) if isinstance(key, str) else key
-        if trigger.waiting:
-            self.wake(trigger, priority)
+        self.wake(self.named(key) if isinstance(key, str) else key, priority)
 
     def wake(self, trigger: Trigger, priority: float | None) -> None:
         """Lets what waits for a trigger go on at this moment, with this priority from now on unless it is None."""
