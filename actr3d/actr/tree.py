@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -39,13 +40,15 @@ class Part:
         for child in self.get_children():
             yield from child._tree()
 
-    @property
+    @cached_property
     def _path(self) -> str:
         """The dotted names from below the top model down to this one; «top» for that model itself."""
-        known = self.__dict__.get("_known_path")
-        if known is None:
-            known = self.__dict__["_known_path"] = self._make_path()
-        return known
+        names: list[str] = []
+        part: Any = self
+        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
+            names.append(part.name)
+            part = above
+        return ".".join(reversed(names)) or "top"
 
     def _line_changes(self) -> tuple[Trigger, ...]:
         """Returns what wakes those who wait for a change of this model or of an ancestor, whose part it is."""
@@ -57,13 +60,5 @@ class Part:
     def _forget_place(self) -> None:
         """Forgets what was made of the model's place in the tree, and so of that of everything below it."""
         for part in self._tree():
-            part.__dict__.pop("_known_path", None)
+            part.__dict__.pop("_path", None)
             part.__dict__.pop("_known_line_changes", None)
-
-    def _make_path(self) -> str:
-        names: list[str] = []
-        part: Any = self
-        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
-            names.append(part.name)
-            part = above
-        return ".".join(reversed(names)) or "top"

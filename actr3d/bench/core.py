@@ -116,8 +116,13 @@ def _counting(peer: Peer) -> tuple[float, float]:
         agent: Any = module.Agent()
         return seconds_of(lambda: agent.run(0.101)), seconds_of(lambda: agent.run(20))
 
-    rounds = [(cost(other), cost(own)) for _ in range(3)]
-    return median(sum(theirs) / sum(ours) for theirs, ours in rounds), median(theirs[1] / ours[1] for theirs, ours in rounds)
+    theirs: list[tuple[float, float]] = []
+    ours: list[tuple[float, float]] = []
+    for _ in range(3):
+        theirs.append(cost(other))
+        ours += [cost(own) for _ in range(5)]  # so short that one interruption would decide
+    whole = median(map(sum, theirs)) / median(map(sum, ours))
+    return whole, median(counting for _, counting in theirs) / median(counting for _, counting in ours)
 
 
 def _request_cost(size: int) -> Callable[[], float]:
