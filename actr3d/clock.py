@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from heapq import heappop, heappush
+from itertools import count, repeat
 from math import isfinite
 from typing import Generic, TypeVar
 
@@ -97,20 +98,19 @@ class EventQueue(Generic[T]):
             are compared then, and must say that none is less than another.
     """
 
-    __slots__ = ("_serial", "first_come", "heap")
+    __slots__ = ("_serials", "first_come", "heap")
 
     def __init__(self, first_come: bool = True) -> None:
         self.heap: list[tuple[int, float, int, T]] = []
         self.first_come = first_come
-        self._serial = 0
+        self._serials = count(1) if first_come else repeat(0)
 
     def __len__(self) -> int:
         return len(self.heap)
 
     def push(self, time: int, event: T, priority: float = 0) -> None:
         """Puts an event in, at `time` [us]."""
-        self._serial += self.first_come
-        heappush(self.heap, (time, -priority, self._serial, event))
+        heappush(self.heap, (time, -priority, next(self._serials), event))
 
     def pop(self) -> T:
         """Takes the next event out."""

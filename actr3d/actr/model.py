@@ -195,18 +195,10 @@ class Model(Joining):
         else:
             own[key] = value
             if "_converted" in own:
-                # Wakes whoever waits for a change here or further up.
-                part = own
-                while True:
-                    changes: Trigger = part["changes"]
+                for changes in own.get("_known_line_changes") or self._line_changes():
                     if changes.waiting:
-                        own["sch"].trigger(changes, -1)
-                    above: Model | None = part["parent"]
-                    if above is None or above is self:
-                        break
-                    part = above.__dict__
-                trace = own["sch"].trace
-                if own["log"] is not logs.dummy or (trace is not None and trace.buffer):
+                        own["sch"].wake(changes, -1)
+                if own["sch"].trace is not None or own["log"] is not logs.dummy:
                     self._record(key, value)
 
     def _record(self, key: str, value: Any) -> None:
@@ -226,13 +218,15 @@ class Model(Joining):
             self._leave(own["parent"])
         own[key] = value
         joins = False
+        if key == "parent":
+            self._forget_place(keep_path=value is None)
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
             joins = self._take_in(key, value)
         if self._converted and key not in UNWATCHED:
-            for part in self._line():
-                if part.changes.waiting:
-                    self.sch.trigger(part.changes, priority=-1)
+            for changes in own.get("_known_line_changes") or self._line_changes():
+                if changes.waiting:
+                    self.sch.wake(changes, -1)
             trace = self.sch.trace
             if joins and trace is not None and isinstance(value, Model):
                 value._trace_states(trace)
