@@ -202,6 +202,8 @@ class Memory(Model):
     def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
         own = self._own_activation()
+        if own is not None:
+            record.modules = ()
         add = record.candidates.append
         best = -math.inf
         winners: list[Chunk] = []

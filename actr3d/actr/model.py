@@ -221,8 +221,9 @@ class Model(TracedPart):
         if key == "parent" and value is None and own.get("parent") is not None:
             siblings = own["parent"].__dict__.get("_children", {})
             for known in [name for name, part in siblings.items() if part is self]:
+                for part in self._tree():
+                    part._path  # noqa: B018 - what is taken out of its tree keeps its name, which tells it from others
                 del siblings[known]
-            self._forget_path()
         own[key] = value
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
@@ -249,7 +250,7 @@ class Model(TracedPart):
         value.parent = self
         value._call(key, shown=type(value) is Model)
         self._adopted(key, value)
-        value._forget_path()
+        value._forget_path(self.sch)
         if not value._converted:
             value._convert(self)
         else:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.checks import check_names, check_rules
+from actr3d.actr.choice import Choice
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model, pick
@@ -129,22 +130,29 @@ class ProductionSystem(Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            if matcher.looked:
-                seen = matcher.observed(trace)
-                if seen:
-                    trace.emit(self.sch.now_us, self._path, "observe", seen)
+            seen = matcher.observed.news(trace)
+            if seen:
+                trace.emit(self.sch.now_us, self._path, "observe", seen)
             if not matching or not self._weighs:
                 utilities = {production.name: production.base_utility for production in matching}
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
         return matching
 
-    def _adaptor_names(self) -> list[str]:
-        """Returns the names of the modules that add to utilities."""
+    def _part_names(self) -> list[str]:
+        """Returns the names of what utilities are made of, beyond what productions say of themselves."""
         return []
 
     def _utility_parts(self, production: Production) -> dict[str, float | None]:
-        """Returns what each of these adds now; None for what is drawn only at a choice."""
+        """Returns what each of these adds now; None for what is told only at a choice."""
         return {}
+
+    def _latest_choice(self) -> Choice | None:
+        """Returns the choice that was made at the latest match; None before that."""
+        if self._matcher is None:
+            return None
+        utilities = {production.name: production.base_utility for production in self._matcher.last}
+        chosen = self._chosen.name if self._chosen is not None else None
+        return Choice(utilities=utilities, parts={}, threshold=None, weighed=self._weighs, chosen=chosen)
 
     def _select(self, choice: Production) -> None:
         """Notes which production will fire."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.search import Search
@@ -22,6 +22,13 @@ class Candidate:
     """What mismatches cost (0 or less)."""
     activation: float
     """The sum."""
+
+
+def written(pattern: Any) -> str:
+    """Returns a request as its author wrote it, a function by its name."""
+    if isinstance(pattern, (list, tuple)):
+        return ", ".join(map(written, cast("Sequence[Any]", pattern)))
+    return f"{getattr(pattern, '__name__', 'function')}()" if callable(pattern) else str(pattern)
 
 
 @dataclass(slots=True)
@@ -46,21 +53,31 @@ class Retrieval:
     chosen: Chunk | None = None
     latency: float | None = None
     """How long the retrieval or its failure takes [s]."""
+    _kept: Callable[[], dict[str, Any]] | None = None
 
     def to_data(self) -> dict[str, Any]:
-        """Returns the request as plain values, for the trace and for explanations."""
-        return self.snapshot()()
+        """Returns the request as plain values, for the trace and for explanations.
+
+        Chunks are as they were then in a traced run; otherwise as they are now.
+        """
+        return (self._kept or self._frozen())()
 
     def snapshot(self) -> Callable[[], dict[str, Any]]:
-        """Returns a function that makes plain values of the request; what may change later is taken down now."""
-        names = [str(candidate.chunk) for candidate in self.candidates]
-        return partial(self._data, names, [str(chunk) for chunk in self.marked], [str(chunk) for chunk in self.excluded])
+        """Returns a function that makes plain values of the request; what may change later is taken down now, for good."""
+        self._kept = self._frozen()
+        return self._kept
 
-    def _data(self, names: list[str], marked: list[str], excluded: list[str]) -> dict[str, Any]:
+    def _frozen(self) -> Callable[[], dict[str, Any]]:
+        names = [str(candidate.chunk) for candidate in self.candidates]
+        return partial(
+            self._data, written(self.pattern), names, [str(chunk) for chunk in self.marked], [str(chunk) for chunk in self.excluded]
+        )
+
+    def _data(self, pattern: str, names: list[str], marked: list[str], excluded: list[str]) -> dict[str, Any]:
         chosen = next((number for number, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
         rows = [[name, list(c.parts), c.partial, c.activation] for name, c in zip(names, self.candidates, strict=True)]
         return {
-            "pattern": str(self.pattern),
+            "pattern": pattern,
             "asked": str(self.search),
             "threshold": self.threshold,
             "require_new": self.require_new,

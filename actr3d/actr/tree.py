@@ -3,10 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from sys import maxsize
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.model import Model
+    from actr3d.actr.scheduler import Scheduler
+
+
+class Move(NamedTuple):
+    """A part came into a tree that was being traced, or to another place in it."""
+
+    trace: Trace
+    number: int
+    """How many events the trace held then."""
+    time: int
+    """When [us]."""
+    path: str | None
+    """What its path was before; None where it was not there yet."""
+
+
+class Place(NamedTuple):
+    """Where a part was, while a trace was kept."""
+
+    path: str | None
+    """Its path; None where it was not there yet."""
+    time: int
+    """Since when [us]; -1 for since the trace began."""
+    begin: int
+    """The number of the first event from there."""
+    end: int
+    """The number of the first event after that."""
 
 
 class Part:
@@ -46,9 +75,30 @@ class Part:
             known = self.__dict__["_known_path"] = self._make_path()
         return known
 
-    def _forget_path(self) -> None:
+    def _forget_path(self, sch: Scheduler) -> None:
+        """Lets paths be made anew, for the part has another place; keeps what they were, so that its past can be told."""
+        trace = sch.trace
         for part in self._tree():
-            part.__dict__.pop("_known_path", None)
+            known = part.__dict__.pop("_known_path", None)
+            if trace is not None and trace.keep:
+                part.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), sch.now_us, known))
+
+    def _places_in(self, trace: Trace) -> list[Place]:
+        """Returns where a part has been while a trace was kept, in order."""
+        places: list[Place] = []
+        time, begin = -1, 0
+        for move in self._moves_in(trace):
+            places.append(Place(move.path, time, begin, move.number))
+            time, begin = move.time, move.number
+        return [*places, Place(self._path, time, begin, maxsize)]
+
+    def _moves_in(self, trace: Trace) -> list[Move]:
+        for part in self._line():
+            moves = [move for move in part.__dict__.get("_moves", ()) if move.trace is trace]
+            if moves:
+                # What has no moves of its own came with its parent, and had no place before.
+                return moves if part is self else moves[:1] if moves[0].path is None else []
+        return []
 
     def _make_path(self) -> str:
         names: list[str] = []
