@@ -18,14 +18,16 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "trace"}
+BASE = {"errors", "clock", "values", "kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
 PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
-    "trace": {"errors", "clock"},
+    "values": set(),
+    "kinds": set(),
+    "trace": {"errors", "clock", "values", "kinds"},
     "actr": BASE,
     "world": BASE,
     "camera": BASE | {"world"},

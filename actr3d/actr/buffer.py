@@ -107,7 +107,9 @@ class Buffer(Model):
         """Records what the buffer holds, and sees to it that the trace learns of changes of the chunk itself."""
         data: dict[str, Any] = {"chunk": traceable(chunk)}
         if chunk and trace.all and not LASTING_TYPES.issuperset(map(type, chunk.values())):
-            data["texts"] = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
+            texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
+            if any(texts.values()):
+                data["texts"] = {key: text for key, text in texts.items() if text is not None}
         trace.emit(self.sch.now_us, self._path, "buffer", data)
         if isinstance(chunk, Chunk):
             if self._watch is None:

@@ -19,6 +19,7 @@ from actr3d.actr.retrievals import RetrievalReason
 from actr3d.actr.trial import Trial
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, did_you_mean
+from actr3d.trace import TraceEvent
 
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
@@ -168,11 +169,13 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
         raise ParameterError("explain(at): only a run traced from before that time can tell its past; call traced() before the run")
     if time > agent.sch.now_us:
         raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
-    first = next(iter(trace), None)
-    if first is None or time < first.time_us:
-        raise ParameterError(f"explain(at): the trace begins at {agent.now() if first is None else first.time:g} s (got {at:g} s)")
+    *_, top = agent._line()
+    run = TraceEvent(0, top._path, "", {}).run
+    begin = next((event.time for event in trace if event.run == run), agent.now())
+    if time < microseconds(begin):
+        raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
     seen = [target for system in systems for target in system._context.values() if isinstance(target, Model)]
-    state = Past(trace, time, {id(part): part for part in (agent, *systems, *memories, *seen)}.values())
+    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *memories, *seen)}.values()))
     if not state.exists(agent):
         came = next(place.time for place in agent._places_in(trace) if place.path is not None)
         raise ParameterError(f"explain(at): '{agent._path}' was not there at {at:g} s; it came at {seconds(came):g} s")

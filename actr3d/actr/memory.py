@@ -11,6 +11,7 @@ from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.keywords import check_keywords
+from actr3d.actr.memory_trace import TracedMemory
 from actr3d.actr.model import Model, pick
 from actr3d.actr.parameters import named_parameters
 from actr3d.actr.partial import Partial
@@ -19,10 +20,11 @@ from actr3d.actr.requests import Candidate, Retrieval
 from actr3d.actr.saying import warn_modeller
 from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
+from actr3d.actr.traced import chunk_text
 from actr3d.errors import ChunkError
 
 
-class Memory(Model):
+class Memory(TracedMemory):
     """Declarative memory: keeps chunks, and brings the most active one that matches a request to a buffer.
 
     Args:
@@ -74,6 +76,7 @@ class Memory(Model):
     def _follow(self, profile: Profile | None) -> None:
         """Takes over the agent's profile, where none was given, and tells buffers to hand over what leaves them."""
         super()._follow(profile)
+        self._own_chunks(self.dm)
         if not self._latency_given:
             self.__dict__["latency"] = self.rules.latency
         if self.rules.harvest and self.parent is not None:
@@ -83,8 +86,10 @@ class Memory(Model):
                 harvesters.append(self)
 
     def __setattr__(self, key: str, value: Any) -> None:
-        if key == "dm" and not isinstance(value, ChunkStore):
-            value = ChunkStore(value)  # a modeller's own list of chunks
+        if key == "dm":
+            if not isinstance(value, ChunkStore):
+                value = ChunkStore(value)  # a modeller's own list of chunks
+            self._own_chunks(value)
         elif key == "latency":
             self.__dict__["_latency_given"] = True
         super().__setattr__(key, value)
@@ -126,6 +131,7 @@ class Memory(Model):
             for adaptor in self.adaptors:
                 adaptor.create(new, **keys)
             self.dm.keep(new)
+        self._trace_add(new, known is not None, keys)
 
     def _collect(self, chunk: Chunk) -> None:
         """Takes in a chunk that left a buffer (ACT-R 7); unlike `add`, this does not take back that a request failed."""
@@ -268,7 +274,7 @@ class Memory(Model):
         self.busy = False
         trace = self.sch.trace
         if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": False, "chunk": str(chunk)})
+            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": False, "chunk": chunk_text(chunk)})
 
     def _time(self, activation: float) -> float:
         """Returns F exp(-A), at most the maximum time [s]."""

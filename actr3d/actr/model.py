@@ -219,38 +219,52 @@ class Model(TracedPart):
         """Sets an attribute that is a model, or one that holds the tree together."""
         own = self.__dict__
         if key == "parent" and value is None and own.get("parent") is not None:
-            siblings = own["parent"].__dict__.get("_children", {})
-            for known in [name for name, part in siblings.items() if part is self]:
-                for part in self._tree():
-                    part._path  # noqa: B018 - what is taken out of its tree keeps its name, which tells it from others
-                del siblings[known]
+            self._leave(own["parent"])
         own[key] = value
+        joins = False
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
-            self._take_in(key, value)
+            joins = self._take_in(key, value)
         if self._converted and key not in UNWATCHED:
             for part in self._line():
                 if part.changes.waiting:
                     self.sch.trigger(part.changes, priority=-1)
+            trace = self.sch.trace
+            if joins and trace is not None and isinstance(value, Model):
+                value._trace_states(trace)
             self._record(key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
                     setattr(value, name, known)
 
-    def _take_in(self, key: str, value: Model) -> None:
-        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor."""
+    def _leave(self, parent: Model) -> None:
+        """Takes the model out of its parent's children; a trace knows it by its old path for as long as it has no new one."""
+        self._keep_path()
+        siblings = parent.__dict__.get("_children", {})
+        for name in [name for name, part in siblings.items() if part is self]:
+            del siblings[name]
+            if parent._converted:
+                parent._trace_member("removed", name, self)
+
+    def _take_in(self, key: str, value: Model) -> bool:
+        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor; tells whether it did."""
         above: Model | None = self
         while above is not None:
             if above is value:
-                return
+                return False
             above = above.__dict__.get("parent")
         if value.__dict__.get("parent") is not None:
-            return
+            return False
+        run = {"was": value._path} if value._converted and value.sch is not self.sch and value.sch.trace is not None else {}
+        replaced = self.__dict__.get("_children", {}).get(key)
         value.parent = self
         value._call(key, shown=type(value) is Model)
         self._adopted(key, value)
         value._forget_path(self.sch)
+        if replaced is not None:
+            self._trace_member("removed", key, replaced)
+        self._trace_member("added", key, value, **run)
         if not value._converted:
             value._convert(self)
         else:
@@ -258,29 +272,37 @@ class Model(TracedPart):
                 value._join(self.sch, self.random)
             for part in value._tree():
                 part._follow(part.parent._profile if part.parent is not None else None)
+        return True
 
     def _join(self, sch: Scheduler, numbers: random.Random) -> None:
         """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
         if self.sch.now_us != 0:
             raise SchedulerError(f"'{self.name}' has run by itself until {self.sch.time:g} s; put it into its environment before that")
         sch.take_over(self.sch)
+        trace = self.sch.trace
         for part in self._tree():
             part.__dict__["sch"], part.__dict__["random"] = sch, numbers
+        if trace is not None and sch.trace is None:
+            *_, top = self._line()
+            top._attach_trace(trace)
 
     # -- running
 
-    def traced(self, level: str = "all") -> Trace:
+    def traced(self, level: str = "all", *, keep: bool = True) -> Trace:
         """Starts a trace of the whole run this model belongs to, and returns it.
+
+        It begins with what everything is like at present; what was before, it cannot tell.
 
         Args:
             level: How much to record; see `actr3d.trace.LEVELS`.
+            keep: Whether it keeps its events; otherwise it only hands them to its listeners.
 
         Raises:
             ParameterError: If the level is unknown.
         """
         self._ensure_converted()
         *_, top = self._line()
-        trace = Trace(level)
+        trace = Trace(level, keep)
         top._attach_trace(trace)
         return trace
 
@@ -297,12 +319,19 @@ class Model(TracedPart):
 
         Raises:
             SchedulerError: If time stands still, or something cannot be waited for.
+            Exception: What a listener of the trace has raised.
         """
         if not self._converted:
             self._convert()
+        sch = self.sch
         if func is not None:
-            self.sch.add(func)
-        self.sch.run(limit)
+            sch.add(func)
+        if sch.trace is None:
+            sch.run(limit)
+            if sch.trace is not None and not sch._running:  # it began in the midst of the run
+                sch.trace.raise_failures()
+        else:
+            self._trace_run(limit)
 
     def stop(self) -> None:
         """Ends the run once the present event is over."""

@@ -65,7 +65,7 @@ def is_recorded(target: Any, key: Any) -> bool:
 
 def _lasts(target: Any, key: str) -> bool:
     """Tells whether an attribute's present value never changes by itself."""
-    own: dict[str, Any] = vars(target)
+    own: dict[str, Any] = target.__dict__
     return type(own.get(key, MISSING)) in LASTING_TYPES
 
 
@@ -89,27 +89,30 @@ class Observed:
         return label
 
     def news(self, listener: object) -> dict[str, Any]:
-        """Returns what has changed since the same listener last asked.
+        """Returns what has changed since the same listener last asked, or all for a new one.
 
         Values are as text, None for what is not there; emptiness is True or False; a function's word is a list of the
         variables before, whether it agreed, and the variables after it.
         """
         if listener is not self._listener:
             self._listener, self._told = listener, {}
-        news: dict[str, Any] = {}
-        for label, (target, key) in self._watched.items():
-            if tells_changes(target, key) and _lasts(target, key):
-                self._told.pop(label, None)  # the trace knows
-                continue
-            value = self._reading(label, target, key)
-            if value is not UNKNOWN and self._told.get(label, UNKNOWN) != value:
-                news[label] = value
-        for (name, number), asked in self.asked.items():
-            label, value = answer_label(name, number), asked.plain()
-            if self._told.get(label) != value:
-                news[label] = value
-        self._told.update(news)
+        known = self.everything()
+        news = {label: value for label, value in known.items() if self._told.get(label, UNKNOWN) != value}
+        # What is not among it is told by the trace's other events now; if it comes back, that is news.
+        self._told = known
         return news
+
+    def everything(self) -> dict[str, Any]:
+        """Returns all that productions see now, or saw when they last looked, as `news` tells it."""
+        known: dict[str, Any] = {}
+        for label, (target, key) in self._watched.items():
+            if not (tells_changes(target, key) and _lasts(target, key)):
+                value = self._reading(label, target, key)
+                if value is not UNKNOWN:
+                    known[label] = value
+        for (name, number), asked in self.asked.items():
+            known[answer_label(name, number)] = asked.plain()
+        return known
 
     def _reading(self, label: str, target: Any, key: Any) -> Any:
         if key is None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from actr3d.actr.attempts import has_slots
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.choice import Choice
-from actr3d.actr.chunk import PLAIN_TYPES, Slot, as_text
+from actr3d.actr.chunk import LASTING_TYPES, Slot, as_text
 from actr3d.actr.known import NOT_KNOWN, Answer, Fact
 from actr3d.actr.model import Model
 from actr3d.actr.observed import answer_label, tells_changes
@@ -57,6 +57,8 @@ class _Part:
         elif kind == "conflict":
             self.conflict, self.chosen = data, None
             self.matched = data["utilities"]
+        elif kind == "productions":
+            self.matched, self.chosen = data["matched"], data["chosen"]
         elif kind == "utility":
             self.parts.setdefault(data["production"], {})[data["part"]] = data["value"]
         elif kind == "select":
@@ -64,7 +66,7 @@ class _Part:
         elif kind in ("fire", "changed"):
             self.conflict = self.chosen = None
         elif kind == "request" and "candidates" in data:
-            self.request, self.outcome = event, "pending"
+            self.request, self.outcome = event, data.get("outcome", "pending")
         elif kind == "retrieval":
             self.outcome = "failed" if data["failed"] else "retrieved"
 
@@ -81,10 +83,11 @@ class Past:
         parts: What is asked about.
     """
 
-    def __init__(self, trace: Trace, time: int, parts: Iterable[Model]) -> None:
+    def __init__(self, trace: Trace, time: int, parts: Collection[Model]) -> None:
         self.time = seconds(time)
         self._parts: dict[int, _Part] = {}
         self._paths: dict[int, str | None] = {}
+        self._named: dict[int, list[tuple[Model, str]]] = {}
         places: dict[str, list[tuple[int, int, _Part]]] = {}
         for part in parts:
             known = self._parts[id(part)] = _Part()
@@ -93,6 +96,9 @@ class Past:
                     self._paths[id(part)] = place.path
                 if place.path is not None:
                     places.setdefault(place.path, []).append((place.begin, place.end, known))
+        for part in parts:
+            for name, target in part.__dict__.get("_context", {}).items():
+                self._named.setdefault(id(target), []).append((part, name))
         for number, event in enumerate(trace):
             for begin, end, known in places.get(event.source, ()):
                 if not begin <= number < end:
@@ -118,33 +124,38 @@ class Past:
         target = system._context[name]
         if has_slots(target, key):
             return self._slot_of_chunk(target, key)
-        seen = self._of(system).seen.get(f"{name}.{key}")
+        seen = self._seen(target, key)
         told = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and tells_changes(target, key) else None
         if seen is not None and (told is None or told.event < seen.event):
             return Fact(MISSING if seen.value is None else seen.value, _since(seen))
-        if told is None or not (told.value is None or type(told.value) in PLAIN_TYPES):
+        if told is None or type(told.value) not in LASTING_TYPES:
             return NOT_KNOWN
         return Fact(as_text(told.value))
+
+    def _seen(self, target: Any, key: Slot | None) -> Record | None:
+        """Returns what any production system, whatever it calls the object, saw latest."""
+        seen = [self._of(system).seen.get(f"{name}.{key}") for system, name in self._named.get(id(target), ())]
+        return max((record for record in seen if record is not None), key=lambda record: record.event, default=None)
 
     def _slot_of_chunk(self, buffer: Buffer, key: Slot) -> Fact:
         told = self._of(buffer).attributes.get("chunk")
         if told is None:
             return NOT_KNOWN
         chunk: dict[str, Any] = told.value or {}
-        if str(key) not in chunk:
-            return Fact(MISSING)
+        value = chunk.get(str(key), MISSING)
+        if value is MISSING or type(value) in LASTING_TYPES:
+            return Fact(value if value is MISSING else as_text(value))
         texts = self._of(buffer).attributes.get("texts")
-        if texts is not None and texts.event == told.event and str(key) in texts.value:
-            text = texts.value[str(key)]
-            return NOT_KNOWN if text is None else Fact(text, _since(told))
-        return Fact(as_text(chunk[str(key)]))
+        if texts is None or texts.event != told.event or str(key) not in texts.value:
+            return NOT_KNOWN
+        return Fact(texts.value[str(key)], _since(told))
 
     def empty(self, system: ProductionSystem, name: str) -> Fact:
         target = system._context[name]
         if isinstance(target, Buffer):
             told = self._of(target).attributes.get("chunk")
             return NOT_KNOWN if told is None else Fact(not told.value)
-        seen = self._of(system).seen.get(f"{name}.None")
+        seen = self._seen(target, None)
         if seen is not None:
             return Fact(seen.value, _since(seen))
         return NOT_KNOWN if hasattr(cast("Any", type(target)), "__len__") else Fact(plain_empty(target))

@@ -130,6 +130,7 @@ class ACTR(ProductionSystem):
         if parts:
             names = self._part_names()
             data["parts"] = {p.name: dict(zip(names, of, strict=True)) for p, of in zip(matching, parts, strict=True)}
+            data["drawn"] = self._drawn_names()
         if threshold is not None:
             data["threshold"] = threshold
         trace.emit(self.sch.now_us, self._path, "conflict", data)
@@ -151,6 +152,10 @@ class ACTR(ProductionSystem):
         trace = self.sch.trace
         if trace is not None and trace.all:
             self._trace_parts(production, trace)
+
+    def _drawn_names(self) -> list[str]:
+        any_one = self._productions[0] if self._productions else None
+        return [] if any_one is None else [name for name, value in self._utility_parts(any_one).items() if value is None]
 
     def _part_names(self) -> list[str]:
         return ["get_activation"] if self._own_utility else [adaptor.name for adaptor in self._adaptors]
@@ -187,6 +192,8 @@ class ACTR(ProductionSystem):
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "changed", {"production": choice.name})
+            if trace.all:
+                self._observe(trace)
         self.log.production = "(changed before firing)"
 
     # -- utility

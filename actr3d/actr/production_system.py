@@ -13,7 +13,9 @@ from actr3d.actr.model import Method, MethodWrapper, Model, pick
 from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
+from actr3d.actr.traced import traceable
 from actr3d.errors import ProductionException, did_you_mean
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
@@ -88,6 +90,9 @@ class ProductionSystem(Model):
         unchecked = check_rules(self)
         for production in self._initializers:
             production.bound = {}
+            trace = self.sch.trace
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "initialize", {"method": production.name})
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
@@ -130,13 +135,39 @@ class ProductionSystem(Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            seen = matcher.observed.news(trace)
-            if seen:
-                trace.emit(self.sch.now_us, self._path, "observe", seen)
+            self._observe(trace)
             if not matching or not self._weighs:
                 utilities = {production.name: production.base_utility for production in matching}
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
         return matching
+
+    def _observe(self, trace: Trace) -> None:
+        """Tells the run's trace what has changed of what productions see, beyond what it knows by itself."""
+        seen = self._matcher.observed.news(trace) if self._matcher is not None else {}
+        if seen:
+            trace.emit(self.sch.now_us, self._path, "observe", seen)
+
+    def _trace_state(self, trace: Trace) -> None:
+        super()._trace_state(trace)
+        if trace.all:
+            matcher, chosen = self._matcher, self._chosen
+            data = {
+                "productions": [production.name for production in self._productions],
+                "initializers": [production.name for production in self._initializers],
+                "chosen": None if chosen is None else chosen.name,
+                "matched": [] if matcher is None else [production.name for production in matcher.last],
+                "drawn": self._drawn_names(),
+            }
+            trace.emit(self.sch.now_us, self._path, "productions", data)
+            if trace is self.sch.trace:
+                self._observe(trace)
+            elif matcher is not None and (seen := matcher.observed.everything()):
+                # Who only listens hears everything, and takes no news from the run's own trace.
+                trace.emit(self.sch.now_us, self._path, "observe", seen)
+
+    def _drawn_names(self) -> list[str]:
+        """Returns the names of the modules whose part of a utility is told only at choices."""
+        return []
 
     def _part_names(self) -> list[str]:
         """Returns the names of what utilities are made of, beyond what productions say of themselves."""
@@ -171,7 +202,8 @@ class ProductionSystem(Model):
         self.__dict__["_chosen"] = None
         trace = self.sch.trace
         if trace is not None and trace.production:
-            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": choice.bound or {}})
+            bound = traceable(choice.bound) if choice.more_bound else dict(choice.bound or {})
+            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": bound})
         if self.log is not dummy:
             self.log.production = None
         choice.fire()

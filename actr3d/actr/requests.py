@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from types import FunctionType
 from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
-from actr3d.actr.search import Search
+from actr3d.actr.search import PlainSearch, Search
+from actr3d.actr.traced import chunk_text, traceable
 
 
 @dataclass(slots=True)
@@ -28,7 +30,9 @@ def written(pattern: Any) -> str:
     """Returns a request as its author wrote it, a function by its name."""
     if isinstance(pattern, (list, tuple)):
         return ", ".join(map(written, cast("Sequence[Any]", pattern)))
-    return f"{getattr(pattern, '__name__', 'function')}()" if callable(pattern) else str(pattern)
+    if isinstance(pattern, FunctionType):
+        return f"{pattern.__name__}()"
+    return pattern if type(pattern) is str else str(traceable(pattern))
 
 
 @dataclass(slots=True)
@@ -68,17 +72,17 @@ class Retrieval:
         return self._kept
 
     def _frozen(self) -> Callable[[], dict[str, Any]]:
-        names = [str(candidate.chunk) for candidate in self.candidates]
-        return partial(
-            self._data, written(self.pattern), names, [str(chunk) for chunk in self.marked], [str(chunk) for chunk in self.excluded]
-        )
+        names = [chunk_text(candidate.chunk) for candidate in self.candidates]
+        asked = None if type(self.search) is PlainSearch else str(self.search)
+        marked, excluded = [chunk_text(c) for c in self.marked], [chunk_text(c) for c in self.excluded]
+        return partial(self._data, names, marked, excluded, written(self.pattern), asked)
 
-    def _data(self, pattern: str, names: list[str], marked: list[str], excluded: list[str]) -> dict[str, Any]:
+    def _data(self, names: list[str], marked: list[str], excluded: list[str], pattern: str, asked: str | None) -> dict[str, Any]:
         chosen = next((number for number, candidate in enumerate(self.candidates) if candidate.chunk is self.chosen), None)
         rows = [[name, list(c.parts), c.partial, c.activation] for name, c in zip(names, self.candidates, strict=True)]
         return {
             "pattern": pattern,
-            "asked": str(self.search),
+            "asked": str(self.search) if asked is None else asked,
             "threshold": self.threshold,
             "require_new": self.require_new,
             "finsts": marked,

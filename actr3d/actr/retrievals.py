@@ -128,4 +128,4 @@ def live_retrieval(memory: Memory) -> RetrievalReason | None:
 
 def past_retrieval(memory: str, request: TraceEvent, outcome: str) -> RetrievalReason:
     """Returns the reason of a memory's request, as a trace has it, with what had come of it by then."""
-    return _reason(memory, request.time, request.data, outcome)
+    return _reason(memory, request.data.get("made", request.time), request.data, outcome)

@@ -69,18 +69,21 @@ class Part:
 
     @property
     def _path(self) -> str:
-        """The dotted names from below the top model down to this one; «top» for that model itself."""
+        """The dotted names from below the top model down to this one; «top» for that model itself.
+
+        Below the top model of a trace's second run they begin with `top#2`. A part that has left the tree keeps its path.
+        """
         known = self.__dict__.get("_known_path")
         if known is None:
             known = self.__dict__["_known_path"] = self._make_path()
         return known
 
-    def _forget_path(self, sch: Scheduler) -> None:
-        """Lets paths be made anew, for the part has another place; keeps what they were, so that its past can be told."""
-        trace = sch.trace
+    def _forget_path(self, sch: Scheduler | None = None) -> None:
+        """Lets paths be made anew; where the part has another place in a traced run, keeps what they were to tell its past."""
+        trace = None if sch is None else sch.trace
         for part in self._tree():
             known = part.__dict__.pop("_known_path", None)
-            if trace is not None and trace.keep:
+            if sch is not None and trace is not None and trace.keep:
                 part.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), sch.now_us, known))
 
     def _places_in(self, trace: Trace) -> list[Place]:
@@ -100,10 +103,22 @@ class Part:
                 return moves if part is self else moves[:1] if moves[0].path is None else []
         return []
 
+    def _keep_path(self) -> None:
+        """Lets this part, and all below it, keep their paths when they leave the tree."""
+        for part in self._tree():
+            part.__dict__["_known_path"] = part._path
+
     def _make_path(self) -> str:
         names: list[str] = []
         part: Any = self
         while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
             names.append(part.name)
             part = above
-        return ".".join(reversed(names)) or "top"
+        top = part.__dict__.get("_top_path", "top")
+        if top != "top" or not names:
+            names.append(top)
+        return ".".join(reversed(names))
+
+    def _path_of(self, name: str) -> str:
+        """Returns the path of something below this part that is no part itself."""
+        return name if self._path == "top" else f"{self._path}.{name}"

@@ -38,6 +38,8 @@ class Trial:
         self._production = production
         self._state = state
         self._bound: Bindings = {}
+        self._open: set[str] = set()
+        """The variables that are bound, but nobody knows to what."""
         self.seen: str | None = None
         """How the facts that it rests on are known; None where all are certain."""
         self.failure: Failure | None = None
@@ -68,13 +70,17 @@ class Trial:
                 return self._unknown(f"{name}: None", "nothing in it")
             return None if fact.value else Failure(condition=f"{name}: None", expected="nothing in it", found="something")
         if isinstance(key, str) and key[:1] == "?":
+            if key[1:] in self._open:
+                return self._unknown(f"{name}: {condition}", f"a slot that ?{key[1:]} names")
             if key[1:] not in self._bound:
                 return Failure(condition=f"{name}: {condition}", expected=f"a slot that ?{key[1:]} names", found=f"{key} is not bound")
             key = slot_named(self._bound[key[1:]])
         fact = self._known(self._state.slot(system, name, key))
         wanted = self._bound.get(value) if op in ("same", "differs") else value
         expected = _expected(condition, wanted)
-        if is_unknown(fact.value):
+        if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
+            if op == "bind":
+                self._open.add(value)
             return self._unknown(f"{name}: {condition}", expected)
         if isinstance(fact.value, Missing):
             return Failure(condition=f"{name}: {condition}", expected=expected, found=self._nothing(name, key))
@@ -101,7 +107,7 @@ class Trial:
         if answer is None:
             return self._unknown(text, expected, "it has not been asked")
         self.seen = answer.seen
-        if _texts(answer.given) != _texts(self._bound):
+        if self._open or _texts(answer.given) != _texts(self._bound):
             with_what = " ".join(f"?{name}={as_text(value)}" for name, value in answer.given.items())
             return self._unknown(text, expected, f"it was last asked with {with_what or 'no variables'}")
         if not answer.agrees:

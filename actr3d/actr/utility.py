@@ -156,6 +156,12 @@ class PMPGC(ProceduralSubModule):
                 self._learned(prod)
         self._rewarded = True
 
+    def _learned(self, prod: Any) -> None:
+        # All such modules of one agent count in the same history of a production.
+        for module in cast("Any", self.parent)._adaptors:
+            if isinstance(module, PMPGC):
+                ProceduralSubModule._learned(module, prod)
+
     def utility(self, prod: Any) -> float:
         tries = prod.successes + prod.failures
         return prod.successes / tries * self.goal - prod.time / tries

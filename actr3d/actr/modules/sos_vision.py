@@ -40,7 +40,7 @@ class SOSVision(Model):
         matcher = Pattern(pattern)
         self.error = False
         noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
-        self._trace_request("request", pattern=str(pattern), noticed=noticed)
+        self._trace_request("request", pattern=pattern, noticed=noticed)
         self.busy = True
         time = self.delay
         if self.delay_sd is not None:
