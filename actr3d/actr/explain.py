@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from math import isfinite
 from typing import TYPE_CHECKING
 
 from actr3d.actr.known import State
@@ -18,7 +17,7 @@ from actr3d.actr.present import Present
 from actr3d.actr.retrievals import RetrievalReason
 from actr3d.actr.trial import Trial
 from actr3d.clock import microseconds, seconds
-from actr3d.errors import ParameterError, did_you_mean
+from actr3d.errors import ParameterError, SchedulerError, did_you_mean
 from actr3d.trace import TraceEvent
 
 if TYPE_CHECKING:
@@ -162,9 +161,11 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     Raises:
         ParameterError: If it cannot be told, or the agent was not there.
     """
-    if isinstance(at, str) or not isfinite(at):
-        raise ParameterError(f"explain(at): must be a time [s] (got {at!r})")
-    time, trace = microseconds(at, "explain(at)"), agent.sch.trace
+    try:
+        time = microseconds(at, "explain(at)")
+    except SchedulerError as error:
+        raise ParameterError(str(error)) from None
+    trace = agent.sch.trace
     if trace is None or not trace.all or not trace.keep:
         raise ParameterError("explain(at): only a run traced from before that time can tell its past; call traced() before the run")
     if time > agent.sch.now_us:

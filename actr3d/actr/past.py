@@ -43,6 +43,8 @@ class _Part:
         self.conflict: dict[str, Any] | None = None
         self.chosen: str | None = None
         self.matched: Collection[str] = ()
+        self.latest_match = -1
+        """The number of the event that told of it; what was seen until then is told before that, where it changed."""
         self.unborn: set[str] = set()
         self.request: TraceEvent | None = None
         self.outcome = "pending"
@@ -56,7 +58,7 @@ class _Part:
             self._note(self.seen, number, event)
         elif kind == "conflict":
             self.conflict, self.chosen = data, None
-            self.matched = data["utilities"]
+            self.matched, self.latest_match = data["utilities"], number
         elif kind == "productions":
             self.matched, self.chosen = data["matched"], data["chosen"]
         elif kind == "utility":
@@ -126,16 +128,22 @@ class Past:
             return self._slot_of_chunk(target, key)
         seen = self._seen(target, key)
         told = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and tells_changes(target, key) else None
-        if seen is not None and (told is None or told.event < seen.event):
-            return Fact(MISSING if seen.value is None else seen.value, _since(seen))
-        if told is None or type(told.value) not in LASTING_TYPES:
-            return NOT_KNOWN
-        return Fact(as_text(told.value))
+        certain = told is not None and type(told.value) in LASTING_TYPES
+        latest = max((record.event if certain else held for record, held in seen), default=-1)
+        if seen and (told is None or told.event < latest):
+            record, _ = max(seen, key=lambda pair: pair[0].event)
+            return Fact(MISSING if record.value is None else record.value, _since(record))
+        return Fact(as_text(told.value)) if told is not None and certain else NOT_KNOWN
 
-    def _seen(self, target: Any, key: Slot | None) -> Record | None:
-        """Returns what any production system, whatever it calls the object, saw latest."""
-        seen = [self._of(system).seen.get(f"{name}.{key}") for system, name in self._named.get(id(target), ())]
-        return max((record for record in seen if record is not None), key=lambda record: record.event, default=None)
+    def _seen(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
+        """Returns what production systems, whatever they call the object, have seen, and until which event it held for them."""
+        found: list[tuple[Record, int]] = []
+        for system, name in self._named.get(id(target), ()):
+            known = self._of(system)
+            record = known.seen.get(f"{name}.{key}")
+            if record is not None:
+                found.append((record, max(record.event, known.latest_match)))
+        return found
 
     def _slot_of_chunk(self, buffer: Buffer, key: Slot) -> Fact:
         told = self._of(buffer).attributes.get("chunk")
@@ -156,8 +164,9 @@ class Past:
             told = self._of(target).attributes.get("chunk")
             return NOT_KNOWN if told is None else Fact(not told.value)
         seen = self._seen(target, None)
-        if seen is not None:
-            return Fact(seen.value, _since(seen))
+        if seen:
+            record, _ = max(seen, key=lambda pair: pair[0].event)
+            return Fact(record.value, _since(record))
         return NOT_KNOWN if hasattr(cast("Any", type(target)), "__len__") else Fact(plain_empty(target))
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:

@@ -109,7 +109,7 @@ class Trial:
         self.seen = answer.seen
         if self._open or _texts(answer.given) != _texts(self._bound):
             with_what = " ".join(f"?{name}={as_text(value)}" for name, value in answer.given.items())
-            return self._unknown(text, expected, f"it was last asked with {with_what or 'no variables'}")
+            return _not_known(text, expected, f"it was last asked with {with_what or 'no variables'}")
         if not answer.agrees:
             return Failure(condition=text, expected=expected, found="False, or an error for want of a slot")
         self._bound.update(answer.bound)
@@ -120,7 +120,11 @@ class Trial:
         if self._state.matched(self._production):
             self.seen = AT_THE_LAST_MATCH
             return None
-        return Failure(condition=text, expected=expected, found=f"what is not known ({found})", unknown=True)
+        return _not_known(text, expected, found)
+
+
+def _not_known(text: str, expected: str, why: str) -> Failure:
+    return Failure(condition=text, expected=expected, found=f"what is not known ({why})", unknown=True)
 
 
 def _texts(bound: Bindings) -> dict[str, str]:
