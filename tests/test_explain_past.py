@@ -196,9 +196,6 @@ class Agent(ACTR):
     return made.__class__
 
 
-    )
-
-
 def test_before_an_agent_came_there_is_nothing_to_tell() -> None:
     world: Any = Model()
     world.agent = agent_class()()
@@ -300,3 +297,50 @@ class Agent(ACTR):
 """)
     agent.run(0)
     assert agent.explain().retrievals[0].candidates[0].parts == {"get_activation": 2.5}
+
+
+WORLD = """
+class Eyes(ACTR):
+    goal, seen, place, held = Buffer(), Buffer(), Buffer(), Buffer()
+    look = SOSVision(seen, delay=0.03)
+    vision = Vision(seen, place)
+    imaginal = ImaginalModule(held)
+    hand = Motor()
+    clock = Timer()
+    def init(): goal.set('find')
+    def find(goal='find', look='busy:False error:False'):
+        look.request('kind:ball')
+        goal.set('wait')
+    def found(goal='wait', seen='kind:ball colour:?c', imaginal='busy:False'):
+        imaginal.set('saw ?c')
+        goal.set('hold ?c')
+    def missed(goal='wait', look='error:True'): goal.set('find')
+    def hold(goal='hold ?c', held='saw ?c', imaginal='busy:False', hand='busy:False'):
+        top.ball.colour = 'gone'
+        goal.set('find')
+    def busy(imaginal='busy:True', utility=-1): pass
+    def ball_there(ball='colour:?c', utility=-2): pass
+class Ball(Model):
+    kind, colour, salience, visible, value = 'ball', 'red', 0.7, True, 1
+class Agent(Model):
+    def key_pressed(self, key): pass
+    ball = Ball()
+    one, two = Eyes(), Eyes()
+"""
+
+
+def test_every_module_and_two_agents_are_told_later_as_they_were() -> None:
+    world = agent_of(WORLD)
+    world.traced()
+    world.run(0.0)
+    now: list[Any] = []
+    for _ in range(80):
+        now += [world.one.explain(), world.two.explain()]
+        world.run(0.0125)
+    for then in now:
+        agent = world.one if then.agent == "one" else world.two
+        assert agent.explain(then.time) == then
+    states = {(reason.condition, reason.found) for then in now for reason in then.productions if "busy" in str(reason.condition)}
+    assert ("imaginal: busy:True", "'False'") in states
+    assert ("look: busy:False", "'True'") in states or ("imaginal: busy:False", "'True'") in states
+    assert {then.agent for then in now} == {"one", "two"}

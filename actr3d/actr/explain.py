@@ -64,11 +64,13 @@ class ProductionReason:
             sign = "?" if self.matches is None else "-"
             lines = [f"  {sign} {self.name}: {self.condition}{origin}", f"      expected {self.expected}, found {self.found}{seen}{bound}"]
         if self.selected:
-            lines[0] += "  <- selected"
-        if self.verdict is not None and (self.matches or self.selected or self.verdict[:3] != "did"):
+            lines[0] += f"  <- {self.verdict or 'selected'}{'' if self.matches else ', but it matches no longer'}"
+        elif self.matches and self.verdict is not None:
             lines.append(f"      {self.verdict}")
-        parts = "  ".join(f"{name} {'not drawn' if value is None else format(value, '.4g')}" for name, value in self.parts.items())
         utility = "unknown" if self.utility is None else f"{self.utility:.4g}"
+        if list(self.parts) == ["base"]:
+            return "\n".join([*lines, f"      utility {utility}"])
+        parts = "  ".join(f"{name} {'not drawn' if value is None else format(value, '.4g')}" for name, value in self.parts.items())
         return "\n".join([*lines, f"      utility {utility}  ({parts})"])
 
 
