@@ -46,9 +46,9 @@ KINDS: Mapping[str, Kind] = {
     "productions": Kind(
         "all",
         "system",
-        "productions initializers chosen matched drawn",
+        "productions initializers chosen matched drawn [utilities parts threshold]",
         "what a production system has: its productions, methods without parameters, the production about to fire, those that matched "
-        "last, the modules that draw noise",
+        "last, the modules that draw noise; as «conflict» has it, the choice that stands",
     ),
     "initialize": Kind("all", "system", "method", "a method without parameters is carried out, before the first cycle"),
     "observe": Kind("all", "system", "...", "what productions see beyond that (`name.slot`) has these values; none where it is missing"),

@@ -77,6 +77,7 @@ class CompiledProduction(Production):
         """Carries out what the first production kept, then all that the second did."""
         sch = self.system.sch
         bound: dict[str, Any] = {**(self.bound or {}), **self.pre_bound}
+        sch.fired = sch.firing = self
         try:
             if self._kept_body is not None:
                 bound = sch.bound = Scope(bound, self.context, self.pre.original_func)
@@ -86,6 +87,8 @@ class CompiledProduction(Production):
         except Exception as error:
             self.note(error)
             raise
+        finally:
+            sch.firing = None
 
 
 def _fill(pattern: Any, bound: Bindings) -> Any:

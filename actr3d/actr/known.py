@@ -22,7 +22,7 @@ class Fact(NamedTuple):
     value: Any
     """Text, MISSING for no such slot, True or False for emptiness; UNKNOWN where it cannot be told."""
     seen: str | None = None
-    """How it is known, such as «as seen since 0.050 s»; None where it is certain at that time."""
+    """How it is known, such as «as seen since 0.050 s», or why it is not; None where it is certain at that time."""
 
 
 class Answer(NamedTuple):
@@ -36,7 +36,8 @@ class Answer(NamedTuple):
     seen: str
 
 
-NOT_KNOWN = Fact(UNKNOWN)
+NOT_KNOWN = Fact(UNKNOWN, "no production has looked at it")
+OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can tell")
 
 
 class State(Protocol):

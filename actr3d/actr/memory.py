@@ -13,7 +13,7 @@ from actr3d.actr.finst import Finst
 from actr3d.actr.keywords import check_keywords
 from actr3d.actr.memory_trace import TracedMemory
 from actr3d.actr.model import Model, pick
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters, warn_of_slip
 from actr3d.actr.partial import Partial
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.requests import Candidate, Retrieval
@@ -24,7 +24,7 @@ from actr3d.actr.traced import chunk_text
 from actr3d.errors import ChunkError
 
 
-class Memory(TracedMemory):
+class Memory(WithParameters, TracedMemory):
     """Declarative memory: keeps chunks, and brings the most active one that matches a request to a buffer.
 
     Args:
@@ -92,7 +92,9 @@ class Memory(TracedMemory):
             self._own_chunks(value)
         elif key == "latency":
             self.__dict__["_latency_given"] = True
-        super().__setattr__(key, value)
+        elif key not in self.__dict__:
+            warn_of_slip(self, key)
+        Model.__setattr__(self, key, value)
 
     # -- what is known
 

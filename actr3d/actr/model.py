@@ -11,15 +11,15 @@ from typing import Any, TypeVar
 from actr3d.actr import logger as logs
 from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
 from actr3d.actr.events import Trigger
+from actr3d.actr.joining import Joining
 from actr3d.actr.limits import RunLimits, fresh_seed
-from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
+from actr3d.actr.members import check_names, class_members, copy_objects, has_setter, minding_properties
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import PROFILES, Profile
 from actr3d.actr.saying import warn_modeller
 from actr3d.actr.scheduler import Scheduler
 from actr3d.actr.sources import for_python_actr
-from actr3d.actr.traced import UNWATCHED, TracedPart, traceable
-from actr3d.errors import SchedulerError
+from actr3d.actr.traced import UNWATCHED, traceable
 from actr3d.trace import Trace
 
 Option = TypeVar("Option")
@@ -34,7 +34,7 @@ def pick(numbers: random.Random, options: list[Option]) -> Option:
     return options[0]
 
 
-class Model(TracedPart):
+class Model(Joining):
     """A part of a simulation: an agent, one of its modules, an object of its environment, or the environment.
 
     What a class names among its attributes becomes each instance's own: models there become children, and their
@@ -172,6 +172,10 @@ class Model(TracedPart):
         slot = name if shown or self._converted else None if type(self) is Model else "top"
         self.__dict__["name"] = PlaceName(name, slot)
 
+    def _call_joined(self, name: str) -> None:
+        """Names a model that joins a tree by being set as an attribute."""
+        self._call(name, shown=type(self) is Model)
+
     # -- changes
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -179,8 +183,8 @@ class Model(TracedPart):
         setters = {name for name, member in vars(cls).items() if has_setter(member)}
         if setters:
             cls._setters = cls._setters | setters
-            if "__setattr__" not in vars(cls):
-                type.__setattr__(cls, "__setattr__", set_with_properties)
+            if "__setattr__" not in vars(cls) and cls.__setattr__.__name__ != "set_with_properties":
+                type.__setattr__(cls, "__setattr__", minding_properties(cls.__setattr__))
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
@@ -238,54 +242,6 @@ class Model(TracedPart):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
                     setattr(value, name, known)
 
-    def _leave(self, parent: Model) -> None:
-        """Takes the model out of its parent's children; a trace knows it by its old path for as long as it has no new one."""
-        self._keep_path()
-        siblings = parent.__dict__.get("_children", {})
-        for name in [name for name, part in siblings.items() if part is self]:
-            del siblings[name]
-            if parent._converted:
-                parent._trace_member("removed", name, self)
-
-    def _take_in(self, key: str, value: Model) -> bool:
-        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor; tells whether it did."""
-        above: Model | None = self
-        while above is not None:
-            if above is value:
-                return False
-            above = above.__dict__.get("parent")
-        if value.__dict__.get("parent") is not None:
-            return False
-        run = {"was": value._path} if value._converted and value.sch is not self.sch and value.sch.trace is not None else {}
-        replaced = self.__dict__.get("_children", {}).get(key)
-        value.parent = self
-        value._call(key, shown=type(value) is Model)
-        self._adopted(key, value)
-        value._forget_path(self.sch)
-        if replaced is not None:
-            self._trace_member("removed", key, replaced)
-        self._trace_member("added", key, value, **run)
-        if not value._converted:
-            value._convert(self)
-        else:
-            if value.sch is not self.sch:
-                value._join(self.sch, self.random)
-            for part in value._tree():
-                part._follow(part.parent._profile if part.parent is not None else None)
-        return True
-
-    def _join(self, sch: Scheduler, numbers: random.Random) -> None:
-        """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
-        if self.sch.now_us != 0:
-            raise SchedulerError(f"'{self.name}' has run by itself until {self.sch.time:g} s; put it into its environment before that")
-        sch.take_over(self.sch)
-        trace = self.sch.trace
-        for part in self._tree():
-            part.__dict__["sch"], part.__dict__["random"] = sch, numbers
-        if trace is not None and sch.trace is None:
-            *_, top = self._line()
-            top._attach_trace(trace)
-
     # -- running
 
     def traced(self, level: str = "all", *, keep: bool = True) -> Trace:
@@ -322,7 +278,10 @@ class Model(TracedPart):
             Exception: What a listener of the trace has raised.
         """
         if not self._converted:
+            from actr3d.actr.checks import check_classes
+
             self._convert()
+            check_classes(self)
         sch = self.sch
         if func is not None:
             sch.add(func)
@@ -342,14 +301,6 @@ class Model(TracedPart):
         """Returns the present [s]."""
         self._ensure_converted()
         return self.sch.now_us / 1_000_000
-
-
-def set_with_properties(model: Model, key: str, value: Any) -> None:
-    """Sets an attribute of a model whose class has properties that can be set."""
-    if key in model._setters:
-        object.__setattr__(model, key, value)
-    else:
-        Model.__setattr__(model, key, value)
 
 
 def written_for_python_actr(kind: type) -> bool:

@@ -9,7 +9,7 @@ from actr3d.actr.attempts import has_slots
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.choice import Choice
 from actr3d.actr.chunk import LASTING_TYPES, Slot, as_text
-from actr3d.actr.known import NOT_KNOWN, Answer, Fact
+from actr3d.actr.known import NOT_KNOWN, OPAQUE, Answer, Fact, is_unknown
 from actr3d.actr.model import Model
 from actr3d.actr.observed import answer_label, tells_changes
 from actr3d.actr.pattern import MISSING
@@ -61,6 +61,7 @@ class _Part:
             self.matched, self.latest_match = data["utilities"], number
         elif kind == "productions":
             self.matched, self.chosen = data["matched"], data["chosen"]
+            self.conflict = data if "utilities" in data else None
         elif kind == "utility":
             self.parts.setdefault(data["production"], {})[data["part"]] = data["value"]
         elif kind == "select":
@@ -155,7 +156,7 @@ class Past:
             return Fact(value if value is MISSING else as_text(value))
         texts = self._of(buffer).attributes.get("texts")
         if texts is None or texts.event != told.event or str(key) not in texts.value:
-            return NOT_KNOWN
+            return OPAQUE
         return Fact(texts.value[str(key)], _since(told))
 
     def empty(self, system: ProductionSystem, name: str) -> Fact:
@@ -167,7 +168,8 @@ class Past:
         if seen:
             record, _ = max(seen, key=lambda pair: pair[0].event)
             return Fact(record.value, _since(record))
-        return NOT_KNOWN if hasattr(cast("Any", type(target)), "__len__") else Fact(plain_empty(target))
+        empty = plain_empty(target)
+        return NOT_KNOWN if is_unknown(empty) or hasattr(cast("Any", type(target)), "__len__") else Fact(empty)
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
         target = system._context[name]

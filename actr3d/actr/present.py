@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from actr3d.actr.attempts import has_slots
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Slot
-from actr3d.actr.known import NOT_KNOWN, Answer, Fact
+from actr3d.actr.known import NOT_KNOWN, OPAQUE, Answer, Fact, is_unknown
 from actr3d.actr.observed import Observed
 from actr3d.actr.pattern import MISSING
 from actr3d.actr.plain import UNKNOWN, plain_empty, plain_value
@@ -43,7 +44,8 @@ class Present:
         return True
 
     def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
-        value = plain_value(system._context[name], key)
+        target = system._context[name]
+        value = plain_value(target, key)
         if value is MISSING:
             return Fact(MISSING)
         text = None if value is UNKNOWN else plain_text(value)
@@ -52,11 +54,12 @@ class Present:
         looked = _observed(system).looked
         label = f"{name}.{key}"
         if label not in looked:
-            return NOT_KNOWN
+            return OPAQUE if has_slots(target, key) else NOT_KNOWN
         return Fact(MISSING if looked[label] is None else looked[label], LAST_SEEN)
 
     def empty(self, system: ProductionSystem, name: str) -> Fact:
-        return Fact(plain_empty(system._context[name]))
+        empty = plain_empty(system._context[name])
+        return NOT_KNOWN if is_unknown(empty) else Fact(empty)
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
         target = system._context[name]
@@ -79,8 +82,7 @@ class Present:
         return production.system._utility_parts(production)
 
     def choice(self, system: ProductionSystem) -> Choice | None:
-        choice = system._latest_choice()
-        return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
+        return system._standing_choice()
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:
         return live_retrieval(memory)

@@ -10,6 +10,7 @@ from actr3d.actr.choice import Choice
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model, pick
+from actr3d.actr.parameters import WithParameters
 from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
@@ -25,7 +26,7 @@ FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
 """Parameters that may be functions without arguments, which are no productions then."""
 
 
-class ProductionSystem(Model):
+class ProductionSystem(WithParameters, Model):
     """A model whose methods with patterns are productions; it chooses at random among those that match.
 
     It may be an agent, or stand inside one as a parallel system with a cycle time of its own; it sees its ancestors'
@@ -66,6 +67,11 @@ class ProductionSystem(Model):
             if patterns is not None:
                 own["_productions" if patterns else "_initializers"].append(Production(self, name, func))
         own["_process"] = self.sch.add(self._process_productions)
+
+    def _settable(self) -> set[str]:
+        """Returns the parameters of an agent; all other attributes of agents are the modeller's own."""
+        library = [vars(klass) for klass in type(self).__mro__ if klass.__module__.startswith("actr3d.")]
+        return {name for names in library for name in names if name.startswith("production_")} | {"profile"}
 
     # -- the cycle
 
@@ -158,6 +164,9 @@ class ProductionSystem(Model):
                 "matched": [] if matcher is None else [production.name for production in matcher.last],
                 "drawn": self._drawn_names(),
             }
+            choice = self._standing_choice()
+            if choice is not None:
+                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold}
             trace.emit(self.sch.now_us, self._path, "productions", data)
             if trace is self.sch.trace:
                 self._observe(trace)
@@ -176,6 +185,11 @@ class ProductionSystem(Model):
     def _utility_parts(self, production: Production) -> dict[str, float | None]:
         """Returns what each of these adds now; None for what is told only at a choice."""
         return {}
+
+    def _standing_choice(self) -> Choice | None:
+        """Returns the latest choice, until the production fires; one that held all back, until the next."""
+        choice = self._latest_choice()
+        return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
 
     def _latest_choice(self) -> Choice | None:
         """Returns the choice that was made at the latest match; None before that."""

@@ -44,6 +44,8 @@ class Scheduler:
         """What the production that fired last had bound; `?name` in a chunk's text means these."""
         self.fired: Any = None
         """The production that fired last; errors name it."""
+        self.firing: Any = None
+        """The production whose body is being carried out; errors in what it sets going name it."""
         self.trace: Trace | None = None
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""

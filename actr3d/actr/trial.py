@@ -67,11 +67,11 @@ class Trial:
         if op == "empty":
             fact = self._known(self._state.empty(system, name))
             if is_unknown(fact.value):
-                return self._unknown(f"{name}: None", "nothing in it")
+                return self._unknown(f"{name}: None", "nothing in it", fact.seen)
             return None if fact.value else Failure(condition=f"{name}: None", expected="nothing in it", found="something")
         if isinstance(key, str) and key[:1] == "?":
             if key[1:] in self._open:
-                return self._unknown(f"{name}: {condition}", f"a slot that ?{key[1:]} names")
+                return self._unknown(f"{name}: {condition}", f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
             if key[1:] not in self._bound:
                 return Failure(condition=f"{name}: {condition}", expected=f"a slot that ?{key[1:]} names", found=f"{key} is not bound")
             key = slot_named(self._bound[key[1:]])
@@ -81,7 +81,7 @@ class Trial:
         if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
             if op == "bind":
                 self._open.add(value)
-            return self._unknown(f"{name}: {condition}", expected)
+            return self._unknown(f"{name}: {condition}", expected, fact.seen)
         if isinstance(fact.value, Missing):
             return Failure(condition=f"{name}: {condition}", expected=expected, found=self._nothing(name, key))
         if op in ("same", "differs") and value not in self._bound:
@@ -94,7 +94,8 @@ class Trial:
         return None
 
     def _known(self, fact: Fact) -> Fact:
-        self.seen = fact.seen or self.seen
+        if not is_unknown(fact.value):
+            self.seen = fact.seen or self.seen
         return fact
 
     def _nothing(self, name: str, key: Any) -> str:
@@ -115,12 +116,12 @@ class Trial:
         self._bound.update(answer.bound)
         return None
 
-    def _unknown(self, text: str, expected: str, found: str = "no production has looked at it") -> Failure | None:
+    def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
         """Takes what cannot be told for true where the production matched last; else says so."""
         if self._state.matched(self._production):
             self.seen = AT_THE_LAST_MATCH
             return None
-        return _not_known(text, expected, found)
+        return _not_known(text, expected, why or "it depends on what is not known")
 
 
 def _not_known(text: str, expected: str, why: str) -> Failure:

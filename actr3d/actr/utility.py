@@ -9,7 +9,7 @@ import math
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.trace import Trace
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def logistic_noise(numbers: Any, scale: float) -> float:
     return scale * math.log(1.0 / x - 1.0)
 
 
-class ProceduralSubModule(Model):
+class ProceduralSubModule(WithParameters, Model):
     """The base of all utility modules; each method may be overridden."""
 
     def start(self) -> None:
@@ -88,7 +88,12 @@ class ProceduralSubModule(Model):
 
 
 class PMNoise(ProceduralSubModule):
-    """Adds logistic noise: `noise` drawn anew at each choice, `baseNoise` once for each production."""
+    """Adds logistic noise to utilities.
+
+    Args:
+        noise: s of what is drawn anew at each choice.
+        baseNoise: s of what is drawn once for each production.
+    """
 
     _decisive = frozenset({"noise"})
 
@@ -233,6 +238,7 @@ class PMNew(ProceduralSubModule):
         prod.util = 0
 
     def reward(self, value: float) -> None:
+        """Moves the utility of each production since the latest reward towards the reward less the time since its choice."""
         now = self.now()
         whole = self._profile is not None and self._profile.total_utility
         for prod, chosen in self.history:
@@ -242,6 +248,7 @@ class PMNew(ProceduralSubModule):
         self.clearFlag = True
 
     def utility(self, prod: Any) -> float:
+        """Returns what has been learned of a production; 0 as long as no reward has reached it."""
         return prod.util
 
     def recreated(self, prod: Any, first: Any) -> None:

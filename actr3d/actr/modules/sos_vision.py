@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.pattern import Pattern
 
 
-class SOSVision(Model):
+class SOSVision(WithParameters, Model):
     """Looks for an object that matches a pattern, and brings one of those it notices to a buffer.
 
     Each object of the environment (the agent's parent) that has a `salience` is noticed with that probability; one that

@@ -8,11 +8,11 @@ from typing import Any
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.pattern import Pattern
 
 
-class Vision(Model):
+class Vision(WithParameters, Model):
     """Sees the objects of the environment that have `x` and `y`, unless their `visible` is False.
 
     A new object's place goes to the location buffer by itself while that is empty.
