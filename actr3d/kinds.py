@@ -30,7 +30,12 @@ KINDS: Mapping[str, Kind] = {
     "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
     "output": Kind("production", "model", "text", "the model prints a line; told by `actr3d run --json`"),
-    "buffer": Kind("buffer", "buffer", "chunk", "a buffer holds this chunk now (its slots), or none"),
+    "buffer": Kind(
+        "buffer",
+        "buffer",
+        "chunk [texts]",
+        "a buffer holds this chunk now (its slots), or none; `texts` is what patterns compare lists by",
+    ),
     "run": Kind("all", "top model", "limit", "the model is told to run for so long [s]; without limit where there is none"),
     "stop": Kind(
         "all", "top model", "by [error]", "that ends: «limit», «until», «stop», «done» (nothing is left to do) or «error», with its class"
@@ -41,17 +46,17 @@ KINDS: Mapping[str, Kind] = {
     "productions": Kind(
         "all",
         "system",
-        "productions initializers chosen matched drawn",
+        "productions initializers chosen matched drawn [utilities parts threshold]",
         "what a production system has: its productions, methods without parameters, the production about to fire, those that matched "
-        "last, the modules that draw noise",
+        "last, the modules that draw noise; as «conflict» has it, the choice that stands",
     ),
     "initialize": Kind("all", "system", "method", "a method without parameters is carried out, before the first cycle"),
     "observe": Kind("all", "system", "...", "what productions see beyond that (`name.slot`) has these values; none where it is missing"),
     "conflict": Kind(
         "all",
         "system",
-        "utilities [parts drawn]",
-        "which productions match, their utilities, the parts of these, the modules that drew noise",
+        "utilities [parts drawn threshold]",
+        "which productions match, their utilities, the parts of these, the modules that drew noise, the least utility that may fire",
     ),
     "utility": Kind("all", "system", "production part value", "a part of a production's utility has become this by learning"),
     "request": Kind(

@@ -37,7 +37,7 @@ Namer = Callable[[object], str | None]
 
 
 class Opaque(str):
-    """Stands for an object that only its own code could put into words."""
+    """Stands for an object whose own text is another one, or known only to its own code."""
 
     __slots__ = ()
 
@@ -76,7 +76,7 @@ class _Copy:
         if issubclass(kind, COLLECTIONS):
             return self._collection(value, cast("Any", kind))
         if issubclass(kind, Enum):
-            return f"{kind.__name__}.{object.__getattribute__(value, '__dict__').get('_name_')}"
+            return Opaque(f"{kind.__name__}.{object.__getattribute__(value, '__dict__').get('_name_')}")
         if issubclass(kind, str):  # a text of a class of its own
             return str.__str__(value)
         if issubclass(kind, (int, float)):

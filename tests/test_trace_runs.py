@@ -176,7 +176,7 @@ def test_a_late_trace_tells_what_is_under_way() -> None:
     assert (request["asked"], request["made"], request["outcome"]) == ("0:next 1:0", 0.05, "pending")
     assert by["top", "productions"]["chosen"] == "forget"
     assert by["eye", "productions"]["chosen"] == "blink"
-    assert by["top", "observe"] == {"lamp.colour": "red"}
+    assert by["top", "observe"]["lamp.colour"] == "red"
 
 
 @pytest.mark.parametrize(("steps", "outcome"), [(0.06, "pending"), (0.13, "retrieved"), (0.6, "failed")])
@@ -253,4 +253,5 @@ class Agent(ACTR):
     agent.run(1)
     told = agent.explain(0.02)
     assert told.production("yes").matches
-    assert told.production("no").found == "an object whose text only its own code can tell"
+    assert told.production("no").found == "what is not known (an object whose text only its own code can tell)"
+    assert told.production("no").matches is None

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.actr.chunk import Chunk
+from actr3d.actr.chunk import LASTING_TYPES, Chunk
 from actr3d.actr.model import Model, traceable
 from actr3d.actr.parameters import named_parameters
+from actr3d.actr.texts import plain_text
 from actr3d.errors import ChunkError, did_you_mean
 from actr3d.trace import Trace
 
@@ -93,12 +94,27 @@ class Buffer(Model):
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         if key != "chunk":
             super()._trace_change(trace, key, value)
-        elif trace.buffer:
-            trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(value)})
+        elif trace.buffer and not (self._watch is not None and self._watch.just_told(value)):
+            self._trace_chunk(trace, value)
 
     def _trace_state(self, trace: Trace) -> None:
         if trace.buffer:
-            trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(self.chunk)})
+            self._trace_chunk(trace, self.chunk)
+
+    _watch: ChunkWatch | None = None
+
+    def _trace_chunk(self, trace: Trace, chunk: Chunk | None) -> None:
+        """Records what the buffer holds, and sees to it that the trace learns of changes of the chunk itself."""
+        data: dict[str, Any] = {"chunk": traceable(chunk)}
+        if chunk and trace.all and not LASTING_TYPES.issuperset(map(type, chunk.values())):
+            texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
+            if any(texts.values()):
+                data["texts"] = {key: text for key, text in texts.items() if text is not None}
+        trace.emit(self.sch.now_us, self._path, "buffer", data)
+        if isinstance(chunk, Chunk):
+            if self._watch is None:
+                self._watch = ChunkWatch(self)
+            chunk.watched_by(self._watch)
 
     def __getitem__(self, key: Any) -> Any:
         chunk = self.chunk
@@ -114,3 +130,27 @@ class Buffer(Model):
 
     def __len__(self) -> int:
         return 0 if self.chunk is None else len(self.chunk)
+
+
+class ChunkWatch:
+    """Tells a trace when the chunk in a buffer is changed without the buffer: `goal.chunk['count'] = 3`.
+
+    Args:
+        buffer: The buffer.
+    """
+
+    def __init__(self, buffer: Buffer) -> None:
+        self._buffer = buffer
+        self._told: Chunk | None = None
+
+    def changed(self, chunk: Chunk) -> None:
+        """Records a change of a chunk that is, or was, in the buffer."""
+        trace = self._buffer.sch.trace
+        if trace is not None and trace.buffer and self._buffer.chunk is chunk:
+            self._buffer._trace_chunk(trace, chunk)
+            self._told = chunk
+
+    def just_told(self, chunk: Chunk | None) -> bool:
+        """Tells, once, whether the latest change of this very chunk is recorded already."""
+        told, self._told = self._told, None
+        return told is not None and told is chunk

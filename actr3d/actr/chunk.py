@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from actr3d.errors import ChunkError, did_you_mean
 
 if TYPE_CHECKING:
+    from actr3d.actr.buffer import ChunkWatch
     from actr3d.actr.store import ChunkStore
 
 Slot = int | str
@@ -161,6 +162,8 @@ class Chunk(dict[Any, Any]):
     # A chunk that lies in declarative memories tells them of every change, because they find chunks by their slots; for
     # all others `_stores` is empty. A copy lies in none.
     _stores: tuple[ChunkStore, ...] = ()
+    # One that lies in a buffer of a traced run tells the trace too.
+    _watches: tuple[ChunkWatch, ...] = ()
 
     _text: str | None = None
 
@@ -168,9 +171,16 @@ class Chunk(dict[Any, Any]):
         self._text = None
         for store in self._stores:
             store.forget_order()
+        for watch in self._watches:
+            watch.changed(self)
+
+    def watched_by(self, watch: ChunkWatch) -> None:
+        """Tells a buffer's watch of every change from now on."""
+        if watch not in self._watches:
+            self._watches = (*self._watches, watch)
 
     def __getstate__(self) -> dict[str, Any] | None:
-        return {name: value for name, value in vars(self).items() if name not in ("_stores", "_text")} or None
+        return {name: value for name, value in vars(self).items() if name not in ("_stores", "_watches", "_text")} or None
 
     def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
         self.update(other)

@@ -35,6 +35,7 @@ class Joining(TracedPart):
         apart = value._converted and value.sch is not self.sch
         run = {"was": value._path} if apart and value.sch.trace is self.sch.trace else {}
         replaced = self.__dict__.get("_children", {}).get(key)
+        value._note_move(self.sch)
         value.parent = cast("Model", self)
         value._call_joined(key)
         self._adopted(key, value)

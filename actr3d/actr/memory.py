@@ -206,7 +206,12 @@ class Memory(WithParameters, TracedMemory):
 
     def _weigh(self, matches: list[Chunk], record: Retrieval) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
-        winners = record.weigh(matches, self._way_of_weighing(), self.name)
+        own = self._own_activation()
+        if own is not None:
+            record.modules = ()
+            winners = record.weigh(matches, lambda chunk: (own(chunk),), self.name)
+        else:
+            winners = record.weigh(matches, self._parts if self.adaptors or self.log is not dummy else None, self.name)
         if not winners or (self.threshold is not None and self._strength(record, record.best) < self.threshold):
             return []
         return winners
@@ -225,12 +230,10 @@ class Memory(WithParameters, TracedMemory):
         else:
             sch.call_at(sch.now_us, self._begin_recall, (chosen, latency, number))
 
-    def _way_of_weighing(self) -> Callable[[Any], tuple[float, ...]] | None:
-        """Returns what gives the parts of a chunk's activation; None where it is 0 for all, and nobody logs it."""
+    def _own_activation(self) -> Callable[[Any], float] | None:
+        """Returns a modeller's own `get_activation`, where there is one."""
         method: Any = self.__dict__["get_activation"]
-        if getattr(method, "func", None) is not Memory.get_activation:
-            return lambda chunk: (method(chunk),)
-        return self._parts if self.adaptors or self.log is not dummy else None
+        return None if getattr(method, "func", None) is Memory.get_activation else method
 
     def _strength(self, record: Retrieval, best: float) -> float:
         """Returns the activation that the threshold is compared with, and that sets the time."""

@@ -31,6 +31,8 @@ class Production:
     """
 
     base_utility: float = 0
+    parents: tuple[str, ...] = ()
+    """The names of the two productions that a compiled one was made of."""
 
     def __init__(self, system: ProductionSystem, name: str, func: Callable[..., Any]) -> None:
         self.system = system

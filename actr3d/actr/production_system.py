@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.checks import check_names, check_rules
+from actr3d.actr.choice import Choice
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model, pick
@@ -140,14 +141,17 @@ class ProductionSystem(WithParameters, Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            if matcher.looked:
-                seen = matcher.observed(trace)
-                if seen:
-                    trace.emit(self.sch.now_us, self._path, "observe", seen)
+            self._observe(trace)
             if not matching or not self._weighs:
                 utilities = {production.name: production.base_utility for production in matching}
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
         return matching
+
+    def _observe(self, trace: Trace) -> None:
+        """Tells the run's trace what has changed of what productions see, beyond what it knows by itself."""
+        seen = self._matcher.observed.news(trace) if self._matcher is not None else {}
+        if seen:
+            trace.emit(self.sch.now_us, self._path, "observe", seen)
 
     def _trace_state(self, trace: Trace) -> None:
         super()._trace_state(trace)
@@ -160,21 +164,40 @@ class ProductionSystem(WithParameters, Model):
                 "matched": [] if matcher is None else [production.name for production in matcher.last],
                 "drawn": self._drawn_names(),
             }
+            choice = self._standing_choice()
+            if choice is not None:
+                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold}
             trace.emit(self.sch.now_us, self._path, "productions", data)
-            if matcher is not None and matcher.looked:
-                trace.emit(self.sch.now_us, self._path, "observe", dict(matcher.looked))
+            if trace is self.sch.trace:
+                self._observe(trace)
+            elif matcher is not None and (seen := matcher.observed.everything()):
+                # Who only listens hears everything, and takes no news from the run's own trace.
+                trace.emit(self.sch.now_us, self._path, "observe", seen)
 
     def _drawn_names(self) -> list[str]:
-        """Returns the names of the modules whose part of a utility is drawn anew at each choice."""
+        """Returns the names of the modules whose part of a utility is told only at choices."""
         return []
 
-    def _adaptor_names(self) -> list[str]:
-        """Returns the names of the modules that add to utilities."""
+    def _part_names(self) -> list[str]:
+        """Returns the names of what utilities are made of, beyond what productions say of themselves."""
         return []
 
-    def _utility_parts(self, production: Production, leave_out: Collection[str] = ()) -> dict[str, float | None]:
-        """Returns what each of these adds now; None for what is drawn only at a choice, and for what is to be left out."""
+    def _utility_parts(self, production: Production) -> dict[str, float | None]:
+        """Returns what each of these adds now; None for what is told only at a choice."""
         return {}
+
+    def _standing_choice(self) -> Choice | None:
+        """Returns the latest choice, until the production fires; one that held all back, until the next."""
+        choice = self._latest_choice()
+        return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
+
+    def _latest_choice(self) -> Choice | None:
+        """Returns the choice that was made at the latest match; None before that."""
+        if self._matcher is None:
+            return None
+        utilities = {production.name: production.base_utility for production in self._matcher.last}
+        chosen = self._chosen.name if self._chosen is not None else None
+        return Choice(utilities=utilities, parts={}, threshold=None, weighed=self._weighs, chosen=chosen)
 
     def _select(self, choice: Production) -> None:
         """Notes which production will fire."""

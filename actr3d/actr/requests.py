@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from types import FunctionType
 from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
@@ -28,6 +29,15 @@ class Candidate:
     """What mismatches cost (0 or less)."""
     activation: float
     """The sum."""
+
+
+def written(pattern: Any) -> str:
+    """Returns a request as its author wrote it, a function by its name."""
+    if isinstance(pattern, (list, tuple)):
+        return ", ".join(map(written, cast("Sequence[Any]", pattern)))
+    if isinstance(pattern, FunctionType):
+        return f"{pattern.__name__}()"
+    return pattern if type(pattern) is str else str(traceable(pattern))
 
 
 @dataclass(slots=True)
@@ -55,6 +65,7 @@ class Retrieval:
     chosen: Chunk | None = None
     latency: float | None = None
     """How long the retrieval or its failure takes [s]."""
+    _kept: Callable[[], dict[str, Any]] | None = None
 
     def weigh(self, matches: Sequence[Chunk], parts_of: Callable[[Chunk], tuple[float, ...]] | None, memory: str) -> list[Chunk]:
         """Weighs every chunk that matches, and returns the most active ones.
@@ -95,15 +106,22 @@ class Retrieval:
         return [Candidate(*row) for row in self.rows]
 
     def to_data(self) -> dict[str, Any]:
-        """Returns the request as plain values, for the trace and for explanations."""
-        return self.snapshot()()
+        """Returns the request as plain values, for the trace and for explanations.
+
+        Chunks are as they were then in a traced run; otherwise as they are now.
+        """
+        return (self._kept or self._frozen())()
 
     def snapshot(self) -> Callable[[], dict[str, Any]]:
-        """Returns a function that makes plain values of the request; what may change later is taken down now."""
+        """Returns a function that makes plain values of the request; what may change later is taken down now, for good."""
+        self._kept = self._frozen()
+        return self._kept
+
+    def _frozen(self) -> Callable[[], dict[str, Any]]:
         names = [chunk_text(row[0]) for row in self.rows]
-        pattern = self.pattern if type(self.pattern) is str else str(traceable(self.pattern))
         asked = None if type(self.search) is PlainSearch else str(self.search)
-        return partial(self._data, names, [chunk_text(c) for c in self.marked], [chunk_text(c) for c in self.excluded], pattern, asked)
+        marked, excluded = [chunk_text(c) for c in self.marked], [chunk_text(c) for c in self.excluded]
+        return partial(self._data, names, marked, excluded, written(self.pattern), asked)
 
     def _data(self, names: list[str], marked: list[str], excluded: list[str], pattern: str, asked: str | None) -> dict[str, Any]:
         chosen = next((number for number, row in enumerate(self.rows) if row[0] is self.chosen), None)

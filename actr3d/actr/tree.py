@@ -4,11 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from sys import maxsize
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.events import Trigger
     from actr3d.actr.model import Model
+    from actr3d.actr.scheduler import Scheduler
+
+
+class Move(NamedTuple):
+    """A part came into a tree that was being traced, or to another place in it."""
+
+    trace: Trace
+    number: int
+    """How many events the trace held then."""
+    time: int
+    """When [us]."""
+    path: str | None
+    """What its path was before; None where it was not there yet."""
+
+
+class Place(NamedTuple):
+    """Where a part was, while a trace was kept."""
+
+    path: str | None
+    """Its path; None where it was not there yet."""
+    time: int
+    """Since when [us]; -1 for since the trace began."""
+    begin: int
+    """The number of the first event from there."""
+    end: int
+    """The number of the first event after that."""
 
 
 class Part:
@@ -78,3 +107,29 @@ class Part:
             part.__dict__.pop("_known_line_changes", None)
             if not keep_path:
                 part.__dict__.pop("_path", None)
+
+    # -- where it has been
+
+    def _note_move(self, sch: Scheduler) -> None:
+        """Keeps what the paths were until now, where the part gets another place in a traced run, to tell its past."""
+        trace = sch.trace
+        if trace is not None and trace.keep:
+            for part in self._tree():
+                part.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), sch.now_us, part.__dict__.get("_path")))
+
+    def _places_in(self, trace: Trace) -> list[Place]:
+        """Returns where a part has been while a trace was kept, in order."""
+        places: list[Place] = []
+        time, begin = -1, 0
+        for move in self._moves_in(trace):
+            places.append(Place(move.path, time, begin, move.number))
+            time, begin = move.time, move.number
+        return [*places, Place(self._path, time, begin, maxsize)]
+
+    def _moves_in(self, trace: Trace) -> list[Move]:
+        for part in self._line():
+            moves = [move for move in part.__dict__.get("_moves", ()) if move.trace is trace]
+            if moves:
+                # What has no moves of its own came with its parent, and had no place before.
+                return moves if part is self else moves[:1] if moves[0].path is None else []
+        return []
