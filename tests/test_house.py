@@ -38,7 +38,8 @@ PARTS: dict[str, set[str]] = {
     "simulation": BASE | BODILY | SENSES | {"recording"},
     "experiment": BASE | BODILY | SENSES | RUNNING,
     "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"experiment", "bench"},
+    "output": set(),
+    "cli": BASE | BODILY | SENSES | RUNNING | {"experiment", "bench", "output"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING,
 }

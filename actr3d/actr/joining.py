@@ -38,7 +38,7 @@ class Joining(TracedPart):
         value.parent = cast("Model", self)
         value._call_joined(key)
         self._adopted(key, value)
-        value._forget_path(self.sch)
+        value._forget_place()
         if replaced is not None:
             self._trace_member("removed", key, replaced)
         self._trace_member("added", key, value, **run)

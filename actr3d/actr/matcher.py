@@ -116,13 +116,14 @@ class Matcher:
             elif candidates or len(self._by_value) > 1:
                 found = sorted(candidates + found, key=self._order.__getitem__)
             candidates = found
-        self.last = result = list[Production]()
+        result: list[Production] = []
         attempts = self._attempts
         for production in candidates:
             bound = attempts[production]()
             if bound is not None:
                 production.bound = bound
                 result.append(production)
+        self.last = result
         return result
 
     def matches(self, production: Production) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from types import MethodType
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.events import Event, Trigger
@@ -23,6 +24,7 @@ class MethodWrapper:
     def __init__(self, obj: Model, func: Method, name: str) -> None:
         self.obj = obj
         self.func = func
+        self._method = MethodType(func, obj)
         self.__name__ = name
         self.begins = Trigger(f"{name} begin")
         self.ends = Trigger(f"{name} end")
@@ -39,7 +41,7 @@ class MethodWrapper:
     def __call__(self, *args: Any, **keys: Any) -> Any:
         if self.begins.waiting:
             self.obj.sch.trigger(self.begins)
-        value = self.func(self.obj, *args, **keys)
+        value = self._method(*args, **keys)
         if self.ends.waiting:
             self.obj.sch.trigger(self.ends)
         return value

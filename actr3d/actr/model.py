@@ -195,18 +195,10 @@ class Model(Joining):
         else:
             own[key] = value
             if "_converted" in own:
-                # Wakes whoever waits for a change here or further up.
-                part = own
-                while True:
-                    changes: Trigger = part["changes"]
+                for changes in own.get("_known_line_changes") or self._line_changes():
                     if changes.waiting:
-                        own["sch"].trigger(changes, -1)
-                    above: Model | None = part["parent"]
-                    if above is None or above is self:
-                        break
-                    part = above.__dict__
-                trace = own["sch"].trace
-                if own["log"] is not logs.dummy or (trace is not None and trace.buffer):
+                        own["sch"].wake(changes, -1)
+                if own["sch"].trace is not None or own["log"] is not logs.dummy:
                     self._record(key, value)
 
     def _record(self, key: str, value: Any) -> None:
@@ -226,13 +218,17 @@ class Model(Joining):
             self._leave(own["parent"])
         own[key] = value
         joins = False
+        if key == "parent":
+            if isinstance(value, Model) and "sch" in value.__dict__:
+                self._note_move(value.sch)
+            self._forget_place(keep_path=value is None)
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
             joins = self._take_in(key, value)
         if self._converted and key not in UNWATCHED:
-            for part in self._line():
-                if part.changes.waiting:
-                    self.sch.trigger(part.changes, priority=-1)
+            for changes in own.get("_known_line_changes") or self._line_changes():
+                if changes.waiting:
+                    self.sch.wake(changes, -1)
             trace = self.sch.trace
             if joins and trace is not None and isinstance(value, Model):
                 value._trace_states(trace)
@@ -269,8 +265,9 @@ class Model(Joining):
         """Runs the whole tree until nothing is left to do, `stop` is called, or `limit` seconds more have passed.
 
         Args:
-            limit: How long [s from now], to the nearest microsecond; calls with whole microseconds, such as 0.01, can
-                follow one another for ever without drift.
+            limit: How long [s from now]. The clock knows whole microseconds, so a run ends at the one nearest to its
+                exact end, and the next run goes on from there: `run(1/3)` ends at 0.333333, 0.666667 and 1 s. So calls
+                can follow one another for ever without drift.
             func: Called first.
 
         Raises:

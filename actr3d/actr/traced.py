@@ -82,7 +82,7 @@ class TracedPart(Part):
 
     def _attach_trace(self, trace: Trace) -> None:
         """Begins to tell a trace of the run of which this is the top model."""
-        self._forget_path()
+        self._forget_place()
         self.__dict__["_top_path"] = top_path(trace.begin(TracedRun(self)))
         self.sch.trace = trace
         self._trace_opening(trace)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from sys import maxsize
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from actr3d.trace import Trace
 
 if TYPE_CHECKING:
+    from actr3d.actr.events import Trigger
     from actr3d.actr.model import Model
     from actr3d.actr.scheduler import Scheduler
 
@@ -67,24 +69,53 @@ class Part:
         for child in self.get_children():
             yield from child._tree()
 
-    @property
+    @cached_property
     def _path(self) -> str:
         """The dotted names from below the top model down to this one; «top» for that model itself.
 
         Below the top model of a trace's second run they begin with `top#2`. A part that has left the tree keeps its path.
         """
-        known = self.__dict__.get("_known_path")
+        names: list[str] = []
+        part: Any = self
+        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
+            names.append(part.name)
+            part = above
+        top = part.__dict__.get("_top_path", "top")
+        if top != "top" or not names:
+            names.append(top)
+        return ".".join(reversed(names))
+
+    def _path_of(self, name: str) -> str:
+        """Returns the path of something below this part that is no part itself."""
+        return name if self._path == "top" else f"{self._path}.{name}"
+
+    def _line_changes(self) -> tuple[Trigger, ...]:
+        """Returns what wakes those who wait for a change of this model or of an ancestor, whose part it is."""
+        known = self.__dict__.get("_known_line_changes")
         if known is None:
-            known = self.__dict__["_known_path"] = self._make_path()
+            known = self.__dict__["_known_line_changes"] = tuple([part.changes for part in self._line()])
         return known
 
-    def _forget_path(self, sch: Scheduler | None = None) -> None:
-        """Lets paths be made anew; where the part has another place in a traced run, keeps what they were to tell its past."""
-        trace = None if sch is None else sch.trace
+    def _keep_path(self) -> None:
+        """Lets this part, and all below it, keep their paths when they leave the tree."""
         for part in self._tree():
-            known = part.__dict__.pop("_known_path", None)
-            if sch is not None and trace is not None and trace.keep:
-                part.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), sch.now_us, known))
+            part.__dict__["_path"] = part._path
+
+    def _forget_place(self, *, keep_path: bool = False) -> None:
+        """Forgets what was made of the model's place in the tree, and so of that of everything below it."""
+        for part in self._tree():
+            part.__dict__.pop("_known_line_changes", None)
+            if not keep_path:
+                part.__dict__.pop("_path", None)
+
+    # -- where it was before
+
+    def _note_move(self, sch: Scheduler) -> None:
+        """Keeps what paths are, before the part gets another place in a traced run, so that its past can be told."""
+        trace = sch.trace
+        if trace is not None and trace.keep:
+            for part in self._tree():
+                part.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), sch.now_us, part.__dict__.get("_path")))
 
     def _places_in(self, trace: Trace) -> list[Place]:
         """Returns where a part has been while a trace was kept, in order."""
@@ -102,23 +133,3 @@ class Part:
                 # What has no moves of its own came with its parent, and had no place before.
                 return moves if part is self else moves[:1] if moves[0].path is None else []
         return []
-
-    def _keep_path(self) -> None:
-        """Lets this part, and all below it, keep their paths when they leave the tree."""
-        for part in self._tree():
-            part.__dict__["_known_path"] = part._path
-
-    def _make_path(self) -> str:
-        names: list[str] = []
-        part: Any = self
-        while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
-            names.append(part.name)
-            part = above
-        top = part.__dict__.get("_top_path", "top")
-        if top != "top" or not names:
-            names.append(top)
-        return ".".join(reversed(names))
-
-    def _path_of(self, name: str) -> str:
-        """Returns the path of something below this part that is no part itself."""
-        return name if self._path == "top" else f"{self._path}.{name}"
