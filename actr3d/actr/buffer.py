@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from actr3d.actr.chunk import LASTING_TYPES, Chunk
-from actr3d.actr.model import Model, traceable
+from actr3d.actr.model import Model
 from actr3d.actr.parameters import named_parameters
 from actr3d.actr.texts import plain_text
+from actr3d.actr.traced import lasting_slots, traceable
 from actr3d.errors import ChunkError, did_you_mean
 from actr3d.trace import Trace
 
@@ -94,27 +95,31 @@ class Buffer(Model):
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         if key != "chunk":
             super()._trace_change(trace, key, value)
-        elif trace.buffer and not (self._watch is not None and self._watch.just_told(value)):
+        elif trace.buffer:
+            watch: ChunkWatch | None = self.__dict__.get("_watch")
+            if watch is not None and watch.told is not None:
+                told, watch.told = watch.told, None
+                if told is value:  # `modify` changes a chunk and sets it anew
+                    return
             self._trace_chunk(trace, value)
 
     def _trace_state(self, trace: Trace) -> None:
         if trace.buffer:
             self._trace_chunk(trace, self.chunk)
 
-    _watch: ChunkWatch | None = None
-
     def _trace_chunk(self, trace: Trace, chunk: Chunk | None) -> None:
         """Records what the buffer holds, and sees to it that the trace learns of changes of the chunk itself."""
-        data: dict[str, Any] = {"chunk": traceable(chunk)}
-        if chunk and trace.all and not LASTING_TYPES.issuperset(map(type, chunk.values())):
-            texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
-            if any(texts.values()):
-                data["texts"] = {key: text for key, text in texts.items() if text is not None}
-        trace.emit(self.sch.now_us, self._path, "buffer", data)
+        own = self.__dict__
+        data: dict[str, Any]
+        if type(chunk) is Chunk and LASTING_TYPES.issuperset(map(type, chunk.values())):
+            data = {"chunk": lasting_slots(chunk)}
+        else:
+            data = {"chunk": traceable(chunk), **(_texts(chunk) if chunk and trace.all else {})}
+        trace.emit(own["sch"].now_us, self._path, "buffer", data)
         if isinstance(chunk, Chunk):
-            if self._watch is None:
-                self._watch = ChunkWatch(self)
-            chunk.watched_by(self._watch)
+            watch = own.get("_watch") or own.setdefault("_watch", ChunkWatch(self))
+            if watch not in chunk._watches:
+                chunk._watches = (*chunk._watches, watch) if chunk._watches else watch.alone
 
     def __getitem__(self, key: Any) -> Any:
         chunk = self.chunk
@@ -132,6 +137,13 @@ class Buffer(Model):
         return 0 if self.chunk is None else len(self.chunk)
 
 
+def _texts(chunk: Chunk) -> dict[str, dict[str, str]]:
+    """Returns how patterns compare values that are not plain, such as lists, as far as that can be told."""
+    texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
+    known = {key: text for key, text in texts.items() if text is not None}
+    return {"texts": known} if known else {}
+
+
 class ChunkWatch:
     """Tells a trace when the chunk in a buffer is changed without the buffer: `goal.chunk['count'] = 3`.
 
@@ -140,17 +152,17 @@ class ChunkWatch:
     """
 
     def __init__(self, buffer: Buffer) -> None:
+        self.alone = (self,)
+        """What a chunk that only this watches has for its watches."""
         self._buffer = buffer
-        self._told: Chunk | None = None
+        self.told: Chunk | None = None
+        """The chunk in the buffer, if its latest change is recorded and it has not been set since."""
 
     def changed(self, chunk: Chunk) -> None:
         """Records a change of a chunk that is, or was, in the buffer."""
-        trace = self._buffer.sch.trace
-        if trace is not None and trace.buffer and self._buffer.chunk is chunk:
-            self._buffer._trace_chunk(trace, chunk)
-            self._told = chunk
-
-    def just_told(self, chunk: Chunk | None) -> bool:
-        """Tells, once, whether the latest change of this very chunk is recorded already."""
-        told, self._told = self._told, None
-        return told is not None and told is chunk
+        buffer = self._buffer
+        own = buffer.__dict__
+        trace = own["sch"].trace
+        if trace is not None and trace.buffer and own["chunk"] is chunk:
+            buffer._trace_chunk(trace, chunk)
+            self.told = chunk

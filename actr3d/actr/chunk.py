@@ -174,11 +174,6 @@ class Chunk(dict[Any, Any]):
         for watch in self._watches:
             watch.changed(self)
 
-    def watched_by(self, watch: ChunkWatch) -> None:
-        """Tells a buffer's watch of every change from now on."""
-        if watch not in self._watches:
-            self._watches = (*self._watches, watch)
-
     def __getstate__(self) -> dict[str, Any] | None:
         return {name: value for name, value in vars(self).items() if name not in ("_stores", "_watches", "_text")} or None
 

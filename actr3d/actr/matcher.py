@@ -90,6 +90,7 @@ class Matcher:
         return found
 
     def _asking(self, production: Production, number: int, function: Callable[[Any, Bindings], Any]) -> Callable[[Any, Bindings], Any]:
+        self.observed.used = True
         asked, label, sch = self.observed.asked, (production.name, number), production.system.sch
 
         def ask(target: Any, bound: Bindings) -> Any:

@@ -219,6 +219,8 @@ class Model(Joining):
         own[key] = value
         joins = False
         if key == "parent":
+            if isinstance(value, Model) and "sch" in value.__dict__:
+                self._note_move(value.sch)
             self._forget_place(keep_path=value is None)
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()

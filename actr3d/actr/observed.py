@@ -77,6 +77,8 @@ class Observed:
         """What productions saw when they last looked, as text; None for what was not there."""
         self.asked: dict[tuple[str, int], Asked] = {}
         """What functions said, by the production's name and the condition's number."""
+        self.used = False
+        """Whether productions look at anything of that kind."""
         self._watched: dict[str, tuple[Any, Any]] = {}
         self._told: dict[str, Any] = {}
         self._listener: object = None
@@ -86,6 +88,7 @@ class Observed:
         label = f"{name}.{key}"
         if not (hasattr(target, "chunk") if key is None else has_slots(target, key)):
             self._watched[label] = target, key
+            self.used = True
         return label
 
     def news(self, listener: object) -> dict[str, Any]:

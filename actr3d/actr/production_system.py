@@ -141,7 +141,8 @@ class ProductionSystem(WithParameters, Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            self._observe(trace)
+            if matcher.observed.used:
+                self._observe(trace)
             if not matching or not self._weighs:
                 utilities = {production.name: production.base_utility for production in matching}
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
@@ -230,13 +231,14 @@ class ProductionSystem(WithParameters, Model):
             self._matcher.build(self._productions)
 
     def explain(self, at: float | None = None) -> Explanation:
-        """Says why: for each production whether it matches or what fails first, and its utility; for each memory its last request.
+        """Says why: for each production whether it matches or what fails first, its utility, and why it was chosen or lost;
+        for each memory its last request. Asking runs no code of the model's and draws no random number.
 
         Args:
             at: A past time of a traced run [s]; None for now.
 
         Raises:
-            ParameterError: If the run was not traced (level «all») at that time, or it lies in the future.
+            ParameterError: If it is no time, lies ahead, or the run was not traced (level «all») or the agent not there then.
         """
         from actr3d.actr.explain import explain
 

@@ -30,8 +30,13 @@ def traceable(value: Any) -> Any:
     if type(value) in LASTING_TYPES:
         return value
     if type(value) is Chunk and LASTING_TYPES.issuperset(map(type, value.values())):
-        return {key if type(key) is str else str(plain(key)): item for key, item in value.items()}
+        return lasting_slots(value)
     return plain(value, _known_part)
+
+
+def lasting_slots(chunk: Chunk) -> dict[str, Any]:
+    """Returns what a trace keeps of a chunk whose values never change by themselves."""
+    return {key if type(key) is str else str(plain(key)): item for key, item in chunk.items()}
 
 
 def chunk_text(chunk: Chunk) -> str:

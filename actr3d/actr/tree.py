@@ -108,10 +108,10 @@ class Part:
             if not keep_path:
                 part.__dict__.pop("_path", None)
 
-    # -- where it has been
+    # -- where it was before
 
     def _note_move(self, sch: Scheduler) -> None:
-        """Keeps what the paths were until now, where the part gets another place in a traced run, to tell its past."""
+        """Keeps what paths are, before the part gets another place in a traced run, so that its past can be told."""
         trace = sch.trace
         if trace is not None and trace.keep:
             for part in self._tree():
