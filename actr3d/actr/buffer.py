@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from actr3d.actr.chunk import LASTING_TYPES, Chunk
@@ -10,7 +11,7 @@ from actr3d.actr.parameters import named_parameters
 from actr3d.actr.texts import plain_text
 from actr3d.actr.traced import lasting_slots, traceable
 from actr3d.errors import ChunkError, did_you_mean
-from actr3d.trace import Trace
+from actr3d.trace import Data, Trace
 
 
 class Buffer(Model):
@@ -110,9 +111,9 @@ class Buffer(Model):
     def _trace_chunk(self, trace: Trace, chunk: Chunk | None) -> None:
         """Records what the buffer holds, and sees to it that the trace learns of changes of the chunk itself."""
         own = self.__dict__
-        data: dict[str, Any]
+        data: Data
         if type(chunk) is Chunk and LASTING_TYPES.issuperset(map(type, chunk.values())):
-            data = {"chunk": lasting_slots(chunk)}
+            data = partial(_told, dict(chunk))
         else:
             data = {"chunk": traceable(chunk), **(_texts(chunk) if chunk and trace.all else {})}
         trace.emit(own["sch"].now_us, self._path, "buffer", data)
@@ -135,6 +136,11 @@ class Buffer(Model):
 
     def __len__(self) -> int:
         return 0 if self.chunk is None else len(self.chunk)
+
+
+def _told(slots: dict[Any, Any]) -> dict[str, Any]:
+    """Returns what a trace keeps of a chunk whose values never change by themselves, from a copy of it."""
+    return {"chunk": lasting_slots(slots)}
 
 
 def _texts(chunk: Chunk) -> dict[str, dict[str, str]]:

@@ -33,11 +33,13 @@ class Candidate:
 
 def written(pattern: Any) -> str:
     """Returns a request as its author wrote it, a function by its name."""
+    if type(pattern) is str:
+        return pattern
     if isinstance(pattern, (list, tuple)):
         return ", ".join(map(written, cast("Sequence[Any]", pattern)))
     if isinstance(pattern, FunctionType):
         return f"{pattern.__name__}()"
-    return pattern if type(pattern) is str else str(traceable(pattern))
+    return str(traceable(pattern))
 
 
 @dataclass(slots=True)

@@ -34,14 +34,17 @@ def traceable(value: Any) -> Any:
     return plain(value, _known_part)
 
 
-def lasting_slots(chunk: Chunk) -> dict[str, Any]:
+def lasting_slots(chunk: dict[Any, Any]) -> dict[str, Any]:
     """Returns what a trace keeps of a chunk whose values never change by themselves."""
     return {key if type(key) is str else str(plain(key)): item for key, item in chunk.items()}
 
 
 def chunk_text(chunk: Chunk) -> str:
     """Returns a chunk as text, without asking the objects in its slots for theirs."""
-    if chunk._text is not None or LASTING_TYPES.issuperset(map(type, chunk.values())):
+    text = chunk._text
+    if text is not None:
+        return text
+    if LASTING_TYPES.issuperset(map(type, chunk.values())):
         return str(chunk)
     return str(Chunk({key: traceable(value) for key, value in chunk.items()}))
 
@@ -142,8 +145,11 @@ class TracedPart(Part):
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         """Records one attribute's new value."""
-        # That a part has joined is told by «added».
-        if trace.all and (value is None or self.__dict__.get("_children", {}).get(key) is not value):
+        if not trace.all:
+            return
+        if type(value) in LASTING_TYPES:
+            trace.emit(self.sch.now_us, self._path, "state", {key: value})
+        elif self.__dict__.get("_children", {}).get(key) is not value:  # that a part has joined is told by «added»
             trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
 
     def _trace_member(self, kind: str, name: str, part: Part, **particulars: Any) -> None:
