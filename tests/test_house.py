@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "trace", "configuration"}
+BASE = {"errors", "clock", "configuration", "values", "kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -26,7 +26,9 @@ PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
     "configuration": {"errors"},
-    "trace": {"errors", "clock"},
+    "values": set(),
+    "kinds": set(),
+    "trace": {"errors", "clock", "values", "kinds"},
     "actr": BASE,
     "world": BASE,
     "camera": BASE | {"world"},
@@ -37,7 +39,8 @@ PARTS: dict[str, set[str]] = {
     "simulation": BASE | BODILY | SENSES | {"recording"},
     "experiment": BASE | BODILY | SENSES | RUNNING,
     "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"experiment", "bench"},
+    "output": set(),
+    "cli": BASE | BODILY | SENSES | RUNNING | {"experiment", "bench", "output"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING,
 }
