@@ -34,6 +34,10 @@ class GridError(Actr3dError):
     """A grid world cannot be made, or a body in it placed or moved, as asked."""
 
 
+class CameraError(Actr3dError):
+    """A camera cannot be made, or cannot look: unknown eye or geom, poses that are missing or no numbers."""
+
+
 class ModelFileError(Actr3dError):
     """A model file cannot be loaded: missing, not Python 3, or not readable as text."""
 

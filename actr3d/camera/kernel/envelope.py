@@ -1,0 +1,166 @@
+"""What is nearest along a row."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from actr3d.camera.kernel.crossings import add_crossings, may_cover
+from actr3d.camera.kernel.extents import add_extent, end_row
+from actr3d.camera.kernel.jit import compiled, zero
+from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, PIECE, SAME_DEPTH, Array, Record
+from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
+
+MOST_CUTS = 400
+"""How many parts may wait; two pieces cross at most four times, so that only rounding could ever come near."""
+
+
+class Row(NamedTuple):
+    """The pieces of a row, and room to find out which is nearest where."""
+
+    pieces: Array
+    order: Array
+    """The pieces' numbers, leftmost first."""
+    ends: Array
+    active: Array
+    """The numbers of those at hand."""
+    cuts: Array
+    stack: Array
+    """Stretches still to be looked at, `(low, high)`, the leftmost last."""
+    work: Array
+    curve: Array
+    """One piece."""
+    places: Array
+    """Where the geoms' centres are, in the eye's frame."""
+
+
+def room_for(pieces: int, places: Array) -> Row:
+    """Returns room for so many pieces."""
+    return Row(
+        pieces=np.zeros(pieces, PIECE),
+        order=np.zeros(pieces, np.int64),
+        ends=np.zeros(2 * pieces),
+        active=np.zeros(pieces, np.int64),
+        cuts=np.zeros(64),
+        stack=np.zeros((MOST_CUTS, 2)),
+        work=np.zeros((5, 8)),
+        curve=np.zeros(1, PIECE),
+        places=places,
+    )
+
+
+@compiled
+def trace_row(v: float, optics: Record, row: Row, count: int, extents: Array, first: int) -> int:
+    """Appends the extents of one row; returns how many extents there are now.
+
+    Between two neighbouring ends of pieces the same pieces lie behind one another, and one of them wins unless some cross.
+
+    Args:
+        v: The row's tangent upwards.
+        optics: The eye's.
+        row: What lies on the row.
+        count: How many pieces there are.
+        extents: Where they are written, as far as there is room; `label` holds the object.
+        first: How many there are already.
+    """
+    done, waiting, present = first, zero(), zero()
+    for i in range(count):
+        row.ends[2 * i], row.ends[2 * i + 1] = row.pieces[i].low, row.pieces[i].high
+    sort_values(row.ends, 2 * count)
+    sort_by_start(row.order, row.pieces, count)
+    start = row.ends[0]
+    for i in range(1, 2 * count):
+        end = row.ends[i]
+        if not end - start > NEGLIGIBLE:
+            continue
+        while waiting < count and row.pieces[row.order[waiting]].low <= start + NEGLIGIBLE:
+            row.active[present] = row.order[waiting]
+            waiting, present = waiting + 1, present + 1
+        kept = zero()
+        for j in range(present):
+            if row.pieces[row.active[j]].high > start + NEGLIGIBLE:
+                row.active[kept] = row.active[j]
+                kept += 1
+        present = kept
+        done = _trace_stretch(start, end, optics, row, present, extents, first, done)
+        start = end
+    return end_row(v, optics, extents, first, done)
+
+
+@compiled
+def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: int, extents: Array, first: int, done: int) -> int:
+    """Appends the extents of a stretch in which no piece begins or ends; divides it wherever the winner may change."""
+    row.stack[0, 0], row.stack[0, 1] = low, high
+    waiting = 1
+    divisions = MOST_CUTS
+    while waiting > 0:
+        waiting -= 1
+        low, high = row.stack[waiting, 0], row.stack[waiting, 1]
+        winner = _winner(0.5 * (low + high), row, present)
+        if winner < 0 or row.pieces[winner].object == BACKGROUND and present == 1:
+            continue
+        number = _cuts(winner, low, high, row, present) if divisions > 0 and waiting + 64 < MOST_CUTS else 0
+        if number > 0:
+            divisions -= number
+            sort_values(row.cuts, number)
+            for i in range(number, -1, -1):
+                row.stack[waiting, 0] = row.cuts[i - 1] if i > 0 else low
+                row.stack[waiting, 1] = row.cuts[i] if i < number else high
+                waiting += 1
+        elif row.pieces[winner].object != BACKGROUND:
+            object = row.pieces[winner].object
+            near, far = _nearest_of(object, low, row, present), _nearest_of(object, high, row, present)
+            done = add_extent(object, low, high, near, far, optics, extents, first, done)
+    return done
+
+
+@compiled
+def _winner(u: float, row: Row, present: int) -> int:
+    """Returns the number of the piece that is nearest at a tangent, or -1; of equals, that of the nearest geom."""
+    floor, winner, best = 0.0, -1, 0.0
+    for i in range(present):
+        floor = max(floor, row.pieces[row.active[i]].floor)
+    for i in range(present):
+        number = row.active[i]
+        piece = row.pieces[number]
+        if piece.ceiling < floor:
+            continue
+        w = nearness(piece, u)
+        if winner < 0 or w > best * (1.0 + SAME_DEPTH):
+            winner, best = number, w
+        elif w > best * (1.0 - SAME_DEPTH) and _goes_first(row.places, piece.geom, row.pieces[winner].geom):
+            winner, best = number, max(w, best)
+    return winner
+
+
+@compiled
+def _goes_first(places: Array, one: int, other: int) -> bool:
+    """Tells whether a geom's centre is nearer than another's, or else further to the left or down; never by their order."""
+    a, b = places[one], places[other]
+    near, far = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], b[0] * b[0] + b[1] * b[1] + b[2] * b[2]
+    if near != far:
+        return near < far
+    return a[0] < b[0] or (a[0] == b[0] and a[1] < b[1])
+
+
+@compiled
+def _cuts(winner: int, low: float, high: float, row: Row, present: int) -> int:
+    """Finds where between two tangents others may come to lie in front of the winner; returns how many cuts there are."""
+    best, number = row.pieces[winner], zero()
+    for i in range(present):
+        other = row.pieces[row.active[i]]
+        if other.object != best.object and number < 48 and may_cover(other, best, low, high):
+            number = add_crossings(best, other, low + NEGLIGIBLE, high - NEGLIGIBLE, row.work, row.cuts, number)
+    return number
+
+
+@compiled
+def _nearest_of(object: int, u: float, row: Row, present: int) -> float:
+    """Returns how near the pieces of one object come at a tangent [1/m]."""
+    best = 0.0
+    for i in range(present):
+        piece = row.pieces[row.active[i]]
+        if piece.object == object:
+            best = max(best, nearness(piece, u))
+    return best

@@ -1,0 +1,71 @@
+"""Pieces: the stretches of surfaces on one row, their nearness and their order."""
+
+from __future__ import annotations
+
+import math
+
+from actr3d.camera.kernel.jit import compiled
+from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, Array, Record
+
+
+@compiled
+def root_of(a: float, b: float, c: float, side: int) -> float:
+    """Returns a root of `a w^2 - 2 b w + c`: the nearness of the near (1) or far (-1) side, without loss of digits."""
+    root = math.sqrt(max(b * b - a * c, 0.0))
+    if side * b >= 0.0:
+        return (b + side * root) / a
+    return c / (b - side * root)
+
+
+@compiled
+def nearness(piece: Record, u: float) -> float:
+    """Returns 1 / depth of a piece at the tangent u [1/m]."""
+    if piece.shape == LINE:
+        return piece.c0 + piece.c1 * (u - piece.b0)
+    return root_of(piece.a, piece.b0 + piece.b1 * u, piece.c0 + u * (piece.c1 + u * piece.c2), piece.shape)
+
+
+@compiled
+def bound(piece: Record, floor: float, ceiling: float) -> None:
+    """Sets the bounds of a piece's nearness: from its ends where they tell, else from what is known of the whole."""
+    first, last = nearness(piece, piece.low), nearness(piece, piece.high)
+    piece.floor, piece.ceiling = min(first, last), max(first, last)
+    if piece.shape == NEAR_SIDE:
+        piece.ceiling = ceiling
+    elif piece.shape != LINE:
+        piece.floor = floor
+
+
+@compiled
+def sort_values(values: Array, count: int) -> None:
+    """Sorts the first `count` values; for the few dozens there are, simple is fast."""
+    gap = 1
+    while gap < count // 3:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for i in range(gap, count):
+            value, j = values[i], i
+            while j >= gap and values[j - gap] > value:
+                values[j] = values[j - gap]
+                j -= gap
+            values[j] = value
+        gap //= 3
+
+
+@compiled
+def sort_by_start(order: Array, pieces: Array, count: int) -> None:
+    """Fills `order` with the numbers of the first `count` pieces, leftmost first."""
+    for i in range(count):
+        order[i] = i
+    gap = 1
+    while gap < count // 3:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for i in range(gap, count):
+            one, j = order[i], i
+            low = pieces[one].low
+            while j >= gap and pieces[order[j - gap]].low > low:
+                order[j] = order[j - gap]
+                j -= gap
+            order[j] = one
+        gap //= 3

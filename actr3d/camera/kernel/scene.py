@@ -1,0 +1,181 @@
+"""From geoms to what may be in view: patches, and polygons by the row they begin on."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from actr3d.camera.kernel.faces import face_rows
+from actr3d.camera.kernel.jit import compiled, zero
+from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, PATCH, PLANE, UNSEEN, Array, Record
+from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
+from actr3d.camera.kernel.screen import in_view
+from actr3d.camera.kernel.solids import add_patches, reach_of
+
+
+class Geoms(NamedTuple):
+    """What a model says of its geoms: MuJoCo's own memory, so that changes are seen at once."""
+
+    size: Array
+    group: Array
+    rgba: Array
+    matid: Array
+    mat_rgba: Array
+    rbound: Array
+    mesh_vert: Array
+    hfield_size: Array
+    hfield_data: Array
+
+
+class Topology(NamedTuple):
+    """What never changes: which geom belongs to which object, and which corners make a face."""
+
+    kind: Array
+    """The type of each geom, `(n,)`."""
+    objects: Array
+    """The object of each geom, `(n,)`."""
+    groups: Array
+    """Which groups of geoms are seen, `(6,)`."""
+    source: Array
+    """Where a mesh's or height field's data begin, the height field's number, rows and columns, `(n, 4)`."""
+    corners: Array
+    """The first corner of each geom, and at last how many there are, `(n + 1,)`."""
+    faces: Array
+    """The first face of each geom, and at last how many there are, `(n + 1,)`."""
+    face_corners: Array
+    """The corners of each face, `(m, 4)`; -1 after those of a triangle."""
+    face_geom: Array
+    """The geom of each face, `(m,)`."""
+
+
+class Scene(NamedTuple):
+    """Room for what is in view at one moment."""
+
+    places: Array
+    """The geoms' centres in the eye's frame, `(n, 3)` [m]."""
+    patches: Array
+    local: Array
+    """The corners of one geom in its frame [m]."""
+    corners: Array
+    """All corners in the eye's frame [m]."""
+    starting: Array
+    """The first of the faces that begin on a row, or -1."""
+    following: Array
+    """The next of the faces that begin on the same row as a face, or -1."""
+    ending: Array
+    """The last row of a face."""
+    present: Array
+    """The faces on the row at hand."""
+
+
+def room_for_scene(topology: Topology, rows: int) -> Scene:
+    """Returns room for all that a model's geoms may be."""
+    geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
+    return Scene(
+        places=np.zeros((geoms, 3)),
+        patches=np.zeros(3 * geoms + 1, PATCH),  # a cylinder or capsule has three
+        local=np.zeros((max(8, corners), 3)),
+        corners=np.zeros((corners, 3)),
+        starting=np.zeros(rows, np.int64),
+        following=np.zeros(faces, np.int64),
+        ending=np.zeros(faces, np.int64),
+        present=np.zeros(faces, np.int64),
+    )
+
+
+@compiled
+def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> int:
+    """Finds what may be in view; returns how many patches there are, or below 0, less one, a geom with a pose that is no number.
+
+    Args:
+        eye: The eye's axes right, up and forward, and its place, as rows in the world's frame.
+        place: The geoms' places in the world.
+        turn: Their rotations, `(n, 9)`.
+        geoms: The model's.
+        topology: Likewise.
+        optics: The eye's.
+        scene: Where it is written.
+    """
+    count, its_turn = zero(), np.zeros((3, 3))
+    for number in range(optics.rows):
+        scene.starting[number] = -1
+    for geom in range(len(topology.kind)):
+        if not _visible(geom, geoms, topology):
+            continue
+        its_place = scene.places[geom]
+        if not _set_pose(eye, place[geom], turn[geom], its_place, its_turn):
+            return -1 - geom
+        kind, size = topology.kind[geom], geoms.size[geom]
+        if kind in (BOX, MESH, HFIELD):
+            _set_polyhedron(geom, its_place, its_turn, geoms, topology, optics, scene)
+            continue
+        reach = reach_of(kind, size)
+        if in_view(its_place, reach, optics):
+            both = kind != PLANE and _length(its_place) - reach <= optics.corner
+            before = count
+            count = add_patches(kind, size, its_place, its_turn, both, optics, scene.patches, count)
+            for i in range(before, count):
+                scene.patches[i].object, scene.patches[i].geom = topology.objects[geom], geom
+    return count
+
+
+@compiled
+def _visible(geom: int, geoms: Geoms, topology: Topology) -> bool:
+    """Tells whether a geom can be seen at all: as with MuJoCo's rays, those whose colour is fully transparent cannot."""
+    if topology.objects[geom] == UNSEEN or not topology.groups[min(max(geoms.group[geom], 0), 5)]:
+        return False
+    material = geoms.matid[geom]
+    alpha = geoms.rgba[geom, 3] if material < 0 else geoms.mat_rgba[material, 3]
+    return alpha != 0.0
+
+
+@compiled
+def _set_pose(eye: Array, place: Array, turn: Array, its_place: Array, its_turn: Array) -> bool:
+    """Turns a pose into the eye's frame; tells whether it is one of numbers."""
+    total = 0.0
+    for i in range(3):
+        its_place[i] = 0.0
+        for j in range(3):
+            its_place[i] += eye[i, j] * (place[j] - eye[3, j])
+            its_turn[i, j] = eye[i, 0] * turn[j] + eye[i, 1] * turn[3 + j] + eye[i, 2] * turn[6 + j]
+            total += its_turn[i, j]
+        total += its_place[i]
+    return math.isfinite(total)
+
+
+@compiled
+def _length(vector: Array) -> float:
+    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+
+
+@compiled
+def _set_polyhedron(geom: int, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> None:
+    """Places the corners of a geom, and enters its faces at the rows that they begin on."""
+    kind, source = topology.kind[geom], topology.source[geom]
+    size = geoms.size[geom]
+    if kind == BOX:
+        reach = _length(size)
+    elif kind == MESH:
+        reach = geoms.rbound[geom]
+    else:
+        reach = hfield_reach(geoms.hfield_size[source[1]])
+    if not in_view(place, reach, optics):
+        return
+    corners = scene.corners[topology.corners[geom] : topology.corners[geom + 1]]
+    if kind == MESH:
+        place_corners(geoms.mesh_vert[source[0] :], place, turn, corners)
+    elif kind == BOX:
+        set_box(size, scene.local)
+        place_corners(scene.local, place, turn, corners)
+    else:
+        set_hfield(geoms.hfield_size[source[1]], geoms.hfield_data[source[0] :], source[2], source[3], scene.local)
+        place_corners(scene.local, place, turn, corners)
+    one_sided = kind == BOX and box_distance(size, place, turn) > optics.corner
+    for face in range(topology.faces[geom], topology.faces[geom + 1]):
+        first, last = face_rows(topology.face_corners[face], scene.corners, one_sided, optics)
+        if first <= last:
+            scene.following[face] = scene.starting[first]
+            scene.starting[first] = face
+            scene.ending[face] = last
