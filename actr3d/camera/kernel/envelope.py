@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,6 @@ class Row(NamedTuple):
     pieces: Array
     order: Array
     """The pieces' numbers, leftmost first."""
-    ends: Array
     active: Array
     """The numbers of those at hand."""
     cuts: Array
@@ -40,7 +40,6 @@ def room_for(pieces: int, places: Array) -> Row:
     return Row(
         pieces=np.zeros(pieces, PIECE),
         order=np.zeros(pieces, np.int64),
-        ends=np.zeros(2 * pieces),
         active=np.zeros(pieces, np.int64),
         cuts=np.zeros(64),
         stack=np.zeros((MOST_CUTS, 2)),
@@ -64,28 +63,53 @@ def trace_row(v: float, optics: Record, row: Row, count: int, extents: Array, fi
         extents: Where they are written, as far as there is room; `label` holds the object.
         first: How many there are already.
     """
-    done, waiting, present = first, zero(), zero()
-    for i in range(count):
-        row.ends[2 * i], row.ends[2 * i + 1] = row.pieces[i].low, row.pieces[i].high
-    sort_values(row.ends, 2 * count)
+    done, waiting, present, start = first, zero(), zero(), -optics.right
     sort_by_start(row.order, row.pieces, count)
-    start = row.ends[0]
-    for i in range(1, 2 * count):
-        end = row.ends[i]
-        if not end - start > NEGLIGIBLE:
+    while True:
+        waiting, present = _bring_in(start, row, count, waiting, present)
+        end = row.pieces[row.order[waiting]].low if waiting < count else math.inf
+        if present == 0:
+            if waiting == count:
+                return end_row(v, optics, extents, first, done)
+            start = end
             continue
-        while waiting < count and row.pieces[row.order[waiting]].low <= start + NEGLIGIBLE:
-            row.active[present] = row.order[waiting]
-            waiting, present = waiting + 1, present + 1
-        kept = zero()
-        for j in range(present):
-            if row.pieces[row.active[j]].high > start + NEGLIGIBLE:
-                row.active[kept] = row.active[j]
+        for i in range(present):
+            end = min(end, row.pieces[row.active[i]].high)
+        done = _trace_stretch(start, end, optics, row, present, extents, first, done)
+        start, kept = end, zero()
+        for i in range(present):
+            if row.pieces[row.active[i]].high > start + NEGLIGIBLE:
+                row.active[kept] = row.active[i]
                 kept += 1
         present = kept
-        done = _trace_stretch(start, end, optics, row, present, extents, first, done)
-        start = end
-    return end_row(v, optics, extents, first, done)
+
+
+@compiled
+def _bring_in(start: float, row: Row, count: int, waiting: int, present: int) -> tuple[int, int]:
+    """Takes up the pieces that begin at a tangent, and passes over those that are hidden wholly by one at hand.
+
+    Returns how many of all pieces were taken up or passed over, and how many are at hand.
+    """
+    while waiting < count:
+        number = row.order[waiting]
+        piece = row.pieces[number]
+        if not _hidden(piece, row, present):
+            if piece.low > start + NEGLIGIBLE:
+                break
+            row.active[present] = number
+            present += 1
+        waiting += 1
+    return waiting, present
+
+
+@compiled
+def _hidden(piece: Record, row: Row, present: int) -> bool:
+    """Tells whether one of the pieces at hand is in front of all of a piece that begins now or later."""
+    for i in range(present):
+        other = row.pieces[row.active[i]]
+        if other.floor > piece.ceiling and other.high >= piece.high:
+            return True
+    return False
 
 
 @compiled
@@ -98,7 +122,7 @@ def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: i
         waiting -= 1
         low, high = row.stack[waiting, 0], row.stack[waiting, 1]
         winner = _winner(0.5 * (low + high), row, present)
-        if winner < 0 or row.pieces[winner].object == BACKGROUND and present == 1:
+        if row.pieces[winner].object == BACKGROUND and present == 1:
             continue
         number = _cuts(winner, low, high, row, present) if divisions > 0 and waiting + 64 < MOST_CUTS else 0
         if number > 0:
@@ -117,7 +141,9 @@ def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: i
 
 @compiled
 def _winner(u: float, row: Row, present: int) -> int:
-    """Returns the number of the piece that is nearest at a tangent, or -1; of equals, that of the nearest geom."""
+    """Returns the number of the piece that is nearest at a tangent; of equals, that of the nearest geom."""
+    if present == 1:
+        return row.active[0]
     floor, winner, best = 0.0, -1, 0.0
     for i in range(present):
         floor = max(floor, row.pieces[row.active[i]].floor)

@@ -12,20 +12,23 @@ import numba
 P = ParamSpec("P")
 R = TypeVar("R")
 
+OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
+"""Division by zero gives infinity; no compiled function allocates memory, so that no references need to be counted."""
+
 _njit = cast("Any", numba).njit
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Returns the function compiled, to be called by other compiled ones; division by zero gives infinity."""
-    return _njit(error_model="numpy", nogil=True)(function)
+    """Returns the function compiled, to be called by other compiled ones only."""
+    return _njit(no_cpython_wrapper=True, **OPTIONS)(function)
 
 
 def kept(function: Callable[P, R]) -> Callable[P, R]:
     """Returns the function compiled, and kept on disk for the next process where any folder can be written."""
     try:
-        return _njit(error_model="numpy", nogil=True, cache=True)(function)
+        return _njit(cache=True, **OPTIONS)(function)
     except RuntimeError:  # no folder to keep it in
-        return compiled(function)
+        return _njit(**OPTIONS)(function)
 
 
 def sources_digest() -> int:

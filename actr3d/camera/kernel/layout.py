@@ -39,6 +39,7 @@ PIECE = np.dtype(
         ("shape", "i8"),  # a line, or the near or far side of something round
         ("object", "i8"),
         ("geom", "i8"),
+        ("face", "i8"),  # or -1
         ("a", "f8"),  # conic: a w^2 - 2 (b0 + b1 u) w + (c0 + c1 u + c2 u^2) = 0
         ("b0", "f8"),  # line: w = c0 + c1 (u - b0)
         ("b1", "f8"),

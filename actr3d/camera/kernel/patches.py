@@ -16,7 +16,7 @@ def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Ar
 
     The whole curve is cut wherever anything about it may change; what lies between two cuts is seen or not as a whole.
     """
-    curve.object, curve.geom = patch.object, patch.geom
+    curve.object, curve.geom, curve.face = patch.object, patch.geom, -1
     if patch.flat:
         curve.shape, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
         number = _cut_line(patch, v, optics, curve, cuts)

@@ -74,18 +74,14 @@ def _look(
     done, present = zero(), zero()
     for number in range(optics.rows):
         v = row_tangent(number, optics)
-        pieces = _add_patches(number, v, optics, scene, patches, row)
         present = _faces_on(number, scene, present)
-        for i in range(present):
-            face = scene.present[i]
-            before, geom = pieces, topology.face_geom[face]
-            pieces = add_face(topology.face_corners[face], scene.corners, v, optics, row.pieces, pieces)
-            if pieces > before:
-                row.pieces[before].object, row.pieces[before].geom = topology.objects[geom], geom
-        if pieces > 0:
-            first = done
-            done = trace_row(v, optics, row, _add_range(v, optics, row.pieces, pieces), extents, first)
-            _label(number, optics, labels, extents, first, done)
+        pieces = _add_patches(number, v, optics, scene, patches, row)
+        pieces, aside = _add_faces(v, optics, topology, scene, present, row, pieces)
+        pieces = _add_range(v, optics, row.pieces, pieces)
+        first = done
+        done = trace_row(v, optics, row, pieces, extents, first)
+        _label(number, optics, labels, extents, first, done)
+        _order_faces(row, pieces, scene, aside)
     return done
 
 
@@ -98,6 +94,37 @@ def _add_patches(number: int, v: float, optics: Record, scene: Scene, patches: i
         if patch.first_row <= number <= patch.last_row:
             count = add_patch(patch, v, optics, curve, row.pieces, count, row.cuts)
     return count
+
+
+@compiled
+def _add_faces(v: float, optics: Record, topology: Topology, scene: Scene, present: int, row: Row, count: int) -> tuple[int, int]:
+    """Appends the pieces of all faces on a row; returns how many pieces there are now, and how many faces gave none."""
+    aside = zero()
+    for i in range(present):
+        face = scene.present[i]
+        before = count
+        count = add_face(topology.face_corners[face], scene.corners, v, optics, row.pieces, count)
+        if count > before:
+            piece, geom = row.pieces[before], topology.face_geom[face]
+            piece.face, piece.geom, piece.object = face, geom, topology.objects[geom]
+        else:
+            scene.aside[aside] = face
+            aside += 1
+    return count, aside
+
+
+@compiled
+def _order_faces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
+    """Puts the faces in the order of their pieces: on the next row, the sorting finds nearly everything in order."""
+    count = zero()
+    for i in range(pieces):
+        face = row.pieces[row.order[i]].face
+        if face >= 0:
+            scene.present[count] = face
+            count += 1
+    for i in range(aside):
+        scene.present[count] = scene.aside[i]
+        count += 1
 
 
 @compiled
@@ -122,7 +149,8 @@ def _add_range(v: float, optics: Record, pieces: Array, count: int) -> int:
     if not math.isfinite(optics.range):
         return count
     piece = pieces[count]
-    piece.low, piece.high, piece.shape, piece.object, piece.geom = -optics.right, optics.right, FAR_SIDE, BACKGROUND, -1
+    piece.low, piece.high, piece.shape, piece.object, piece.geom = -optics.right, optics.right, FAR_SIDE, BACKGROUND, 0
+    piece.face = -1
     square = optics.range * optics.range
     piece.a, piece.b0, piece.b1 = -1.0, 0.0, 0.0
     piece.c0, piece.c1, piece.c2 = (1.0 + v * v) / square, 0.0, 1.0 / square

@@ -55,6 +55,8 @@ class Scene(NamedTuple):
 
     places: Array
     """The geoms' centres in the eye's frame, `(n, 3)` [m]."""
+    turn: Array
+    """The axes of the geom at hand, as columns."""
     patches: Array
     local: Array
     """The corners of one geom in its frame [m]."""
@@ -67,7 +69,9 @@ class Scene(NamedTuple):
     ending: Array
     """The last row of a face."""
     present: Array
-    """The faces on the row at hand."""
+    """The faces on the row at hand, from left to right on the row above."""
+    aside: Array
+    """Those of them that no piece was cut from."""
 
 
 def room_for_scene(topology: Topology, rows: int) -> Scene:
@@ -75,6 +79,7 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
     geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
     return Scene(
         places=np.zeros((geoms, 3)),
+        turn=np.zeros((3, 3)),
         patches=np.zeros(3 * geoms + 1, PATCH),  # a cylinder or capsule has three
         local=np.zeros((max(8, corners), 3)),
         corners=np.zeros((corners, 3)),
@@ -82,6 +87,7 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
         following=np.zeros(faces, np.int64),
         ending=np.zeros(faces, np.int64),
         present=np.zeros(faces, np.int64),
+        aside=np.zeros(faces, np.int64),
     )
 
 
@@ -98,7 +104,7 @@ def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Top
         optics: The eye's.
         scene: Where it is written.
     """
-    count, its_turn = zero(), np.zeros((3, 3))
+    count, its_turn = zero(), scene.turn
     for number in range(optics.rows):
         scene.starting[number] = -1
     for geom in range(len(topology.kind)):
