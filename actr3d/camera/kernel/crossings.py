@@ -16,8 +16,8 @@ def may_cover(other: Record, winner: Record, low: float, high: float) -> bool:
     """
     if other.ceiling <= winner.floor:
         return False
-    above_low, above_high = _straight(other, low, high, other.shape == NEAR_SIDE)
-    below_low, below_high = _straight(winner, low, high, winner.shape == FAR_SIDE)
+    above_low, above_high = _straight(other, low, high, other.side == NEAR_SIDE)
+    below_low, below_high = _straight(winner, low, high, winner.side == FAR_SIDE)
     return above_low > below_low * (1.0 + SAME_DEPTH) or above_high > below_high * (1.0 + SAME_DEPTH)
 
 
@@ -40,15 +40,15 @@ def add_crossings(one: Record, other: Record, low: float, high: float, work: Arr
     Returns how many cuts there are now.
     """
     start, middle = count, 0.5 * (low + high)
-    if one.shape == LINE and other.shape == LINE:
+    if one.side == LINE and other.side == LINE:
         first, last = nearness(one, low) - nearness(other, low), nearness(one, high) - nearness(other, high)
         if (first > 0.0) != (last > 0.0):
             cuts[count] = low + (high - low) * (first / (first - last))
             count += 1
         return count
-    if one.shape == LINE:
+    if one.side == LINE:
         count = _line_and_conic(one, other, middle, cuts, count)
-    elif other.shape == LINE:
+    elif other.side == LINE:
         count = _line_and_conic(other, one, middle, cuts, count)
     else:
         count = _two_conics(one, other, middle, 0.5 * (high - low), work, cuts, count)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.crossings import add_crossings, may_cover
-from actr3d.camera.kernel.extents import add_extent, end_row
+from actr3d.camera.kernel.extents import end_row, goes_on, without_sliver
 from actr3d.camera.kernel.jit import compiled, zero
 from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, PIECE, SAME_DEPTH, Array, Record
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
@@ -70,7 +70,7 @@ def trace_row(v: float, optics: Record, row: Row, count: int, extents: Array, fi
         end = row.pieces[row.order[waiting]].low if waiting < count else math.inf
         if present == 0:
             if waiting == count:
-                return end_row(v, optics, extents, first, done)
+                return end_row(v, optics, row.pieces, extents, first, done)
             start = end
             continue
         for i in range(present):
@@ -121,10 +121,11 @@ def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: i
     while waiting > 0:
         waiting -= 1
         low, high = row.stack[waiting, 0], row.stack[waiting, 1]
-        winner = _winner(0.5 * (low + high), row, present)
-        if row.pieces[winner].object == BACKGROUND and present == 1:
-            continue
-        number = _cuts(winner, low, high, row, present) if divisions > 0 and waiting + 64 < MOST_CUTS else 0
+        winner, alone = _winner(0.5 * (low + high), row, present)
+        object = row.pieces[winner].object
+        number = zero()
+        if not alone and divisions > 0 and waiting + len(row.cuts) < MOST_CUTS:
+            number = _cuts(winner, low, high, row, present)
         if number > 0:
             divisions -= number
             sort_values(row.cuts, number)
@@ -132,32 +133,45 @@ def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: i
                 row.stack[waiting, 0] = row.cuts[i - 1] if i > 0 else low
                 row.stack[waiting, 1] = row.cuts[i] if i < number else high
                 waiting += 1
-        elif row.pieces[winner].object != BACKGROUND:
-            object = row.pieces[winner].object
-            near, far = _nearest_of(object, low, row, present), _nearest_of(object, high, row, present)
-            done = add_extent(object, low, high, near, far, optics, extents, first, done)
+        elif object != BACKGROUND:
+            done = without_sliver(optics, extents, first, done)
+            if not goes_on(object, low, optics, extents, first, done):
+                if done == len(extents):
+                    continue
+                extents[done].label = object
+                extents[done].x1, extents[done].a1 = low, winner if alone else _nearest_of(winner, low, row, present)
+                done += 1
+            extents[done - 1].x2, extents[done - 1].a2 = high, winner if alone else _nearest_of(winner, high, row, present)
     return done
 
 
 @compiled
-def _winner(u: float, row: Row, present: int) -> int:
-    """Returns the number of the piece that is nearest at a tangent; of equals, that of the nearest geom."""
-    if present == 1:
-        return row.active[0]
-    floor, winner, best = 0.0, -1, 0.0
+def _winner(u: float, row: Row, present: int) -> tuple[int, bool]:
+    """Returns the number of the piece that is nearest at a tangent, and whether no other one comes near it anywhere.
+
+    Of equals, it is that of the nearest geom.
+    """
+    winner, rivals = row.active[0], 0
+    for i in range(1, present):
+        if row.pieces[row.active[i]].floor > row.pieces[winner].floor:
+            winner = row.active[i]
+    floor = row.pieces[winner].floor
     for i in range(present):
-        floor = max(floor, row.pieces[row.active[i]].floor)
+        rivals += row.pieces[row.active[i]].ceiling >= floor
+    if rivals <= 1 and row.pieces[winner].ceiling >= floor:
+        return winner, True
+    best = nearness(row.pieces[winner], u)
     for i in range(present):
         number = row.active[i]
         piece = row.pieces[number]
-        if piece.ceiling < floor:
+        if piece.ceiling < floor or number == winner:
             continue
         w = nearness(piece, u)
-        if winner < 0 or w > best * (1.0 + SAME_DEPTH):
+        if w > best * (1.0 + SAME_DEPTH):
             winner, best = number, w
         elif w > best * (1.0 - SAME_DEPTH) and _goes_first(row.places, piece.geom, row.pieces[winner].geom):
             winner, best = number, max(w, best)
-    return winner
+    return winner, False
 
 
 @compiled
@@ -182,11 +196,12 @@ def _cuts(winner: int, low: float, high: float, row: Row, present: int) -> int:
 
 
 @compiled
-def _nearest_of(object: int, u: float, row: Row, present: int) -> float:
-    """Returns how near the pieces of one object come at a tangent [1/m]."""
-    best = 0.0
+def _nearest_of(winner: int, u: float, row: Row, present: int) -> int:
+    """Returns the number of the piece that is nearest at a tangent, of those of the winner's object."""
+    best, object = nearness(row.pieces[winner], u), row.pieces[winner].object
     for i in range(present):
-        piece = row.pieces[row.active[i]]
-        if piece.object == object:
-            best = max(best, nearness(piece, u))
-    return best
+        number = row.active[i]
+        other = row.pieces[number]
+        if other.object == object and other.ceiling > best and nearness(other, u) > best:
+            winner, best = number, nearness(other, u)
+    return winner

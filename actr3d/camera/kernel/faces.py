@@ -102,6 +102,6 @@ def _add_segment(x1: float, z1: float, x2: float, z2: float, optics: Record, pie
     piece.low, piece.high = max(low, -optics.right), min(high, optics.right)
     if not piece.high - piece.low > NEGLIGIBLE:
         return count
-    piece.shape, piece.b0, piece.c0, piece.c1 = LINE, low, near, (far - near) / (high - low)
+    piece.side, piece.b0, piece.c0, piece.c1 = LINE, low, near, (far - near) / (high - low)
     piece.floor, piece.ceiling = min(near, far), max(near, far)
     return count + 1

@@ -36,7 +36,7 @@ PIECE = np.dtype(
         ("high", "f8"),
         ("floor", "f8"),  # bounds of its nearness [1/m]
         ("ceiling", "f8"),
-        ("shape", "i8"),  # a line, or the near or far side of something round
+        ("side", "i8"),  # a line, or the near or far side of something round
         ("object", "i8"),
         ("geom", "i8"),
         ("face", "i8"),  # or -1
@@ -53,7 +53,7 @@ PIECE = np.dtype(
 
 PATCH = np.dtype(
     [
-        ("flat", "i8"),  # 1: k w = n . d, 0: a w^2 - 2 (q . d) w + d Q d = 0
+        ("even", "i8"),  # 1: k w = n . d, 0: a w^2 - 2 (q . d) w + d Q d = 0
         ("both", "i8"),  # whether its far side can be seen as well
         ("object", "i8"),
         ("geom", "i8"),

@@ -17,12 +17,12 @@ def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Ar
     The whole curve is cut wherever anything about it may change; what lies between two cuts is seen or not as a whole.
     """
     curve.object, curve.geom, curve.face = patch.object, patch.geom, -1
-    if patch.flat:
-        curve.shape, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
+    if patch.even:
+        curve.side, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
         number = _cut_line(patch, v, optics, curve, cuts)
     else:
         form = patch.form
-        curve.shape, curve.a = NEAR_SIDE, patch.a
+        curve.side, curve.a = NEAR_SIDE, patch.a
         curve.b0, curve.b1 = patch.q[1] * v + patch.q[2], patch.q[0]
         curve.c0 = v * (form[1, 1] * v + 2.0 * form[1, 2]) + form[2, 2]
         curve.c1, curve.c2 = 2.0 * (form[0, 1] * v + form[0, 2]), form[0, 0]
@@ -31,7 +31,7 @@ def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Ar
     sort_values(cuts, number + 2)
     count = _add_side(patch, v, optics, curve, pieces, count, cuts, number + 2)
     if patch.both:
-        curve.shape = FAR_SIDE
+        curve.side = FAR_SIDE
         count = _add_side(patch, v, optics, curve, pieces, count, cuts, number + 2)
     return count
 
@@ -100,7 +100,7 @@ def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Ar
 @compiled
 def _there(patch: Record, v: float, optics: Record, curve: Record, u: float) -> bool:
     """Tells whether the curve's point at u is on the patch, and in front of the eye."""
-    if curve.shape != LINE:
+    if curve.side != LINE:
         b = curve.b0 + curve.b1 * u
         if b * b < curve.a * (curve.c0 + u * (curve.c1 + u * curve.c2)):
             return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, Array, Record
+from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record
 
 
 @compiled
@@ -20,9 +20,9 @@ def root_of(a: float, b: float, c: float, side: int) -> float:
 @compiled
 def nearness(piece: Record, u: float) -> float:
     """Returns 1 / depth of a piece at the tangent u [1/m]."""
-    if piece.shape == LINE:
+    if piece.side == LINE:
         return piece.c0 + piece.c1 * (u - piece.b0)
-    return root_of(piece.a, piece.b0 + piece.b1 * u, piece.c0 + u * (piece.c1 + u * piece.c2), piece.shape)
+    return root_of(piece.a, piece.b0 + piece.b1 * u, piece.c0 + u * (piece.c1 + u * piece.c2), piece.side)
 
 
 @compiled
@@ -30,10 +30,21 @@ def bound(piece: Record, floor: float, ceiling: float) -> None:
     """Sets the bounds of a piece's nearness: from its ends where they tell, else from what is known of the whole."""
     first, last = nearness(piece, piece.low), nearness(piece, piece.high)
     piece.floor, piece.ceiling = min(first, last), max(first, last)
-    if piece.shape == NEAR_SIDE:
-        piece.ceiling = ceiling
-    elif piece.shape != LINE:
+    if piece.side == NEAR_SIDE:
+        piece.ceiling = min(ceiling, _summit(piece))
+    elif piece.side != LINE:
         piece.floor = floor
+
+
+@compiled
+def _summit(piece: Record) -> float:
+    """Returns the nearness of the nearest point of a conic on its row, where u is a double root of its equation [1/m]."""
+    a = piece.a * piece.c2 - piece.b1 * piece.b1
+    b = piece.c2 * piece.b0 - 0.5 * piece.b1 * piece.c1
+    discriminant = b * b - a * (piece.c2 * piece.c0 - 0.25 * piece.c1 * piece.c1)
+    if a <= 0.0 or discriminant < 0.0:
+        return math.inf
+    return (b + math.sqrt(discriminant)) / a * (1.0 + NEGLIGIBLE)
 
 
 @compiled

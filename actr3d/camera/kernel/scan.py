@@ -149,7 +149,7 @@ def _add_range(v: float, optics: Record, pieces: Array, count: int) -> int:
     if not math.isfinite(optics.range):
         return count
     piece = pieces[count]
-    piece.low, piece.high, piece.shape, piece.object, piece.geom = -optics.right, optics.right, FAR_SIDE, BACKGROUND, 0
+    piece.low, piece.high, piece.side, piece.object, piece.geom = -optics.right, optics.right, FAR_SIDE, BACKGROUND, 0
     piece.face = -1
     square = optics.range * optics.range
     piece.a, piece.b0, piece.b1 = -1.0, 0.0, 0.0

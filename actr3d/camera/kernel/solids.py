@@ -58,7 +58,7 @@ def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, o
         count += 1
     reach = reach_of(kind, size)
     for i in range(start, count):
-        patches[i].both = both and not patches[i].flat
+        patches[i].both = both and not patches[i].even
         set_rows(patches[i], place, reach, optics)
     return count
 
@@ -72,7 +72,7 @@ def _along(turn: Array, place: Array) -> float:
 @compiled
 def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z: float) -> None:
     """Makes a patch an ellipsoid's of the given half axes, infinite for a tube: (p - c) Q (p - c) = 1, c its place."""
-    patch.flat, patch.slabs, patch.radius = 0, 0, 0.0
+    patch.even, patch.slabs, patch.radius = 0, 0, 0.0
     a = -1.0
     for i in range(3):
         row = 0.0
@@ -88,7 +88,7 @@ def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z
 @compiled
 def _set_flat(patch: Record, place: Array, turn: Array) -> None:
     """Makes a patch a plane through a place, across a geom's third axis."""
-    patch.flat, patch.slabs, patch.radius = 1, 0, 0.0
+    patch.even, patch.slabs, patch.radius = 1, 0, 0.0
     for i in range(3):
         patch.q[i] = turn[i, 2]
     patch.k = _along(turn, place)
