@@ -91,14 +91,13 @@ def _wrong_edges(oracle: Oracle, y: float, extents: list[tuple[list[float], int]
     wrong: list[str] = []
     for (x1, x2, d1, d2, *_), label in extents:
         step = min(JUST, (x2 - x1) / 4)
-        hits, distances = oracle.look(np.array([x1 - step, x1 + step, 0.5 * (x1 + x2), x2 - step, x2 + step]), y)
+        hits, _ = oracle.look(np.array([x1 - step, x1 + step, 0.5 * (x1 + x2), x2 - step, x2 + step]), y)
         thing = known.setdefault(label, hits[2])
         if hits[1] != thing or hits[2] != thing or hits[3] != thing or thing == 0:
             wrong.append(f"y={y} label {label} [{x1}, {x2}]: rays hit {hits}, not {thing}")
         if (hits[0] == thing and x1 > JUST) or (hits[4] == thing and x2 < 1 - JUST):
             wrong.append(f"y={y} label {label} [{x1}, {x2}]: goes on beyond its edges: {hits}")
-        at_edges, _ = oracle.look(np.array([x1 + 1e-9, x2 - 1e-9]), y), None
-        for told, hit, distance in zip((d1, d2), *at_edges, strict=True):
+        for told, hit, distance in zip((d1, d2), *oracle.look(np.array([x1 + 1e-9, x2 - 1e-9]), y), strict=True):
             if hit == thing and abs(told - distance) > 1e-3 * max(1.0, told / 5):
                 wrong.append(f"y={y} label {label} [{x1}, {x2}]: distance {told}, but rays say {distance}")
     return wrong

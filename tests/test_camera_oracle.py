@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from seeing import compiled, disagreements
 
 from actr3d.camera import CameraParameters
-from seeing import compiled, disagreements
 
 SIZES = {"sphere": 1, "ellipsoid": 3, "capsule": 2, "cylinder": 2, "box": 3}
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, cast
 
 from actr3d.errors import ParameterError
 
 WIDEST = math.radians(179)
 """A flat screen of 180 degrees would be endless."""
+MOST_ROWS = 100_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,28 +53,28 @@ class CameraParameters:
     def __post_init__(self) -> None:
         """Checks all values."""
         for field in fields(self):
-            value = getattr(self, field.name)
+            value: Any = getattr(self, field.name)
             if field.type in ("float", "int"):
-                self._require(field.name, isinstance(value, Real) and not isinstance(value, bool), "a number")
+                self._require(field.name, isinstance(value, Real) and type(value) is not bool, "a number")
             elif field.type == "bool":
-                self._require(field.name, isinstance(value, bool), "True or False")
+                self._require(field.name, _truth(value), "True or False")
+            elif value is not None:
+                kind = str if field.name == "background" else int
+                right = isinstance(value, tuple) and all(isinstance(one, kind) for one in cast("tuple[Any, ...]", value))
+                self._require(field.name, right, f"None or a tuple of {'names of geoms' if kind is str else 'numbers from 0 to 5'}")
         for name in ("horizontal_fov", "vertical_fov"):
             self._require(name, 0 < getattr(self, name) <= WIDEST, f"an angle above 0 and up to {WIDEST:.4f} rad (179 degrees)")
-        self._require("rows", isinstance(self.rows, Integral) and 1 <= self.rows <= 100_000, "a whole number from 1 to 100000")
+        self._require("rows", isinstance(self.rows, Integral) and 1 <= self.rows <= MOST_ROWS, f"a whole number from 1 to {MOST_ROWS}")
         self._require("precision", 0 <= self.precision < 1, "a part of the screen, at least 0 and below 1")
         self._require("near", 0 <= self.near < math.inf, "a depth in metres, at least 0")
         self._require("range", self.range > self.near, f"a distance in metres above near ({self.near:g})")
         self._require("e2", 0 < self.e2 < math.inf, "an angle above 0 rad")
-        self._check_names()
-        groups: Any = self.groups
-        right = groups is None or (isinstance(groups, tuple) and all(group in range(6) for group in self.groups or ()))
-        self._require("groups", right, "None or a tuple of numbers from 0 to 5")
-
-    def _check_names(self) -> None:
-        names: Any = self.background
-        right = names is None or (isinstance(names, tuple) and all(isinstance(name, str) for name in self.background or ()))
-        self._require("background", right, "None or a tuple of names of geoms")
+        self._require("groups", all(0 <= group <= 5 for group in self.groups or ()), "None or a tuple of numbers from 0 to 5")
 
     def _require(self, name: str, right: bool, what: str) -> None:
         if not right:
             raise ParameterError(f"CameraParameters.{name}: must be {what} (got {getattr(self, name)!r})")
+
+
+def _truth(value: Any) -> bool:
+    return isinstance(value, bool)

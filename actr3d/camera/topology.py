@@ -55,7 +55,7 @@ def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int
         corners=corners,
         faces=faces,
         face_corners=np.concatenate(all_faces),
-        face_geom=np.repeat(np.arange(count), np.diff(faces)),
+        face_geom=np.repeat(np.arange(len(faces) - 1), faces[1:] - faces[:-1]),
     )
 
 

@@ -88,7 +88,7 @@ def _two_conics(one: Record, other: Record, middle: float, half: float, work: Ar
     n0, n1, n2 = e * c0 - a * g0, e * c1 - a * g1, e * c2 - a * g2
     m0, m1 = 2.0 * (e * b0 - a * f0), 2.0 * (e * b1 - a * f1)
     mm0, mm1, mm2 = m0 * m0, 2.0 * m0 * m1, m1 * m1
-    quartic = work[4]
+    quartic = work[5]
     quartic[0] = a * n0 * n0 - 2.0 * b0 * n0 * m0 + c0 * mm0
     quartic[1] = 2.0 * a * n0 * n1 - 2.0 * (b0 * (n0 * m1 + n1 * m0) + b1 * n0 * m0) + c0 * mm1 + c1 * mm0
     quartic[2] = a * (n1 * n1 + 2.0 * n0 * n2) - 2.0 * (b0 * (n1 * m1 + n2 * m0) + b1 * (n0 * m1 + n1 * m0))

@@ -10,7 +10,7 @@ import numpy as np
 from actr3d.camera.kernel.crossings import add_crossings, may_cover
 from actr3d.camera.kernel.extents import end_row, goes_on, without_sliver
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, PIECE, SAME_DEPTH, Array, Record
+from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, PIECE, SAME_DEPTH, Array, Record, Records
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 
 MOST_CUTS = 400
@@ -20,7 +20,7 @@ MOST_CUTS = 400
 class Row(NamedTuple):
     """The pieces of a row, and room to find out which is nearest where."""
 
-    pieces: Array
+    pieces: Records
     order: Array
     """The pieces' numbers, leftmost first."""
     active: Array
@@ -43,14 +43,14 @@ def room_for(pieces: int, places: Array) -> Row:
         active=np.zeros(pieces, np.int64),
         cuts=np.zeros(64),
         stack=np.zeros((MOST_CUTS, 2)),
-        work=np.zeros((5, 8)),
+        work=np.zeros((6, 5)),
         curve=np.zeros(1, PIECE),
         places=places,
     )
 
 
 @compiled
-def trace_row(v: float, optics: Record, row: Row, count: int, extents: Array, first: int) -> int:
+def trace_row(v: float, optics: Record, row: Row, count: int, extents: Records, first: int) -> int:
     """Appends the extents of one row; returns how many extents there are now.
 
     Between two neighbouring ends of pieces the same pieces lie behind one another, and one of them wins unless some cross.
@@ -113,7 +113,7 @@ def _hidden(piece: Record, row: Row, present: int) -> bool:
 
 
 @compiled
-def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: int, extents: Array, first: int, done: int) -> int:
+def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: int, extents: Records, first: int, done: int) -> int:
     """Appends the extents of a stretch in which no piece begins or ends; divides it wherever the winner may change."""
     row.stack[0, 0], row.stack[0, 1] = low, high
     waiting = 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import NEGLIGIBLE, SLIVER, Array, Record
+from actr3d.camera.kernel.layout import NEGLIGIBLE, SLIVER, Record, Records
 from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.screen import screen_part
 
@@ -14,7 +14,7 @@ SURELY_WIDE = 1e-4
 
 
 @compiled
-def goes_on(object: int, low: float, optics: Record, extents: Array, first: int, done: int) -> bool:
+def goes_on(object: int, low: float, optics: Record, extents: Records, first: int, done: int) -> bool:
     """Tells whether the last extent of a row is one of the given object and reaches to a tangent, or nearly so.
 
     Until the row ends, the `x` of extents are tangents, and their `a` the numbers of the pieces that are seen there.
@@ -26,7 +26,7 @@ def goes_on(object: int, low: float, optics: Record, extents: Array, first: int,
 
 
 @compiled
-def without_sliver(optics: Record, extents: Array, first: int, done: int) -> int:
+def without_sliver(optics: Record, extents: Records, first: int, done: int) -> int:
     """Returns how many extents there are without the last one if it comes from rounding only."""
     if done > first:
         last = extents[done - 1]
@@ -36,7 +36,7 @@ def without_sliver(optics: Record, extents: Array, first: int, done: int) -> int
 
 
 @compiled
-def end_row(v: float, optics: Record, pieces: Array, extents: Array, first: int, done: int) -> int:
+def end_row(v: float, optics: Record, pieces: Records, extents: Records, first: int, done: int) -> int:
     """Turns tangents into screen coordinates, distances and angles; returns how many extents there are."""
     done = without_sliver(optics, extents, first, done)
     for i in range(first, done):

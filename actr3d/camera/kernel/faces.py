@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import LINE, NEGLIGIBLE, Array, Record
+from actr3d.camera.kernel.layout import LINE, NEGLIGIBLE, Array, Record, Records
 from actr3d.camera.kernel.screen import first_row, last_row
 
 
@@ -49,7 +49,7 @@ def _turned_away(face: Array, corners: Array) -> bool:
 
 
 @compiled
-def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Array, count: int) -> int:
+def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Records, count: int) -> int:
     """Appends the piece that the row at the tangent v cuts from a polygon, if any; returns how many there are now.
 
     An edge that two polygons share is cut at the very same point for both, so that no crack opens between them.
@@ -75,7 +75,7 @@ def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Arra
 
 
 @compiled
-def _add_segment(x1: float, z1: float, x2: float, z2: float, optics: Record, pieces: Array, count: int) -> int:
+def _add_segment(x1: float, z1: float, x2: float, z2: float, optics: Record, pieces: Records, count: int) -> int:
     """Appends what of a segment in the row's plane is in the field of view and beyond the near limit."""
     start, end = 0.0, 1.0
     for i in range(3):  # the left edge, the right edge, the near limit: inside where above 0

@@ -20,7 +20,7 @@ _njit = cast("Any", numba).njit
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Returns the function compiled, to be called by other compiled ones only."""
-    return _njit(no_cpython_wrapper=True, **OPTIONS)(function)
+    return _njit(no_cpython_wrapper=True, forceinline=True, **OPTIONS)(function)
 
 
 def kept(function: Callable[P, R]) -> Callable[P, R]:

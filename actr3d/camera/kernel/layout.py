@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[Any]
 Record: TypeAlias = Any
-"""One element of an array of records, or one row of an array."""
+"""One element of an array of records; its fields are those of the type it is made of."""
+Records: TypeAlias = Any
+"""An array of records."""
 
 LINE: Final = 0
 NEAR_SIDE: Final = 1

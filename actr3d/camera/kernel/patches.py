@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record
+from actr3d.camera.kernel.layout import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
 from actr3d.camera.kernel.pieces import bound, nearness, sort_values
 from actr3d.camera.kernel.roots import add_roots
 
 
 @compiled
-def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Array, count: int, cuts: Array) -> int:
+def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array) -> int:
     """Appends the pieces of a patch on the row at the tangent v; returns how many pieces there are now.
 
     The whole curve is cut wherever anything about it may change; what lies between two cuts is seen or not as a whole.
@@ -77,7 +77,7 @@ def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Arr
 
 
 @compiled
-def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Array, count: int, cuts: Array, number: int) -> int:
+def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array, number: int) -> int:
     """Appends what of one side of a curve lies between its cuts; returns how many pieces there are now."""
     going_on = False
     for i in range(number - 1):

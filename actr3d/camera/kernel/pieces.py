@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record
+from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
 
 
 @compiled
@@ -64,7 +64,7 @@ def sort_values(values: Array, count: int) -> None:
 
 
 @compiled
-def sort_by_start(order: Array, pieces: Array, count: int) -> None:
+def sort_by_start(order: Array, pieces: Records, count: int) -> None:
     """Fills `order` with the numbers of the first `count` pieces, leftmost first."""
     for i in range(count):
         order[i] = i

@@ -34,15 +34,22 @@ def _value(coefficients: Array, degree: int, x: float) -> float:
 
 
 @compiled
-def _bisect(coefficients: Array, degree: int, low: float, high: float) -> float:
-    sign = _value(coefficients, degree, low) > 0.0
+def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, high: float) -> float:
+    """Returns the one root of a polynomial between two places where its signs differ: Newton's steps, halving where they leave."""
+    rising = _value(coefficients, degree, low) <= 0.0
+    x = 0.5 * (low + high)
     for _ in range(60):
-        middle = 0.5 * (low + high)
-        if (_value(coefficients, degree, middle) > 0.0) == sign:
-            low = middle
+        value = _value(coefficients, degree, x)
+        if (value <= 0.0) == rising:
+            low = x
         else:
-            high = middle
-    return 0.5 * (low + high)
+            high = x
+        slope = _value(slopes, degree - 1, x)
+        step = x - value / slope
+        if abs(step - x) <= 1e-15:
+            return step
+        x = step if low < step < high else 0.5 * (low + high)
+    return x
 
 
 @compiled
@@ -54,23 +61,23 @@ def add_quartic_roots(quartic: Array, work: Array, roots: Array, count: int) -> 
 
     Args:
         quartic: The five coefficients, constant first.
-        work: An array (4, 8) to work in.
+        work: An array (5, 5) to work in.
         roots: Where the roots are written.
         count: How many are there already.
     """
     for i in range(5):
         work[0, i] = quartic[i]
-    for level in range(1, 4):  # work[level] is the derivative of that order, of degree 4 - level
+    for level in range(1, 5):  # work[level] is the derivative of that order, of degree 4 - level
         for i in range(5 - level):
             work[level, i] = work[level - 1, i + 1] * (i + 1)
-    found = 0  # roots of the present level, from work[level, 5] on they would not fit: kept behind `count`
+    found = 0
     for level in range(3, -1, -1):
         degree = 4 - level
         start, bound, new = count, -1.0, 0
         for i in range(found + 1):
             end = roots[start + i] if i < found else 1.0
             if (_value(work[level], degree, bound) > 0.0) != (_value(work[level], degree, end) > 0.0):
-                roots[start + found + new] = _bisect(work[level], degree, bound, end)
+                roots[start + found + new] = _root_between(work[level], work[level + 1], degree, bound, end)
                 new += 1
             bound = end
         if level == 0:

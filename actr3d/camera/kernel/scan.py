@@ -10,7 +10,7 @@ from typing import TypeAlias
 from actr3d.camera.kernel.envelope import Row, trace_row
 from actr3d.camera.kernel.faces import add_face
 from actr3d.camera.kernel.jit import compiled, kept, sources_digest, zero
-from actr3d.camera.kernel.layout import BACKGROUND, FAR_SIDE, Array, Record
+from actr3d.camera.kernel.layout import BACKGROUND, FAR_SIDE, Array, Record, Records
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import Geoms, Scene, Topology, set_scene
@@ -46,7 +46,7 @@ def _scan_of(digest: int) -> Scan:
         scene: Scene,
         row: Row,
         labels: Array,
-        extents: Array,
+        extents: Records,
     ) -> int:
         if digest == 0:
             return 0
@@ -66,7 +66,7 @@ def _look(
     scene: Scene,
     row: Row,
     labels: Array,
-    extents: Array,
+    extents: Records,
 ) -> int:
     patches = set_scene(eye, place, turn, geoms, topology, optics, scene)
     if patches < 0:
@@ -144,7 +144,7 @@ def _faces_on(number: int, scene: Scene, present: int) -> int:
 
 
 @compiled
-def _add_range(v: float, optics: Record, pieces: Array, count: int) -> int:
+def _add_range(v: float, optics: Record, pieces: Records, count: int) -> int:
     """Appends the end of what the eye reaches, a ball seen from inside; returns how many pieces there are now."""
     if not math.isfinite(optics.range):
         return count
@@ -159,7 +159,7 @@ def _add_range(v: float, optics: Record, pieces: Array, count: int) -> int:
 
 
 @compiled
-def _label(number: int, optics: Record, labels: Array, extents: Array, first: int, done: int) -> None:
+def _label(number: int, optics: Record, labels: Array, extents: Records, first: int, done: int) -> None:
     """Writes row and labels; an object that was never seen before gets the next label."""
     for i in range(first, done):
         extent = extents[i]

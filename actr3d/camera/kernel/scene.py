@@ -9,7 +9,7 @@ import numpy as np
 
 from actr3d.camera.kernel.faces import face_rows
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, PATCH, PLANE, UNSEEN, Array, Record
+from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, PATCH, PLANE, UNSEEN, Array, Record, Records
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
 from actr3d.camera.kernel.screen import in_view
 from actr3d.camera.kernel.solids import add_patches, reach_of
@@ -57,7 +57,7 @@ class Scene(NamedTuple):
     """The geoms' centres in the eye's frame, `(n, 3)` [m]."""
     turn: Array
     """The axes of the geom at hand, as columns."""
-    patches: Array
+    patches: Records
     local: Array
     """The corners of one geom in its frame [m]."""
     corners: Array

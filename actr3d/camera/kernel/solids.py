@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import CAPSULE, CYLINDER, ELLIPSOID, PLANE, Array, Record
+from actr3d.camera.kernel.layout import CAPSULE, CYLINDER, ELLIPSOID, PLANE, Array, Record, Records
 from actr3d.camera.kernel.screen import set_rows
 
 
@@ -29,7 +29,7 @@ def reach_of(kind: int, size: Array) -> float:
 
 
 @compiled
-def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Array, count: int) -> int:
+def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Records, count: int) -> int:
     """Appends the patches of one geom; returns how many there are now.
 
     Args:
@@ -105,7 +105,7 @@ def _add_slab(patch: Record, turn: Array, axis: int, low: float, high: float) ->
 
 
 @compiled
-def _add_plane(size: Array, place: Array, turn: Array, patches: Array, count: int) -> int:
+def _add_plane(size: Array, place: Array, turn: Array, patches: Records, count: int) -> int:
     """Appends a plane, which is seen from its front only."""
     patch = patches[count]
     _set_flat(patch, place, turn)
@@ -119,7 +119,7 @@ def _add_plane(size: Array, place: Array, turn: Array, patches: Array, count: in
 
 
 @compiled
-def _add_discs(size: Array, place: Array, turn: Array, both: bool, patches: Array, count: int) -> int:
+def _add_discs(size: Array, place: Array, turn: Array, both: bool, patches: Records, count: int) -> int:
     """Appends the ends of a cylinder that face the eye; all, if their inner sides can be seen too."""
     for sign in (-1.0, 1.0):
         patch = patches[count]
@@ -134,7 +134,7 @@ def _add_discs(size: Array, place: Array, turn: Array, both: bool, patches: Arra
 
 
 @compiled
-def _add_capsule(size: Array, place: Array, turn: Array, patches: Array, count: int) -> int:
+def _add_capsule(size: Array, place: Array, turn: Array, patches: Records, count: int) -> int:
     """Appends a tube and the two half balls at its ends."""
     middle = _along(turn, place)
     low, high = middle - size[1], middle + size[1]
