@@ -55,7 +55,7 @@ class CameraParameters:
         for field in fields(self):
             value: Any = getattr(self, field.name)
             if field.type in ("float", "int"):
-                self._require(field.name, isinstance(value, Real) and type(value) is not bool, "a number")
+                self._require(field.name, isinstance(value, Real) and not _truth(value), "a number")
             elif field.type == "bool":
                 self._require(field.name, _truth(value), "True or False")
             elif value is not None:
