@@ -27,6 +27,8 @@ def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Re
         curve.c0 = v * (form[1, 1] * v + 2.0 * form[1, 2]) + form[2, 2]
         curve.c1, curve.c2 = 2.0 * (form[0, 1] * v + form[0, 2]), form[0, 0]
         number = _cut_conic(patch, v, optics, curve, cuts)
+        if number == 0 and curve.b1 * curve.b1 < curve.a * curve.c2:
+            return count  # the row passes it by
     cuts[number], cuts[number + 1] = -optics.right, optics.right
     sort_values(cuts, number + 2)
     count = _add_side(patch, v, optics, curve, pieces, count, cuts, number + 2)
@@ -62,6 +64,8 @@ def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Arr
     """Finds where a conic turns back, and where it crosses the near limit and its slab; returns how many cuts there are."""
     a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
     number = add_roots(b1 * b1 - a * c2, b0 * b1 - 0.5 * a * c1, b0 * b0 - a * c0, cuts, zero())
+    if number == 0 and b1 * b1 < a * c2:
+        return 0
     if patch.ceiling > optics.nearest:
         w = optics.nearest
         number = add_roots(c2, 0.5 * c1 - b1 * w, (a * w - 2.0 * b0) * w + c0, cuts, number)

@@ -58,16 +58,30 @@ def in_view(place: Array, reach: float, optics: Record) -> bool:
 
 
 @compiled
-def set_rows(patch: Record, place: Array, reach: float, optics: Record) -> None:
-    """Sets the rows and the bounds of nearness of something that lies in a ball."""
-    y, z = place[1], place[2]
-    patch.floor = 1.0 / (z + reach)
-    patch.ceiling = 1.0 / (z - reach) if z > reach else math.inf
-    patch.first_row, patch.last_row = 0, optics.rows - 1
-    distance = math.hypot(y, z)
-    if distance > reach:
-        middle, half = math.atan2(y, z), math.asin(reach / distance)
-        if middle + half < 0.5 * math.pi:
-            patch.first_row = max(0, first_row(math.tan(middle + half), optics))
-        if middle - half > -0.5 * math.pi:
-            patch.last_row = min(optics.rows - 1, last_row(math.tan(middle - half), optics))
+def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optics: Record, joined: bool) -> None:
+    """Sets the rows on which an ellipsoid is seen, and bounds of its nearness; exactly, if it is wholly in front of the eye.
+
+    A row meets it where a plane through the eye does: (y - v z)^2 <= yy - 2 v yz + v^2 zz.
+
+    Args:
+        patch: Where they are set.
+        place: The centre in the eye's frame [m].
+        yy: With yz and zz, the squares of its half axes, turned into the eye's frame; a flat one will do [m^2].
+        yz: As above.
+        zz: As above.
+        optics: The eye's.
+        joined: Whether what is set already is to be widened, to what lies between this and another ellipsoid.
+    """
+    y, z, deep = place[1], place[2], math.sqrt(zz)
+    first, last = 0, optics.rows - 1
+    floor, ceiling = 1.0 / max(z + deep, 0.0), math.inf
+    if z > deep:
+        ceiling = 1.0 / (z - deep)
+        a, b = z * z - zz, y * z - yz
+        root = math.sqrt(max(b * b - a * (y * y - yy), 0.0))
+        first, last = max(first, first_row((b + root) / a, optics)), min(last, last_row((b - root) / a, optics))
+    if joined:
+        patch.first_row, patch.last_row = min(patch.first_row, first), max(patch.last_row, last)
+        patch.floor, patch.ceiling = min(patch.floor, floor), max(patch.ceiling, ceiling)
+    else:
+        patch.first_row, patch.last_row, patch.floor, patch.ceiling = first, last, floor, ceiling

@@ -44,22 +44,22 @@ def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, o
     """
     start = count
     if kind == PLANE:
-        count = _add_plane(size, place, turn, patches, count)
-    elif kind == CYLINDER:
-        _set_quadric(patches[count], place, turn, size[0], size[0], math.inf)
-        middle = _along(turn, place)
-        _add_slab(patches[count], turn, 2, middle - size[1], middle + size[1])
-        count = _add_discs(size, place, turn, both, patches, count + 1)
-    elif kind == CAPSULE:
-        count = _add_capsule(size, place, turn, patches, count)
+        count = _add_plane(size, place, turn, optics, patches, count)
+    elif kind in (CYLINDER, CAPSULE):
+        count = _add_tube(kind, size, place, turn, both, optics, patches, count)
     else:
-        y, z = (size[1], size[2]) if kind == ELLIPSOID else (size[0], size[0])
-        _set_quadric(patches[count], place, turn, size[0], y, z)
+        x, y, z = (size[0], size[1], size[2]) if kind == ELLIPSOID else (size[0], size[0], size[0])
+        _set_quadric(patches[count], place, turn, x, y, z)
+        yy, yz, zz = 0.0, 0.0, 0.0
+        for i in range(3):
+            half = x if i == 0 else y if i == 1 else z
+            yy += half * half * turn[1, i] * turn[1, i]
+            yz += half * half * turn[1, i] * turn[2, i]
+            zz += half * half * turn[2, i] * turn[2, i]
+        set_rows(patches[count], place, yy, yz, zz, optics, False)
         count += 1
-    reach = reach_of(kind, size)
     for i in range(start, count):
         patches[i].both = both and not patches[i].even
-        set_rows(patches[i], place, reach, optics)
     return count
 
 
@@ -105,7 +105,7 @@ def _add_slab(patch: Record, turn: Array, axis: int, low: float, high: float) ->
 
 
 @compiled
-def _add_plane(size: Array, place: Array, turn: Array, patches: Records, count: int) -> int:
+def _add_plane(size: Array, place: Array, turn: Array, optics: Record, patches: Records, count: int) -> int:
     """Appends a plane, which is seen from its front only."""
     patch = patches[count]
     _set_flat(patch, place, turn)
@@ -115,36 +115,35 @@ def _add_plane(size: Array, place: Array, turn: Array, patches: Records, count: 
         if size[i] > 0.0:
             middle = turn[0, i] * place[0] + turn[1, i] * place[1] + turn[2, i] * place[2]
             _add_slab(patch, turn, i, middle - size[i], middle + size[i])
+    reach = reach_of(PLANE, size)
+    set_rows(patch, place, reach * reach, 0.0, reach * reach, optics, False)
     return count + 1
 
 
 @compiled
-def _add_discs(size: Array, place: Array, turn: Array, both: bool, patches: Records, count: int) -> int:
-    """Appends the ends of a cylinder that face the eye; all, if their inner sides can be seen too."""
-    for sign in (-1.0, 1.0):
-        patch = patches[count]
-        _set_flat(patch, place, turn)
-        patch.k += sign * size[1]
-        for i in range(3):
-            patch.centre[i] = place[i] + sign * size[1] * turn[i, 2]
-        if sign * patch.k < 0.0 or (both and patch.k != 0.0):
-            patch.radius = size[0]
+def _add_tube(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Records, count: int) -> int:
+    """Appends the side of a cylinder or capsule, and its two ends: discs, if they can be seen, or half balls."""
+    middle, side, radius = _along(turn, place), patches[count], size[0]
+    _set_quadric(side, place, turn, radius, radius, math.inf)
+    _add_slab(side, turn, 2, middle - size[1], middle + size[1])
+    square, y, z = radius * radius, turn[1, 2], turn[2, 2]
+    yy, yz, zz = square, 0.0, square
+    if kind == CYLINDER:
+        yy, yz, zz = square * (1.0 - y * y), -square * y * z, square * (1.0 - z * z)
+    count += 1
+    for i in range(2):
+        sign = 2.0 * i - 1.0
+        end, patch = middle + sign * size[1], patches[count]
+        for j in range(3):
+            patch.centre[j] = place[j] + sign * size[1] * turn[j, 2]
+        set_rows(side, patch.centre, yy, yz, zz, optics, i == 1)
+        set_rows(patch, patch.centre, yy, yz, zz, optics, False)
+        if kind == CAPSULE:
+            _set_quadric(patch, patch.centre, turn, radius, radius, radius)
+            _add_slab(patch, turn, 2, end if i else -math.inf, math.inf if i else end)
+            count += 1
+        elif sign * end < 0.0 or (both and end != 0.0):
+            _set_flat(patch, place, turn)
+            patch.k, patch.radius = end, radius
             count += 1
     return count
-
-
-@compiled
-def _add_capsule(size: Array, place: Array, turn: Array, patches: Records, count: int) -> int:
-    """Appends a tube and the two half balls at its ends."""
-    middle = _along(turn, place)
-    low, high = middle - size[1], middle + size[1]
-    _set_quadric(patches[count], place, turn, size[0], size[0], math.inf)
-    _add_slab(patches[count], turn, 2, low, high)
-    for sign in (-1.0, 1.0):
-        count += 1
-        patch = patches[count]
-        for i in range(3):
-            patch.centre[i] = place[i] + sign * size[1] * turn[i, 2]
-        _set_quadric(patch, patch.centre, turn, size[0], size[0], size[0])
-        _add_slab(patch, turn, 2, -math.inf if sign < 0.0 else high, low if sign < 0.0 else math.inf)
-    return count + 1
