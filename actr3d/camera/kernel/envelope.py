@@ -23,6 +23,8 @@ class Row(NamedTuple):
     pieces: Records
     order: Array
     """The pieces' numbers, leftmost first."""
+    starts: Array
+    """Where they begin."""
     active: Array
     """The numbers of those at hand."""
     cuts: Array
@@ -40,6 +42,7 @@ def room_for(pieces: int, places: Array) -> Row:
     return Row(
         pieces=np.zeros(pieces, PIECE),
         order=np.zeros(pieces, np.int64),
+        starts=np.zeros(pieces),
         active=np.zeros(pieces, np.int64),
         cuts=np.zeros(64),
         stack=np.zeros((MOST_CUTS, 2)),
@@ -64,10 +67,10 @@ def trace_row(v: float, optics: Record, row: Row, count: int, extents: Records, 
         first: How many there are already.
     """
     done, waiting, present, start = first, zero(), zero(), -optics.right
-    sort_by_start(row.order, row.pieces, count)
+    sort_by_start(row.order, row.starts, row.pieces, count)
     while True:
         waiting, present = _bring_in(start, row, count, waiting, present)
-        end = row.pieces[row.order[waiting]].low if waiting < count else math.inf
+        end = row.starts[waiting] if waiting < count else math.inf
         if present == 0:
             if waiting == count:
                 return end_row(v, optics, row.pieces, extents, first, done)

@@ -64,19 +64,23 @@ def sort_values(values: Array, count: int) -> None:
 
 
 @compiled
-def sort_by_start(order: Array, pieces: Records, count: int) -> None:
-    """Fills `order` with the numbers of the first `count` pieces, leftmost first."""
+def sort_by_start(order: Array, starts: Array, pieces: Records, count: int) -> None:
+    """Fills `order` with the numbers of the first `count` pieces, leftmost first, and `starts` with where they begin.
+
+    Most are in order already, from the row above; where they are not, wide gaps come first.
+    """
+    descents = 0
     for i in range(count):
-        order[i] = i
+        order[i], starts[i] = i, pieces[i].low
+        descents += i > 0 and starts[i] < starts[i - 1]
     gap = 1
-    while gap < count // 3:
+    while gap < count // 3 and descents * 8 > count:
         gap = 3 * gap + 1
     while gap > 0:
         for i in range(gap, count):
-            one, j = order[i], i
-            low = pieces[one].low
-            while j >= gap and pieces[order[j - gap]].low > low:
-                order[j] = order[j - gap]
+            one, low, j = order[i], starts[i], i
+            while j >= gap and starts[j - gap] > low:
+                order[j], starts[j] = order[j - gap], starts[j - gap]
                 j -= gap
-            order[j] = one
+            order[j], starts[j] = one, low
         gap //= 3
