@@ -44,9 +44,9 @@ def end_row(v: float, optics: Record, pieces: Records, extents: Records, first: 
         for side in range(2):
             u, number = (extent.x2, extent.a2) if side else (extent.x1, extent.a1)
             w = nearness(pieces[int(number)], u)
+            aside = u * u + v * v
             x = 0.5 + 0.5 * screen_part(u, optics.right, optics.e2)
-            distance = math.sqrt(1.0 + u * u + v * v) / w
-            angle = math.degrees(math.atan(math.sqrt(u * u + v * v)))
+            distance, angle = math.sqrt(1.0 + aside) / w, math.degrees(math.atan(math.sqrt(aside)))
             if side:
                 extent.x2, extent.d2, extent.a2 = x, distance, angle
             else:

@@ -78,6 +78,15 @@ PATCH = np.dtype(
 )
 """A surface that is not a polygon, in the eye's frame (right, up, forward): its equation, and what bounds it."""
 
+OCCLUDER = np.dtype(
+    [
+        ("planes", "f8", (5, 3)),  # unit normals: of the planes through the eye and its edges, inwards; its own, away from the eye
+        ("offset", "f8"),  # the distance of its plane from the eye [m]
+    ],
+    align=True,
+)
+"""A face that hides what is behind it."""
+
 EXTENT = np.dtype(
     [
         ("row", "i4"),

@@ -108,6 +108,8 @@ def _there(patch: Record, v: float, optics: Record, curve: Record, u: float) -> 
         b = curve.b0 + curve.b1 * u
         if b * b < curve.a * (curve.c0 + u * (curve.c1 + u * curve.c2)):
             return False
+        if patch.slabs == 0 and not patch.both and curve.a > 0.0:
+            return b > 0.0
     w = nearness(curve, u)
     if not 0.0 < w <= optics.nearest:
         return False

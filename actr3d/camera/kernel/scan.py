@@ -15,6 +15,7 @@ from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import Geoms, Scene, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent
+from actr3d.camera.kernel.waiting import bring_up
 
 MOST_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces of each side."""
@@ -68,15 +69,15 @@ def _look(
     labels: Array,
     extents: Records,
 ) -> int:
-    patches = set_scene(eye, place, turn, geoms, topology, optics, scene)
-    if patches < 0:
-        return patches
-    done, present = zero(), zero()
+    failed = set_scene(eye, place, turn, geoms, topology, optics, scene)
+    if failed < 0:
+        return failed
+    done, rounds, faces = zero(), zero(), zero()
     for number in range(optics.rows):
         v = row_tangent(number, optics)
-        present = _faces_on(number, scene, present)
-        pieces = _add_patches(number, v, optics, scene, patches, row)
-        pieces, aside = _add_faces(v, optics, topology, scene, present, row, pieces)
+        rounds, faces = bring_up(scene.round, number, rounds), bring_up(scene.faces, number, faces)
+        pieces = _add_patches(v, optics, scene, rounds, row)
+        pieces, aside = _add_faces(v, optics, topology, scene, faces, row, pieces)
         pieces = _add_range(v, optics, row.pieces, pieces)
         first = done
         done = trace_row(v, optics, row, pieces, extents, first)
@@ -86,13 +87,11 @@ def _look(
 
 
 @compiled
-def _add_patches(number: int, v: float, optics: Record, scene: Scene, patches: int, row: Row) -> int:
+def _add_patches(v: float, optics: Record, scene: Scene, present: int, row: Row) -> int:
     """Writes the pieces of all patches on a row; returns how many there are."""
     count, curve = zero(), row.curve[0]
-    for i in range(patches):
-        patch = scene.patches[i]
-        if patch.first_row <= number <= patch.last_row:
-            count = add_patch(patch, v, optics, curve, row.pieces, count, row.cuts)
+    for i in range(present):
+        count = add_patch(scene.patches[scene.round.present[i]], v, optics, curve, row.pieces, count, row.cuts)
     return count
 
 
@@ -101,7 +100,7 @@ def _add_faces(v: float, optics: Record, topology: Topology, scene: Scene, prese
     """Appends the pieces of all faces on a row; returns how many pieces there are now, and how many faces gave none."""
     aside = zero()
     for i in range(present):
-        face = scene.present[i]
+        face = scene.faces.present[i]
         before = count
         count = add_face(topology.face_corners[face], scene.corners, v, optics, row.pieces, count)
         if count > before:
@@ -120,27 +119,11 @@ def _order_faces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
     for i in range(pieces):
         face = row.pieces[row.order[i]].face
         if face >= 0:
-            scene.present[count] = face
+            scene.faces.present[count] = face
             count += 1
     for i in range(aside):
-        scene.present[count] = scene.aside[i]
+        scene.faces.present[count] = scene.aside[i]
         count += 1
-
-
-@compiled
-def _faces_on(number: int, scene: Scene, present: int) -> int:
-    """Brings the list of faces on a row up to date from that of the row above; returns how many there are."""
-    kept = 0
-    for i in range(present):
-        if scene.ending[scene.present[i]] >= number:
-            scene.present[kept] = scene.present[i]
-            kept += 1
-    face = scene.starting[number]
-    while face >= 0:
-        scene.present[kept] = face
-        kept += 1
-        face = scene.following[face]
-    return kept
 
 
 @compiled

@@ -9,10 +9,12 @@ import numpy as np
 
 from actr3d.camera.kernel.faces import face_rows
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, PATCH, PLANE, UNSEEN, Array, Record, Records
+from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
+from actr3d.camera.kernel.occluders import LARGE, MOST_OCCLUDERS, hidden, offer
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
 from actr3d.camera.kernel.screen import in_view
 from actr3d.camera.kernel.solids import add_patches, reach_of
+from actr3d.camera.kernel.waiting import Waiting, enter, room_for_waiting, send_away
 
 
 class Geoms(NamedTuple):
@@ -57,21 +59,18 @@ class Scene(NamedTuple):
     """The geoms' centres in the eye's frame, `(n, 3)` [m]."""
     turn: Array
     """The axes of the geom at hand, as columns."""
+    occluders: Records
     patches: Records
     local: Array
     """The corners of one geom in its frame [m]."""
     corners: Array
     """All corners in the eye's frame [m]."""
-    starting: Array
-    """The first of the faces that begin on a row, or -1."""
-    following: Array
-    """The next of the faces that begin on the same row as a face, or -1."""
-    ending: Array
-    """The last row of a face."""
-    present: Array
-    """The faces on the row at hand, from left to right on the row above."""
+    round: Waiting
+    """The patches by their rows."""
+    faces: Waiting
+    """The faces by their rows; those at hand from left to right on the row above."""
     aside: Array
-    """Those of them that no piece was cut from."""
+    """Faces at hand that no piece was cut from."""
 
 
 def room_for_scene(topology: Topology, rows: int) -> Scene:
@@ -80,20 +79,19 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
     return Scene(
         places=np.zeros((geoms, 3)),
         turn=np.zeros((3, 3)),
+        occluders=np.zeros(MOST_OCCLUDERS, OCCLUDER),
         patches=np.zeros(3 * geoms + 1, PATCH),  # a cylinder or capsule has three
         local=np.zeros((max(8, corners), 3)),
         corners=np.zeros((corners, 3)),
-        starting=np.zeros(rows, np.int64),
-        following=np.zeros(faces, np.int64),
-        ending=np.zeros(faces, np.int64),
-        present=np.zeros(faces, np.int64),
+        round=room_for_waiting(3 * geoms + 1, rows),
+        faces=room_for_waiting(faces, rows),
         aside=np.zeros(faces, np.int64),
     )
 
 
 @compiled
 def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> int:
-    """Finds what may be in view; returns how many patches there are, or below 0, less one, a geom with a pose that is no number.
+    """Finds what may be in view; returns 0, or below 0, less one, the number of a geom whose pose is no number.
 
     Args:
         eye: The eye's axes right, up and forward, and its place, as rows in the world's frame.
@@ -104,26 +102,56 @@ def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Top
         optics: The eye's.
         scene: Where it is written.
     """
-    count, its_turn = zero(), scene.turn
-    for number in range(optics.rows):
-        scene.starting[number] = -1
-    for geom in range(len(topology.kind)):
-        if not _visible(geom, geoms, topology):
-            continue
-        its_place = scene.places[geom]
-        if not _set_pose(eye, place[geom], turn[geom], its_place, its_turn):
-            return -1 - geom
-        kind, size = topology.kind[geom], geoms.size[geom]
-        if kind in (BOX, MESH, HFIELD):
-            _set_polyhedron(geom, its_place, its_turn, geoms, topology, optics, scene)
-            continue
-        reach = reach_of(kind, size)
-        if in_view(its_place, reach, optics):
-            both = kind != PLANE and _length(its_place) - reach <= optics.corner
-            before = count
-            count = add_patches(kind, size, its_place, its_turn, both, optics, scene.patches, count)
-            for i in range(before, count):
-                scene.patches[i].object, scene.patches[i].geom = topology.objects[geom], geom
+    count, occluders = zero(), zero()
+    send_away(scene.round)
+    send_away(scene.faces)
+    for turn_of in range(2):  # first those that may hide others
+        for geom in range(len(topology.kind)):
+            first = topology.kind[geom] == BOX and _is_large(geoms.size[geom], place[geom], eye)
+            if first != (turn_of == 0) or not _visible(geom, geoms, topology):
+                continue
+            if not _set_pose(eye, place[geom], turn[geom], scene.places[geom], scene.turn):
+                return -1 - geom
+            reach = _reach(geom, geoms, topology)
+            if not in_view(scene.places[geom], reach, optics) or hidden(scene.places[geom], reach, scene.occluders, occluders):
+                continue
+            if topology.kind[geom] in (BOX, MESH, HFIELD):
+                occluders = _add_polyhedron(geom, geoms, topology, optics, scene, occluders)
+            else:
+                count = _add_round(geom, reach, geoms, topology, optics, scene, count)
+    return 0
+
+
+@compiled
+def _is_large(size: Array, place: Array, eye: Array) -> bool:
+    """Tells whether a box looks large from the eye."""
+    x, y, z = place[0] - eye[3, 0], place[1] - eye[3, 1], place[2] - eye[3, 2]
+    return _square(size) > LARGE * (x * x + y * y + z * z)
+
+
+@compiled
+def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
+    """Returns the radius of a ball around the centre that holds all of a geom [m]."""
+    kind, size = topology.kind[geom], geoms.size[geom]
+    if kind == BOX:
+        return math.sqrt(_square(size))
+    if kind == MESH:
+        return geoms.rbound[geom]
+    if kind == HFIELD:
+        return hfield_reach(geoms.hfield_size[topology.source[geom][1]])
+    return reach_of(kind, size)
+
+
+@compiled
+def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, count: int) -> int:
+    """Appends the patches of a geom that is round or a plane; returns how many there are now."""
+    kind, place, before = topology.kind[geom], scene.places[geom], count
+    both = kind != PLANE and math.sqrt(_square(place)) - reach <= optics.corner
+    count = add_patches(kind, geoms.size[geom], place, scene.turn, both, optics, scene.patches, count)
+    for i in range(before, count):
+        patch = scene.patches[i]
+        patch.object, patch.geom = topology.objects[geom], geom
+        enter(scene.round, i, patch.first_row, patch.last_row)
     return count
 
 
@@ -152,23 +180,15 @@ def _set_pose(eye: Array, place: Array, turn: Array, its_place: Array, its_turn:
 
 
 @compiled
-def _length(vector: Array) -> float:
-    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+def _square(vector: Array) -> float:
+    return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
 
 
 @compiled
-def _set_polyhedron(geom: int, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> None:
-    """Places the corners of a geom, and enters its faces at the rows that they begin on."""
-    kind, source = topology.kind[geom], topology.source[geom]
-    size = geoms.size[geom]
-    if kind == BOX:
-        reach = _length(size)
-    elif kind == MESH:
-        reach = geoms.rbound[geom]
-    else:
-        reach = hfield_reach(geoms.hfield_size[source[1]])
-    if not in_view(place, reach, optics):
-        return
+def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, occluders: int) -> int:
+    """Places the corners of a geom, and enters its faces at the rows that they begin on; returns how many occluders there are now."""
+    kind, source, size = topology.kind[geom], topology.source[geom], geoms.size[geom]
+    place, turn = scene.places[geom], scene.turn
     corners = scene.corners[topology.corners[geom] : topology.corners[geom + 1]]
     if kind == MESH:
         place_corners(geoms.mesh_vert[source[0] :], place, turn, corners)
@@ -181,7 +201,7 @@ def _set_polyhedron(geom: int, place: Array, turn: Array, geoms: Geoms, topology
     one_sided = kind == BOX and box_distance(size, place, turn) > optics.corner
     for face in range(topology.faces[geom], topology.faces[geom + 1]):
         first, last = face_rows(topology.face_corners[face], scene.corners, one_sided, optics)
-        if first <= last:
-            scene.following[face] = scene.starting[first]
-            scene.starting[first] = face
-            scene.ending[face] = last
+        enter(scene.faces, face, first, last)
+        if one_sided and first <= last:
+            occluders = offer(topology.face_corners[face], scene.corners, optics, scene.occluders, occluders)
+    return occluders
