@@ -76,7 +76,7 @@ def disagreements(mj_model: Any, mj_data: Any, parameters: CameraParameters, sam
     for y, row in view.items():
         extents = sorted((extent, label) for label, some in row.items() for extent in some)
         wrong += _wrong_edges(oracle, y, extents, known)
-        xs = np.linspace(0, 1, samples) + 1e-7
+        xs = np.linspace(0, 1, samples, endpoint=False) + 1e-7
         objects, _ = oracle.look(xs, y)
         for x, found in zip(xs, objects, strict=True):
             labels = [label for (x1, x2, *_), label in extents if x1 <= x <= x2]

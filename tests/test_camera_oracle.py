@@ -40,6 +40,8 @@ def random_scene(seed: int) -> tuple[Any, Any]:
     elevation = random.uniform(size=(5, 7))
     assets = torus(12, 7) + f'<hfield name="land" nrow="5" ncol="7" size="2 1.5 .6 .2" elevation="{numbers(elevation)}"/>'
     things = ['<geom type="plane" size="0 0 .1"/>']
+    if seed % 2:  # a wall that hides some things wholly and others in part
+        things.append(f'<geom type="box" size=".1 {random.uniform(0.5, 2)} {random.uniform(0.3, 1.2)}" {pose(random, 1)}/>')
     for _ in range(random.integers(2, 14)):
         kind = random.choice([*SIZES, "mesh", "hfield"])
         if kind == "mesh":

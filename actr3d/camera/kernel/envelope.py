@@ -70,7 +70,7 @@ def trace_row(v: float, optics: Record, row: Row, count: int, extents: Records, 
     sort_by_start(row.order, row.starts, row.pieces, count)
     while True:
         waiting, present = _bring_in(start, row, count, waiting, present)
-        end = row.starts[waiting] if waiting < count else math.inf
+        end: float = row.starts[waiting] if waiting < count else math.inf
         if present == 0:
             if waiting == count:
                 return end_row(v, optics, row.pieces, extents, first, done)

@@ -29,7 +29,7 @@ NEGLIGIBLE: Final = 1e-11
 """Pieces and stretches whose tangents differ by less than this are left out."""
 SAME_DEPTH: Final = 1e-9
 """Surfaces whose depths differ by less than this part lie in one another, and neither cuts the other."""
-SLIVER: Final = 1e-9
+SLIVER: Final = 1e-7
 """Extents narrower than this part of the screen come from rounding."""
 
 PIECE = np.dtype(
