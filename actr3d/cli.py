@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import sys
 import traceback
@@ -159,16 +160,15 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
     run.set_defaults(function=run_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core"], help="what to measure")
+    bench.add_argument("name", choices=["core", "camera"], help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     return parser
 
 
 def _bench(options: argparse.Namespace) -> int:
-    from actr3d.bench import core
-
-    return core.main(json_output=options.json)
+    measured = importlib.import_module(f"actr3d.bench.{options.name}")
+    return measured.main(json_output=options.json)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -42,10 +42,6 @@ class MeshError(WorldError):
     """A mesh cannot be read, or is not fit for a world."""
 
 
-class CameraError(Actr3dError):
-    """A camera cannot be made, or cannot look."""
-
-
 class SimulationError(Actr3dError):
     """A simulation cannot be set up, stepped or brought to a time, as asked."""
 
@@ -56,6 +52,10 @@ class RecordingError(Actr3dError):
 
 class GridError(Actr3dError):
     """A grid world cannot be made, or a body in it placed or moved, as asked."""
+
+
+class CameraError(Actr3dError):
+    """A camera cannot be made, or cannot look: unknown eye or geom, poses that are missing or no numbers."""
 
 
 class ModelFileError(Actr3dError):

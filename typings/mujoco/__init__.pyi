@@ -2,6 +2,8 @@
 from typing import Any
 
 class MjModel:
+    @staticmethod
+    def from_xml_string(xml: str, assets: dict[str, bytes] | None = None) -> MjModel: ...
     def __getattr__(self, name: str) -> Any: ...
 
 class MjData:

@@ -1,0 +1,121 @@
+"""`actr3d bench camera`: what a view costs, beside MuJoCo's rays of the same scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from statistics import median
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from actr3d.bench.figures import Figure, ratio, report, seconds_of
+from actr3d.camera import GeometricCamera
+
+RAYS = 10_000
+SHAPES = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3}
+"""Types of geoms, and how many sizes each has."""
+APERTURE = '<geom type="box" pos="4 2.5 1.25" size=".1 2 1.25"/><geom type="box" pos="4 -2.5 1.25" size=".1 2 1.25"/>'
+SCENES = 5
+"""How many scenes of each kind are made at random; figures are medians over them."""
+
+
+def _loose(count: int, seed: int) -> str:
+    """Returns as many loose objects of mixed types, at random on the floor before and behind the aperture."""
+    random = np.random.default_rng(seed)
+    things: list[str] = []
+    for i in range(count):
+        kind = list(SHAPES)[i % len(SHAPES)]
+        size = random.uniform(0.1, 0.3, 3)
+        height = {"box": size[2], "sphere": size[0], "capsule": size[0] + size[1], "cylinder": size[1], "ellipsoid": size[2]}[kind]
+        x, y = random.uniform((1.5, -4), (9, 4))
+        sizes = " ".join(f"{value:.3f}" for value in size[: SHAPES[kind]])
+        turn = random.uniform(0, 90)
+        things.append(f'<body pos="{x} {y} {height}" euler="0 0 {turn}"><freejoint/><geom type="{kind}" size="{sizes}"/></body>')
+    return "".join(things)
+
+
+def _mannequin(seed: int) -> str:
+    """Returns a body of twenty parts."""
+    random = np.random.default_rng(seed)
+    kinds = ["capsule", "box", "ellipsoid", "sphere"]
+    parts = [
+        f'<geom type="{kinds[i % 4]}" size=".08 .15 .1" pos="{random.uniform(-0.15, 0.15)} {random.uniform(-0.4, 0.4)} {0.1 + 0.09 * i}"/>'
+        for i in range(20)
+    ]
+    return f'<body pos="3 0 0">{"".join(parts)}</body>'
+
+
+def _ring() -> str:
+    """Returns a ring-shaped mesh of 10,000 triangles."""
+    rings, sides = 100, 50
+    i, j = np.meshgrid(np.arange(rings), np.arange(sides), indexing="ij")
+    a, b = i * 2 * np.pi / rings, j * 2 * np.pi / sides
+    vertices = np.stack(((0.5 + 0.2 * np.cos(b)) * np.cos(a), (0.5 + 0.2 * np.cos(b)) * np.sin(a), 0.2 * np.sin(b)), axis=-1)
+    after, beside = (i + 1) % rings, (j + 1) % sides
+    corners = [i * sides + j, after * sides + j, after * sides + beside, i * sides + beside]
+    faces = np.stack([corners[n] for n in (0, 1, 2, 0, 2, 3)], axis=-1)
+    vertex = " ".join(f"{value:.6f}" for value in vertices.ravel().tolist())
+    return f'<mesh name="ring" vertex="{vertex}" face="{" ".join(str(corner) for corner in faces.ravel().tolist())}"/>'
+
+
+def _scene(things: str, assets: str = "") -> tuple[Any, Any]:
+    """Returns model and data of a scene with a floor and an eye at 1.6 m."""
+    floor = '<geom type="plane" size="0 0 .1"/><site name="eye" pos="0 0 1.6"/>'
+    mj_model = mujoco.MjModel.from_xml_string(f"<mujoco><asset>{assets}</asset><worldbody>{floor}{things}</worldbody></mujoco>")
+    mj_data = mujoco.MjData(mj_model)
+    mujoco.mj_forward(mj_model, mj_data)
+    return mj_model, mj_data
+
+
+def _view_cost(mj_model: Any, mj_data: Any) -> Callable[[], float]:
+    """Returns a function that measures one default view [s]."""
+    camera = GeometricCamera(mj_model, site="eye")
+    camera.look(mj_data)
+
+    def look() -> None:
+        for _ in range(20):
+            camera.look(mj_data)
+
+    return lambda: min(seconds_of(look) for _ in range(3)) / 20
+
+
+def _ray_cost(mj_model: Any, mj_data: Any) -> Callable[[], float]:
+    """Returns a function that measures one ray of many that are shot at once over the default view [s]."""
+    random = np.random.default_rng(0)
+    tangents = random.uniform((-1, -np.tan(np.pi / 6)), (1, np.tan(np.pi / 6)), (RAYS, 2))
+    directions = np.column_stack((np.ones(RAYS), tangents)).ravel()
+    geoms, distances = np.zeros(RAYS, np.int32), np.zeros(RAYS)
+    eye = mj_data.site_xpos[0]
+
+    def shoot() -> None:
+        mujoco.mj_multiRay(mj_model, mj_data, eye, directions, None, True, -1, geoms, distances, None, RAYS, 1e10)
+
+    return lambda: min(seconds_of(shoot) for _ in range(3)) / RAYS
+
+
+def _in_rays(scenes: list[tuple[Any, Any]]) -> float:
+    """Returns what a view costs, in rays of the same scene."""
+    return median(ratio(_view_cost(*scene), _ray_cost(*scene)) for scene in scenes)
+
+
+def measure() -> list[Figure]:
+    """Measures everything."""
+    few = [_scene(APERTURE + _loose(10, seed)) for seed in range(SCENES)]
+    many = [_scene(APERTURE + _loose(100, seed)) for seed in range(SCENES)]
+    body = [_scene(_mannequin(seed)) for seed in range(SCENES)]
+    mesh = [_scene('<geom type="mesh" mesh="ring" pos="2 0 1.5" euler="30 50 0"/>', _ring())]
+    more = median(ratio(_view_cost(*large), _view_cost(*small)) for large, small in zip(many, few, strict=True))
+    what = "single rays of mj_multiRay for a default view"
+    return [
+        Figure(name="aperture, 10 objects", value=_in_rays(few), sense="at most", bar=RAYS, what=what),
+        Figure(name="aperture, 100 objects", value=_in_rays(many), sense="at most", bar=RAYS, what=what),
+        Figure(name="body of 20 parts", value=_in_rays(body), sense="at most", bar=RAYS, what=what),
+        Figure(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", bar=RAYS, what=what),
+        Figure(name="100 objects", value=more, sense="at most", bar=3, what="times a view of 10"),
+    ]
+
+
+def main(*, json_output: bool) -> int:
+    """Measures and prints; returns the exit code."""
+    return report(measure(), json_output=json_output)

@@ -1,0 +1,7 @@
+"""The Geometric Camera: the exact edges of what an eye sees, without pixels and without meanings."""
+
+from actr3d.camera.geometric import GeometricCamera
+from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.view import View
+
+__all__ = ["CameraParameters", "GeometricCamera", "View"]

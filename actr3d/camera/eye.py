@@ -1,0 +1,73 @@
+"""Where a camera looks from, and where to."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+import mujoco
+import numpy as np
+from mujoco import MjData, MjModel
+from numpy.typing import NDArray
+
+from actr3d.errors import CameraError, did_you_mean
+
+Kind = Literal["camera", "site", "body"]
+
+
+def names_of(mj_model: MjModel, kind: str) -> list[str]:
+    """Returns the names of all things of a kind ('camera', 'site', 'body', 'geom') in the order of their numbers."""
+    enum = getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}")
+    count = {"camera": mj_model.ncam, "site": mj_model.nsite, "body": mj_model.nbody, "geom": mj_model.ngeom}[kind]
+    return [mujoco.mj_id2name(mj_model, enum, i) or "" for i in range(count)]
+
+
+class Eye:
+    """A camera, a site or a body of a MuJoCo model that is looked from.
+
+    A camera looks as MuJoCo's do, along its negative z axis with y up; of sites and bodies x points forward and z up.
+    """
+
+    def __init__(self, mj_model: MjModel, kind: Kind, name: str) -> None:
+        """Finds the eye.
+
+        Raises:
+            CameraError: If there is no such thing in the model.
+        """
+        names = names_of(mj_model, kind)
+        if name not in names or not name:
+            known = [known for known in names if known]
+            there = f"; there are: {', '.join(known)}" if known else f"; this model has no named {kind}"
+            raise CameraError(f"GeometricCamera: no {kind} {name!r}{did_you_mean(str(name), known) or there}")
+        self._kind = kind
+        self._name = name
+        self._id = names.index(name)
+        bodies = {"camera": mj_model.cam_bodyid, "site": mj_model.site_bodyid, "body": range(mj_model.nbody)}
+        self.body = int(bodies[kind][self._id])
+        """The number of the body it belongs to."""
+
+    def axes(self, mj_data: MjData) -> NDArray[np.float64]:
+        """Returns the axes right, up and forward, and the place [m], as rows in the world's frame, `(4, 3)`.
+
+        Raises:
+            CameraError: If the pose was not computed yet, or is no number.
+        """
+        place, turn = self._pose(mj_data)
+        x, y, z = turn.reshape(3, 3).T
+        axes = np.stack((x, y, -z, place) if self._kind == "camera" else (-y, z, x, place))
+        length = float(x @ x + y @ y + z @ z)
+        if not math.isfinite(length + float(place.sum())):
+            raise CameraError(f"GeometricCamera: the pose of the {self._kind} '{self._name}' is no number; did the physics diverge?")
+        if abs(length - 3.0) > 1e-6:
+            raise CameraError(
+                f"GeometricCamera: the pose of the {self._kind} '{self._name}' was not computed; "
+                "call mujoco.mj_forward, or mj_kinematics, mj_comPos and mj_camlight, before looking"
+            )
+        return axes
+
+    def _pose(self, mj_data: MjData) -> tuple[Any, Any]:
+        if self._kind == "camera":
+            return mj_data.cam_xpos[self._id], mj_data.cam_xmat[self._id]
+        if self._kind == "site":
+            return mj_data.site_xpos[self._id], mj_data.site_xmat[self._id]
+        return mj_data.xpos[self._id], mj_data.xmat[self._id]

@@ -1,0 +1,163 @@
+"""The Geometric Camera."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from mujoco import MjData, MjModel
+from numpy.typing import NDArray
+
+from actr3d.camera.eye import Eye, Kind, names_of
+from actr3d.camera.kernel.envelope import room_for
+from actr3d.camera.kernel.layout import EXTENT, OPTICS
+from actr3d.camera.kernel.scan import MOST_PIECES_OF_A_PATCH, scan
+from actr3d.camera.kernel.scene import room_for_scene
+from actr3d.camera.objects import objects_of
+from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.topology import geoms_of, topology_of
+from actr3d.camera.view import View
+from actr3d.errors import CameraError
+
+NEAREST = 1e-9
+"""How deep a surface must be to be drawn at all [m]."""
+
+
+class GeometricCamera:
+    """Sees the edges of what is visible from one place of a MuJoCo model: exactly, and without pixels, names or meanings.
+
+    Every geom is seen as MuJoCo's rays see it: not if its colour is fully transparent, planes from their front only, and
+    from inside a geom its inner sides. Flexes and skins are not seen. What is changed in `mj_model` (sizes, colours, heights,
+    poses) is seen at the next look; only what geoms there are, and of what type, is read once.
+
+    A camera is for one thread at a time.
+    """
+
+    def __init__(
+        self,
+        mj_model: MjModel,
+        *,
+        camera: str | None = None,
+        site: str | None = None,
+        body: str | None = None,
+        parameters: CameraParameters | None = None,
+    ) -> None:
+        """Makes a camera that looks from a camera, a site or a body of the model; exactly one of these is to be named.
+
+        MuJoCo's cameras look along their negative z axis, with y up; from sites and bodies it looks along x, with z up.
+
+        Args:
+            mj_model: The MuJoCo model.
+            camera: The name of one of its cameras; its own field of view is not used.
+            site: Or the name of a site.
+            body: Or the name of a body.
+            parameters: What may be set; None: `CameraParameters()`.
+
+        Raises:
+            CameraError: If there is no such eye, if `background` names no geom, or if a geom cannot be seen at all.
+        """
+        self.parameters = CameraParameters() if parameters is None else parameters
+        self._mj_model = mj_model
+        self._eye = _the_eye(mj_model, camera=camera, site=site, body=body)
+        self._objects = objects_of(mj_model, self._eye.body, self.parameters)
+        self._geoms = geoms_of(mj_model)
+        self._topology = topology_of(mj_model, self._objects, self.parameters.groups)
+        self._scene = room_for_scene(self._topology, self.parameters.rows)
+        most = MOST_PIECES_OF_A_PATCH * len(self._scene.patches) + len(self._topology.face_geom) + 1
+        self._row = room_for(most, self._scene.places)
+        self._optics = _optics(self.parameters)
+        self._labels = np.zeros(max(0, *self._objects, 0) + 1, np.int64)
+        self._extents = np.zeros(16 * self.parameters.rows, EXTENT)
+
+    def look(self, mj_data: MjData) -> View:
+        """Returns what is visible now.
+
+        It shows the poses that stand in `mj_data` (`geom_xpos`, `cam_xpos` and so on), and writes nothing there. After
+        `mj_step` these are of the positions before the step: the caller brings them up to date first, with `mj_kinematics`,
+        and for the model's cameras also `mj_comPos` and `mj_camlight`.
+
+        Raises:
+            CameraError: If the poses were not computed, or are no numbers, or belong to another model.
+        """
+        if len(mj_data.geom_xpos) != len(self._objects):
+            got = len(mj_data.geom_xpos)
+            raise CameraError(f"GeometricCamera.look: mj_data belongs to another model: {got} geoms, not {len(self._objects)}")
+        axes = self._eye.axes(mj_data)
+        while True:
+            count = self._scan(axes, mj_data)
+            if count < len(self._extents):
+                break
+            self._extents = np.zeros(2 * len(self._extents), EXTENT)
+        extents = self._extents[:count].copy()
+        extents.flags.writeable = False
+        return View(self.parameters.rows, extents)
+
+    def label_of(self, geom: str) -> int | None:
+        """Returns the label of the object that a geom belongs to; None if that was never seen.
+
+        This is for those who stand outside, such as displays and tests: cognition has no names of geoms.
+
+        Raises:
+            CameraError: If there is no such geom.
+        """
+        names = names_of(self._mj_model, "geom")
+        if geom not in names:
+            raise CameraError(f"GeometricCamera.label_of: no geom {geom!r}")
+        object = int(self._objects[names.index(geom)])
+        return int(self._labels[object]) or None if object > 0 else None
+
+    def state(self) -> tuple[int, ...]:
+        """Returns the labels given so far, to be handed to `restore`: all that a camera keeps from one look to the next."""
+        return tuple(self._labels.tolist())
+
+    def restore(self, state: tuple[int, ...]) -> None:
+        """Takes the labels up again that were given when `state` was called, on this camera or one like it.
+
+        Raises:
+            CameraError: If that was a camera for other objects.
+        """
+        if len(state) != len(self._labels):
+            raise CameraError(f"GeometricCamera.restore: a state of {len(state) - 1} objects for a camera that has {len(self._labels) - 1}")
+        self._labels[:] = state
+
+    def _scan(self, axes: NDArray[np.float64], mj_data: MjData) -> int:
+        count = scan()(
+            axes,
+            mj_data.geom_xpos,
+            mj_data.geom_xmat,
+            self._optics,
+            self._geoms,
+            self._topology,
+            self._scene,
+            self._row,
+            self._labels,
+            self._extents,
+        )
+        if count < 0:
+            name = names_of(self._mj_model, "geom")[-1 - count] or str(-1 - count)
+            raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is no number; did the physics diverge?")
+        return count
+
+
+def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:
+    """Returns the one eye that is named."""
+    named: list[tuple[Any, str]] = [(kind, name) for kind, name in given.items() if name is not None]
+    if len(named) != 1:
+        got = ", ".join(f"{kind}={name!r}" for kind, name in named) or "none"
+        raise CameraError(f"GeometricCamera: name one of camera, site or body to look from (got {got})")
+    kind: Kind = named[0][0]
+    return Eye(mj_model, kind, named[0][1])
+
+
+def _optics(parameters: CameraParameters) -> NDArray[Any]:
+    """Returns what the compiled functions need of the parameters."""
+    optics = np.zeros(1, OPTICS)
+    right, top = math.tan(parameters.horizontal_fov / 2), math.tan(parameters.vertical_fov / 2)
+    near = max(parameters.near, NEAREST)
+    optics["rows"], optics["right"], optics["top"] = parameters.rows, right, top
+    optics["nearest"], optics["corner"] = 1 / near, near * math.sqrt(1 + right**2 + top**2)
+    optics["range"] = math.inf if parameters.range is None else parameters.range
+    optics["precision"] = parameters.precision
+    optics["e2"] = parameters.e2 if parameters.retinotopic else 0
+    return optics

@@ -1,0 +1,124 @@
+"""From a patch, a plane or something round, to its pieces on one row."""
+
+from __future__ import annotations
+
+import math
+
+from actr3d.camera.kernel.jit import compiled, zero
+from actr3d.camera.kernel.layout import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
+from actr3d.camera.kernel.pieces import bound, nearness, sort_values
+from actr3d.camera.kernel.roots import add_roots
+
+
+@compiled
+def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array) -> int:
+    """Appends the pieces of a patch on the row at the tangent v; returns how many pieces there are now.
+
+    The whole curve is cut wherever anything about it may change; what lies between two cuts is seen or not as a whole.
+    """
+    curve.object, curve.geom, curve.face = patch.object, patch.geom, -1
+    if patch.even:
+        curve.side, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
+        number = _cut_line(patch, v, optics, curve, cuts)
+    else:
+        form = patch.form
+        curve.side, curve.a = NEAR_SIDE, patch.a
+        curve.b0, curve.b1 = patch.q[1] * v + patch.q[2], patch.q[0]
+        curve.c0 = v * (form[1, 1] * v + 2.0 * form[1, 2]) + form[2, 2]
+        curve.c1, curve.c2 = 2.0 * (form[0, 1] * v + form[0, 2]), form[0, 0]
+        number = _cut_conic(patch, v, optics, curve, cuts)
+        if number == 0 and curve.b1 * curve.b1 < curve.a * curve.c2:
+            return count  # the row passes it by
+    cuts[number], cuts[number + 1] = -optics.right, optics.right
+    sort_values(cuts, number + 2)
+    count = _add_side(patch, v, optics, curve, pieces, count, cuts, number + 2)
+    if patch.both:
+        curve.side = FAR_SIDE
+        count = _add_side(patch, v, optics, curve, pieces, count, cuts, number + 2)
+    return count
+
+
+@compiled
+def _cut_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array) -> int:
+    """Finds where a line crosses the horizon, the near limit, its slabs and its ball; returns how many cuts there are."""
+    c0, c1 = line.c0, line.c1
+    number = add_roots(0.0, 0.5 * c1, c0, cuts, zero())
+    number = add_roots(0.0, 0.5 * c1, c0 - optics.nearest, cuts, number)
+    for i in range(patch.slabs):
+        axis = patch.axes[i]
+        for limit in (patch.lows[i], patch.highs[i]):
+            number = add_roots(0.0, 0.5 * (axis[0] - limit * c1), axis[1] * v + axis[2] - limit * c0, cuts, number)
+    if patch.radius > 0.0:
+        x, y, z = patch.centre[0], patch.centre[1], patch.centre[2]
+        square = patch.radius * patch.radius
+        x0, y0, z0 = -x * c0, v - y * c0, 1.0 - z * c0
+        x1, y1, z1 = 1.0 - x * c1, -y * c1, -z * c1
+        a = x1 * x1 + y1 * y1 + z1 * z1 - square * c1 * c1
+        b = x0 * x1 + y0 * y1 + z0 * z1 - square * c0 * c1
+        number = add_roots(a, b, x0 * x0 + y0 * y0 + z0 * z0 - square * c0 * c0, cuts, number)
+    return number
+
+
+@compiled
+def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
+    """Finds where a conic turns back, and where it crosses the near limit and its slab; returns how many cuts there are."""
+    a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
+    number = add_roots(b1 * b1 - a * c2, b0 * b1 - 0.5 * a * c1, b0 * b0 - a * c0, cuts, zero())
+    if number == 0 and b1 * b1 < a * c2:
+        return 0
+    if patch.ceiling > optics.nearest:
+        w = optics.nearest
+        number = add_roots(c2, 0.5 * c1 - b1 * w, (a * w - 2.0 * b0) * w + c0, cuts, number)
+    for i in range(patch.slabs):
+        axis = patch.axes[i]
+        l0, l1 = axis[1] * v + axis[2], axis[0]
+        for limit in (patch.lows[i], patch.highs[i]):
+            if math.isfinite(limit):
+                second = (a * l1 - 2.0 * limit * b1) * l1 + limit * limit * c2
+                first = a * l0 * l1 - limit * (b0 * l1 + b1 * l0) + 0.5 * limit * limit * c1
+                number = add_roots(second, first, (a * l0 - 2.0 * limit * b0) * l0 + limit * limit * c0, cuts, number)
+    return number
+
+
+@compiled
+def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array, number: int) -> int:
+    """Appends what of one side of a curve lies between its cuts; returns how many pieces there are now."""
+    going_on = False
+    for i in range(number - 1):
+        low, high = cuts[i], cuts[i + 1]
+        if low < -optics.right or high > optics.right or not high - low > NEGLIGIBLE:
+            continue
+        if not _there(patch, v, optics, curve, 0.5 * (low + high)):
+            going_on = False
+            continue
+        if going_on:
+            pieces[count - 1].high = high
+        else:
+            pieces[count] = curve
+            pieces[count].low, pieces[count].high = low, high
+            count, going_on = count + 1, True
+        bound(pieces[count - 1], patch.floor, patch.ceiling)
+    return count
+
+
+@compiled
+def _there(patch: Record, v: float, optics: Record, curve: Record, u: float) -> bool:
+    """Tells whether the curve's point at u is on the patch, and in front of the eye."""
+    if curve.side != LINE:
+        b = curve.b0 + curve.b1 * u
+        if b * b < curve.a * (curve.c0 + u * (curve.c1 + u * curve.c2)):
+            return False
+        if patch.slabs == 0 and not patch.both and curve.a > 0.0:
+            return b > 0.0
+    w = nearness(curve, u)
+    if not 0.0 < w <= optics.nearest:
+        return False
+    for i in range(patch.slabs):
+        axis = patch.axes[i]
+        along = axis[0] * u + axis[1] * v + axis[2]
+        if along < patch.lows[i] * w or along > patch.highs[i] * w:
+            return False
+    if patch.radius > 0.0:
+        x, y, z = u - patch.centre[0] * w, v - patch.centre[1] * w, 1.0 - patch.centre[2] * w
+        return x * x + y * y + z * z <= patch.radius * patch.radius * w * w
+    return True

@@ -1,0 +1,153 @@
+"""The one compiled function that is called from outside: everything that an eye sees at one moment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import TypeAlias
+
+from actr3d.camera.kernel.envelope import Row, trace_row
+from actr3d.camera.kernel.faces import add_face
+from actr3d.camera.kernel.jit import compiled, kept, sources_digest, zero
+from actr3d.camera.kernel.layout import BACKGROUND, FAR_SIDE, Array, Record, Records
+from actr3d.camera.kernel.patches import add_patch
+from actr3d.camera.kernel.pieces import bound
+from actr3d.camera.kernel.scene import Geoms, Scene, Topology, set_scene
+from actr3d.camera.kernel.screen import row_tangent
+from actr3d.camera.kernel.waiting import bring_up
+
+MOST_PIECES_OF_A_PATCH = 10
+"""Eight cuts leave at most five pieces of each side."""
+
+Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, Scene, Row, Array, Array], int]
+
+
+@cache
+def scan() -> Scan:
+    """Returns the function; the first call of it in a new installation takes seconds.
+
+    It takes: the eye's axes and place, the geoms' places and rotations, an array of one optics, the geoms, the topology,
+    room for the scene and for a row, the labels of objects, and the extents to be written. It returns how many extents
+    there are, or below 0, less one, the number of a geom whose pose is no number.
+    """
+    return _scan_of(sources_digest())
+
+
+def _scan_of(digest: int) -> Scan:
+    # Numba keeps the compiled function under the values it encloses, so that a change in any file is seen.
+    @kept
+    def look(
+        eye: Array,
+        place: Array,
+        turn: Array,
+        optics: Array,
+        geoms: Geoms,
+        topology: Topology,
+        scene: Scene,
+        row: Row,
+        labels: Array,
+        extents: Records,
+    ) -> int:
+        if digest == 0:
+            return 0
+        return _look(eye, place, turn, optics[0], geoms, topology, scene, row, labels, extents)
+
+    return look
+
+
+@compiled
+def _look(
+    eye: Array,
+    place: Array,
+    turn: Array,
+    optics: Record,
+    geoms: Geoms,
+    topology: Topology,
+    scene: Scene,
+    row: Row,
+    labels: Array,
+    extents: Records,
+) -> int:
+    failed = set_scene(eye, place, turn, geoms, topology, optics, scene)
+    if failed < 0:
+        return failed
+    done, rounds, faces = zero(), zero(), zero()
+    for number in range(optics.rows):
+        v = row_tangent(number, optics)
+        rounds, faces = bring_up(scene.round, number, rounds), bring_up(scene.faces, number, faces)
+        pieces = _add_patches(v, optics, scene, rounds, row)
+        pieces, aside = _add_faces(v, optics, topology, scene, faces, row, pieces)
+        pieces = _add_range(v, optics, row.pieces, pieces)
+        first = done
+        done = trace_row(v, optics, row, pieces, extents, first)
+        _label(number, optics, labels, extents, first, done)
+        _order_faces(row, pieces, scene, aside)
+    return done
+
+
+@compiled
+def _add_patches(v: float, optics: Record, scene: Scene, present: int, row: Row) -> int:
+    """Writes the pieces of all patches on a row; returns how many there are."""
+    count, curve = zero(), row.curve[0]
+    for i in range(present):
+        count = add_patch(scene.patches[scene.round.present[i]], v, optics, curve, row.pieces, count, row.cuts)
+    return count
+
+
+@compiled
+def _add_faces(v: float, optics: Record, topology: Topology, scene: Scene, present: int, row: Row, count: int) -> tuple[int, int]:
+    """Appends the pieces of all faces on a row; returns how many pieces there are now, and how many faces gave none."""
+    aside = zero()
+    for i in range(present):
+        face = scene.faces.present[i]
+        before = count
+        count = add_face(topology.face_corners[face], scene.corners, v, optics, row.pieces, count)
+        if count > before:
+            piece, geom = row.pieces[before], topology.face_geom[face]
+            piece.face, piece.geom, piece.object = face, geom, topology.objects[geom]
+        else:
+            scene.aside[aside] = face
+            aside += 1
+    return count, aside
+
+
+@compiled
+def _order_faces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
+    """Puts the faces in the order of their pieces: on the next row, the sorting finds nearly everything in order."""
+    count = zero()
+    for i in range(pieces):
+        face = row.pieces[row.order[i]].face
+        if face >= 0:
+            scene.faces.present[count] = face
+            count += 1
+    for i in range(aside):
+        scene.faces.present[count] = scene.aside[i]
+        count += 1
+
+
+@compiled
+def _add_range(v: float, optics: Record, pieces: Records, count: int) -> int:
+    """Appends the end of what the eye reaches, a ball seen from inside; returns how many pieces there are now."""
+    if not math.isfinite(optics.range):
+        return count
+    piece = pieces[count]
+    piece.low, piece.high, piece.side, piece.object, piece.geom = -optics.right, optics.right, FAR_SIDE, BACKGROUND, 0
+    piece.face = -1
+    square = optics.range * optics.range
+    piece.a, piece.b0, piece.b1 = -1.0, 0.0, 0.0
+    piece.c0, piece.c1, piece.c2 = (1.0 + v * v) / square, 0.0, 1.0 / square
+    bound(piece, 1.0 / optics.range, math.inf)
+    return count + 1
+
+
+@compiled
+def _label(number: int, optics: Record, labels: Array, extents: Records, first: int, done: int) -> None:
+    """Writes row and labels; an object that was never seen before gets the next label."""
+    for i in range(first, done):
+        extent = extents[i]
+        if labels[extent.label] == 0:
+            labels[0] += 1
+            labels[extent.label] = labels[0]
+        extent.label = labels[extent.label]
+        extent.row, extent.y = number, (number + 0.5) / optics.rows

@@ -1,0 +1,207 @@
+"""From geoms to what may be in view: patches, and polygons by the row they begin on."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from actr3d.camera.kernel.faces import face_rows
+from actr3d.camera.kernel.jit import compiled, zero
+from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
+from actr3d.camera.kernel.occluders import LARGE, MOST_OCCLUDERS, hidden, offer
+from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
+from actr3d.camera.kernel.screen import in_view
+from actr3d.camera.kernel.solids import add_patches, reach_of
+from actr3d.camera.kernel.waiting import Waiting, enter, room_for_waiting, send_away
+
+
+class Geoms(NamedTuple):
+    """What a model says of its geoms: MuJoCo's own memory, so that changes are seen at once."""
+
+    size: Array
+    group: Array
+    rgba: Array
+    matid: Array
+    mat_rgba: Array
+    rbound: Array
+    mesh_vert: Array
+    hfield_size: Array
+    hfield_data: Array
+
+
+class Topology(NamedTuple):
+    """What never changes: which geom belongs to which object, and which corners make a face."""
+
+    kind: Array
+    """The type of each geom, `(n,)`."""
+    objects: Array
+    """The object of each geom, `(n,)`."""
+    groups: Array
+    """Which groups of geoms are seen, `(6,)`."""
+    source: Array
+    """Where a mesh's or height field's data begin, the height field's number, rows and columns, `(n, 4)`."""
+    corners: Array
+    """The first corner of each geom, and at last how many there are, `(n + 1,)`."""
+    faces: Array
+    """The first face of each geom, and at last how many there are, `(n + 1,)`."""
+    face_corners: Array
+    """The corners of each face, `(m, 4)`; -1 after those of a triangle."""
+    face_geom: Array
+    """The geom of each face, `(m,)`."""
+
+
+class Scene(NamedTuple):
+    """Room for what is in view at one moment."""
+
+    places: Array
+    """The geoms' centres in the eye's frame, `(n, 3)` [m]."""
+    turn: Array
+    """The axes of the geom at hand, as columns."""
+    occluders: Records
+    patches: Records
+    local: Array
+    """The corners of one geom in its frame [m]."""
+    corners: Array
+    """All corners in the eye's frame [m]."""
+    round: Waiting
+    """The patches by their rows."""
+    faces: Waiting
+    """The faces by their rows; those at hand from left to right on the row above."""
+    aside: Array
+    """Faces at hand that no piece was cut from."""
+
+
+def room_for_scene(topology: Topology, rows: int) -> Scene:
+    """Returns room for all that a model's geoms may be."""
+    geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
+    return Scene(
+        places=np.zeros((geoms, 3)),
+        turn=np.zeros((3, 3)),
+        occluders=np.zeros(MOST_OCCLUDERS, OCCLUDER),
+        patches=np.zeros(3 * geoms + 1, PATCH),  # a cylinder or capsule has three
+        local=np.zeros((max(8, corners), 3)),
+        corners=np.zeros((corners, 3)),
+        round=room_for_waiting(3 * geoms + 1, rows),
+        faces=room_for_waiting(faces, rows),
+        aside=np.zeros(faces, np.int64),
+    )
+
+
+@compiled
+def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> int:
+    """Finds what may be in view; returns 0, or below 0, less one, the number of a geom whose pose is no number.
+
+    Args:
+        eye: The eye's axes right, up and forward, and its place, as rows in the world's frame.
+        place: The geoms' places in the world.
+        turn: Their rotations, `(n, 9)`.
+        geoms: The model's.
+        topology: Likewise.
+        optics: The eye's.
+        scene: Where it is written.
+    """
+    count, occluders = zero(), zero()
+    send_away(scene.round)
+    send_away(scene.faces)
+    for turn_of in range(2):  # first those that may hide others
+        for geom in range(len(topology.kind)):
+            first = topology.kind[geom] == BOX and _is_large(geoms.size[geom], place[geom], eye)
+            if first != (turn_of == 0) or not _visible(geom, geoms, topology):
+                continue
+            if not _set_pose(eye, place[geom], turn[geom], scene.places[geom], scene.turn):
+                return -1 - geom
+            reach = _reach(geom, geoms, topology)
+            if not in_view(scene.places[geom], reach, optics) or hidden(scene.places[geom], reach, scene.occluders, occluders):
+                continue
+            if topology.kind[geom] in (BOX, MESH, HFIELD):
+                occluders = _add_polyhedron(geom, geoms, topology, optics, scene, occluders)
+            else:
+                count = _add_round(geom, reach, geoms, topology, optics, scene, count)
+    return 0
+
+
+@compiled
+def _is_large(size: Array, place: Array, eye: Array) -> bool:
+    """Tells whether a box looks large from the eye."""
+    x, y, z = place[0] - eye[3, 0], place[1] - eye[3, 1], place[2] - eye[3, 2]
+    return _square(size) > LARGE * (x * x + y * y + z * z)
+
+
+@compiled
+def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
+    """Returns the radius of a ball around the centre that holds all of a geom [m]."""
+    kind, size = topology.kind[geom], geoms.size[geom]
+    if kind == BOX:
+        return math.sqrt(_square(size))
+    if kind == MESH:
+        return geoms.rbound[geom]
+    if kind == HFIELD:
+        return hfield_reach(geoms.hfield_size[topology.source[geom][1]])
+    return reach_of(kind, size)
+
+
+@compiled
+def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, count: int) -> int:
+    """Appends the patches of a geom that is round or a plane; returns how many there are now."""
+    kind, place, before = topology.kind[geom], scene.places[geom], count
+    both = kind != PLANE and math.sqrt(_square(place)) - reach <= optics.corner
+    count = add_patches(kind, geoms.size[geom], place, scene.turn, both, optics, scene.patches, count)
+    for i in range(before, count):
+        patch = scene.patches[i]
+        patch.object, patch.geom = topology.objects[geom], geom
+        enter(scene.round, i, patch.first_row, patch.last_row)
+    return count
+
+
+@compiled
+def _visible(geom: int, geoms: Geoms, topology: Topology) -> bool:
+    """Tells whether a geom can be seen at all: as with MuJoCo's rays, those whose colour is fully transparent cannot."""
+    if topology.objects[geom] == UNSEEN or not topology.groups[min(max(geoms.group[geom], 0), 5)]:
+        return False
+    material = geoms.matid[geom]
+    alpha = geoms.rgba[geom, 3] if material < 0 else geoms.mat_rgba[material, 3]
+    return alpha != 0.0
+
+
+@compiled
+def _set_pose(eye: Array, place: Array, turn: Array, its_place: Array, its_turn: Array) -> bool:
+    """Turns a pose into the eye's frame; tells whether it is one of numbers."""
+    total = 0.0
+    for i in range(3):
+        its_place[i] = 0.0
+        for j in range(3):
+            its_place[i] += eye[i, j] * (place[j] - eye[3, j])
+            its_turn[i, j] = eye[i, 0] * turn[j] + eye[i, 1] * turn[3 + j] + eye[i, 2] * turn[6 + j]
+            total += its_turn[i, j]
+        total += its_place[i]
+    return math.isfinite(total)
+
+
+@compiled
+def _square(vector: Array) -> float:
+    return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]
+
+
+@compiled
+def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, occluders: int) -> int:
+    """Places the corners of a geom, and enters its faces at the rows that they begin on; returns how many occluders there are now."""
+    kind, source, size = topology.kind[geom], topology.source[geom], geoms.size[geom]
+    place, turn = scene.places[geom], scene.turn
+    corners = scene.corners[topology.corners[geom] : topology.corners[geom + 1]]
+    if kind == MESH:
+        place_corners(geoms.mesh_vert[source[0] :], place, turn, corners)
+    elif kind == BOX:
+        set_box(size, scene.local)
+        place_corners(scene.local, place, turn, corners)
+    else:
+        set_hfield(geoms.hfield_size[source[1]], geoms.hfield_data[source[0] :], source[2], source[3], scene.local)
+        place_corners(scene.local, place, turn, corners)
+    one_sided = kind == BOX and box_distance(size, place, turn) > optics.corner
+    for face in range(topology.faces[geom], topology.faces[geom + 1]):
+        first, last = face_rows(topology.face_corners[face], scene.corners, one_sided, optics)
+        enter(scene.faces, face, first, last)
+        if one_sided and first <= last:
+            occluders = offer(topology.face_corners[face], scene.corners, optics, scene.occluders, occluders)
+    return occluders

@@ -1,0 +1,87 @@
+"""Between tangents in the eye's frame and the screen, and what of the screen a ball may touch."""
+
+from __future__ import annotations
+
+import math
+
+from actr3d.camera.kernel.jit import compiled
+from actr3d.camera.kernel.layout import Array, Record
+
+
+@compiled
+def screen_part(tangent: float, most: float, e2: float) -> float:
+    """Returns a tangent as a part of half the screen, from -1 to 1.
+
+    On a retina (`e2` above 0) equal parts are equal parts of the cortex: a degree at eccentricity E takes 1 / (E + e2).
+    """
+    if e2 == 0.0:
+        return tangent / most
+    return math.copysign(math.log1p(math.atan(abs(tangent)) / e2) / math.log1p(math.atan(most) / e2), tangent)
+
+
+@compiled
+def row_tangent(row: float, optics: Record) -> float:
+    """Returns the tangent upwards of the middle of a scan line."""
+    part = 1.0 - (2.0 * row + 1.0) / optics.rows
+    if optics.e2 == 0.0:
+        return part * optics.top
+    span = math.log1p(math.atan(optics.top) / optics.e2)
+    return math.copysign(math.tan(optics.e2 * math.expm1(abs(part) * span)), part)
+
+
+@compiled
+def row_before(v: float, optics: Record) -> float:
+    """Returns the place among the scan lines of a tangent upwards: 0 at the middle of the topmost."""
+    return 0.5 * (optics.rows * (1.0 - screen_part(v, optics.top, optics.e2)) - 1.0)
+
+
+@compiled
+def first_row(v: float, optics: Record) -> int:
+    """Returns the topmost row that may be at or below the tangent v."""
+    return math.ceil(row_before(min(v, optics.top), optics) - 1e-6)
+
+
+@compiled
+def last_row(v: float, optics: Record) -> int:
+    """Returns the lowest row that may be at or above the tangent v."""
+    return math.floor(row_before(max(v, -optics.top), optics) + 1e-6)
+
+
+@compiled
+def in_view(place: Array, reach: float, optics: Record) -> bool:
+    """Tells whether a ball may be in the field of view and in range; the place is in the eye's frame."""
+    x, y, z = abs(place[0]), abs(place[1]), place[2]
+    if z + reach <= 0.0 or math.sqrt(x * x + y * y + z * z) - reach > optics.range:
+        return False
+    right, top = optics.right, optics.top
+    return x - right * z <= reach * math.sqrt(1.0 + right * right) and y - top * z <= reach * math.sqrt(1.0 + top * top)
+
+
+@compiled
+def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optics: Record, joined: bool) -> None:
+    """Sets the rows on which an ellipsoid is seen, and bounds of its nearness; exactly, if it is wholly in front of the eye.
+
+    A row meets it where a plane through the eye does: (y - v z)^2 <= yy - 2 v yz + v^2 zz.
+
+    Args:
+        patch: Where they are set.
+        place: The centre in the eye's frame [m].
+        yy: With yz and zz, the squares of its half axes, turned into the eye's frame; a flat one will do [m^2].
+        yz: As above.
+        zz: As above.
+        optics: The eye's.
+        joined: Whether what is set already is to be widened, to what lies between this and another ellipsoid.
+    """
+    y, z, deep = place[1], place[2], math.sqrt(zz)
+    first, last = 0, optics.rows - 1
+    floor, ceiling = 1.0 / max(z + deep, 0.0), math.inf
+    if z > deep:
+        ceiling = 1.0 / (z - deep)
+        a, b = z * z - zz, y * z - yz
+        root = math.sqrt(max(b * b - a * (y * y - yy), 0.0))
+        first, last = max(first, first_row((b + root) / a, optics)), min(last, last_row((b - root) / a, optics))
+    if joined:
+        patch.first_row, patch.last_row = min(patch.first_row, first), max(patch.last_row, last)
+        patch.floor, patch.ceiling = min(patch.floor, floor), max(patch.ceiling, ceiling)
+    else:
+        patch.first_row, patch.last_row, patch.floor, patch.ceiling = first, last, floor, ceiling

@@ -1,0 +1,60 @@
+"""What may be set of a camera."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le, Lt
+
+from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError
+
+Width = Annotated[float, Gt(0), Le(math.radians(179))]
+"""A field of view; a flat screen of 180 degrees would be endless."""
+RIGHT_ANGLE = math.pi / 2
+SIXTY_DEGREES = math.pi / 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraParameters(Configuration):
+    """The field of view, the scan lines and what is seen."""
+
+    horizontal_fov: Width = RIGHT_ANGLE
+    """The angle between the left and the right edge of the screen [rad]."""
+    vertical_fov: Width = SIXTY_DEGREES
+    """The angle between its top and its bottom [rad]."""
+    rows: Annotated[int, Ge(1), Le(100_000)] = 100
+    """How many scan lines; each is looked at in its middle."""
+    precision: Annotated[float, Ge(0), Lt(1)] = 1e-4
+    """Gaps in one object that are narrower than this part of the screen's width are not told. Edges are exact to far less, and
+    things are never too narrow to be told."""
+    near: Annotated[float, Ge(0)] = 0.0
+    """Surfaces less deep than this are not seen [m along the line of sight]."""
+    range: Annotated[float, Gt(0)] | None = None
+    """What is farther away than this is not seen [m]; None: everything is seen."""
+    retinotopic: bool = False
+    """Whether equal parts of the screen are equal parts of the visual cortex: rows and columns by visual angle, fine in the
+    middle. Otherwise the screen is flat, as a photograph is."""
+    e2: Annotated[float, Gt(0)] = math.radians(0.75)
+    """The eccentricity at which the retinotopic screen is half as fine as in the middle [rad].
+
+    Source: Horton and Hoyt (1991), Archives of Ophthalmology 109: 17.3 mm / (E + 0.75 deg) of cortex for each degree.
+    """
+    own_limbs: bool = False
+    """Whether the agent sees the parts of its own body, each an object, or looks through them."""
+    background: tuple[str, ...] | None = None
+    """Names of geoms that hide others but are not told themselves; None: all planes."""
+    groups: tuple[Annotated[int, Ge(0), Le(5)], ...] | None = None
+    """The groups of geoms that are seen, from 0 to 5; None: all."""
+
+    def __post_init__(self) -> None:
+        """Checks all values.
+
+        Raises:
+            ConfigurationError: If a value is of a wrong type or out of bounds.
+        """
+        super().__post_init__()
+        if self.range is not None and self.range <= self.near:
+            raise ConfigurationError(f"CameraParameters.range: must be above near, {self.near:g} m (got {self.range!r})")

@@ -1,0 +1,98 @@
+"""Reads from a model what its geoms are made of."""
+
+from __future__ import annotations
+
+import numpy as np
+from mujoco import MjModel
+from numpy.typing import NDArray
+
+from actr3d.camera.eye import names_of
+from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, SDF
+from actr3d.camera.kernel.polyhedra import HFIELD_EXTRA_CORNERS
+from actr3d.camera.kernel.scene import Geoms, Topology
+from actr3d.errors import CameraError
+
+Faces = NDArray[np.int64]
+
+BOX_FACES: Faces = np.array([(1, 3, 7, 5), (0, 4, 6, 2), (2, 6, 7, 3), (0, 1, 5, 4), (4, 5, 7, 6), (0, 2, 3, 1)])
+"""The corners of a box's faces, anticlockwise seen from outside; bit 0 of a corner tells x, bit 1 y, bit 2 z."""
+
+
+def geoms_of(mj_model: MjModel) -> Geoms:
+    """Returns the parts of a model's memory that tell what its geoms look like."""
+    return Geoms(
+        size=mj_model.geom_size,
+        group=mj_model.geom_group,
+        rgba=mj_model.geom_rgba,
+        matid=mj_model.geom_matid,
+        mat_rgba=mj_model.mat_rgba,
+        rbound=mj_model.geom_rbound,
+        mesh_vert=mj_model.mesh_vert,
+        hfield_size=mj_model.hfield_size,
+        hfield_data=mj_model.hfield_data,
+    )
+
+
+def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int, ...] | None) -> Topology:
+    """Returns the kinds, objects and faces of a model's geoms.
+
+    Raises:
+        CameraError: If a geom is a signed distance field, which has no faces.
+    """
+    count = mj_model.ngeom
+    source = np.zeros((count, 4), np.int64)
+    corners, faces = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
+    all_faces: list[Faces] = [np.zeros((0, 4), np.int64)]
+    for geom in range(count):
+        number, its_faces = _faces_of(mj_model, geom, source[geom])
+        all_faces.append(np.where(its_faces < 0, -1, its_faces + corners[geom]))
+        corners[geom + 1], faces[geom + 1] = corners[geom] + number, faces[geom] + len(its_faces)
+    return Topology(
+        kind=np.array(mj_model.geom_type, np.int64),
+        objects=objects,
+        groups=np.array([groups is None or group in groups for group in range(6)]),
+        source=source,
+        corners=corners,
+        faces=faces,
+        face_corners=np.concatenate(all_faces),
+        face_geom=np.repeat(np.arange(len(faces) - 1), faces[1:] - faces[:-1]),
+    )
+
+
+def _faces_of(mj_model: MjModel, geom: int, source: NDArray[np.int64]) -> tuple[int, Faces]:
+    """Returns how many corners a geom has, and its faces; writes where its data are found."""
+    kind, data = int(mj_model.geom_type[geom]), int(mj_model.geom_dataid[geom])
+    if kind == SDF:
+        name = names_of(mj_model, "geom")[geom] or str(geom)
+        raise CameraError(f"geom '{name}' is a signed distance field (sdf), which the camera cannot see; use a mesh instead")
+    if kind == BOX:
+        return 8, BOX_FACES
+    if kind == MESH:
+        source[0] = mj_model.mesh_vertadr[data]
+        start, number = int(mj_model.mesh_faceadr[data]), int(mj_model.mesh_facenum[data])
+        return int(mj_model.mesh_vertnum[data]), _triangles(mj_model.mesh_face[start : start + number])
+    if kind == HFIELD:
+        rows, columns = int(mj_model.hfield_nrow[data]), int(mj_model.hfield_ncol[data])
+        source[:] = mj_model.hfield_adr[data], data, rows, columns
+        return 2 * rows * columns + HFIELD_EXTRA_CORNERS, _hfield_faces(rows, columns)
+    return 0, np.zeros((0, 4), np.int64)
+
+
+def _triangles(corners: NDArray[np.integer]) -> Faces:
+    return np.column_stack((corners, np.full(len(corners), -1))).astype(np.int64)
+
+
+def _hfield_faces(rows: int, columns: int) -> Faces:
+    """Returns the faces of a height field: two triangles a cell, its sides, and all six of its base.
+
+    The top of the base lies under the surface, and is seen from inside only, as by MuJoCo's rays.
+    """
+    grid = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = grid[:-1, :-1].ravel(), grid[:-1, 1:].ravel(), grid[1:, :-1].ravel(), grid[1:, 1:].ravel()
+    surface = _triangles(np.concatenate((np.column_stack((a, b, d)), np.column_stack((a, d, c)))))
+    ring = np.concatenate((grid[0, :-1], grid[:-1, -1], grid[-1, :0:-1], grid[:0:-1, 0]))
+    after = np.roll(ring, -1)
+    sides = np.column_stack((ring, after, after + grid.size, ring + grid.size))
+    border = grid[[0, 0, -1, -1], [0, -1, 0, -1]] + grid.size
+    base = np.concatenate((2 * grid.size + np.arange(HFIELD_EXTRA_CORNERS), border))
+    return np.concatenate((surface, sides, base[BOX_FACES]))

@@ -1,0 +1,291 @@
+"""What a camera promises beside exactness: labels that tell nothing, live changes, plain errors, no side effects."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+import tracemalloc
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from seeing import compiled, mujoco, seen
+
+from actr3d.camera import CameraParameters, GeometricCamera
+from actr3d.camera.kernel import jit
+from actr3d.errors import CameraError, ConfigurationError
+
+BALL = '<geom name="ball" type="sphere" size=".3" pos="3 0 1.5"/>'
+CROWD = [
+    '<body name="{0}1" pos="4 1 1.5"><geom type="box" size=".3 .3 .3"/></body>',
+    '<body name="{0}2" pos="4 .7 1.5"><geom type="box" size=".3 .3 .2"/><geom type="sphere" size=".2" pos="0 0 .3"/></body>',
+    '<body name="{0}3" pos="3 -1 1.7" euler="10 20 30"><geom name="{0}z" type="capsule" size=".2 .3"/></body>',
+    '<geom name="{0}4" type="cylinder" size=".3 .5" pos="3.5 -1.2 1.5"/>',
+    '<geom name="{0}5" type="ellipsoid" size=".3 .5 .1" pos="5 0 1.5"/>',
+]
+"""Two of them have faces in one plane."""
+
+
+def labels(view: Any) -> list[int]:
+    return view.as_array()["label"].tolist()
+
+
+def test_names_and_order_of_the_scene_change_nothing() -> None:
+    scenes = [("a", CROWD), ("box", CROWD[::-1]), ("q", CROWD[2:] + CROWD[:2])]
+    views = [seen("".join(thing.format(name) for thing in things))[1].as_array() for name, things in scenes]
+    assert len(views[0]) > 100
+    assert views[0].tobytes() == views[1].tobytes() == views[2].tobytes()
+
+
+def test_labels_are_given_in_the_order_of_appearance_and_kept() -> None:
+    mj_model, mj_data = compiled("".join(thing.format("a") for thing in CROWD))
+    camera = GeometricCamera(mj_model, site="eye")
+    first = labels(camera.look(mj_data))
+    seen_so_far: list[int] = []
+    for label in first:
+        if label not in seen_so_far:
+            seen_so_far.append(label)
+    assert seen_so_far == [1, 2, 3, 4, 5]
+    kept = camera.label_of("a5")
+    mj_model.geom_pos[mj_model.geom("a5").id] = 2, 0, 2.5  # now the topmost
+    mujoco.mj_forward(mj_model, mj_data)
+    assert labels(camera.look(mj_data))[0] == kept == camera.label_of("a5")
+
+
+def test_labels_can_be_taken_up_again() -> None:
+    mj_model, mj_data = compiled("".join(thing.format("a") for thing in CROWD))
+    camera, later = GeometricCamera(mj_model, site="eye"), GeometricCamera(mj_model, site="eye")
+    mj_model.geom_rgba[mj_model.geom("a4").id, 3] = 0
+    camera.look(mj_data)
+    before = camera.state()
+    assert pickle.loads(pickle.dumps(before)) == before
+    mj_model.geom_rgba[mj_model.geom("a4").id, 3] = 1
+    later.restore(before)
+    assert labels(later.look(mj_data)) == labels(camera.look(mj_data))
+    assert labels(GeometricCamera(mj_model, site="eye").look(mj_data)) != labels(camera.look(mj_data))
+    with pytest.raises(CameraError, match=r"restore: a state of 2 objects for a camera that has 5"):
+        camera.restore((1, 1, 0))
+
+
+def test_a_view_says_the_same_in_both_forms() -> None:
+    _, view = seen("".join(thing.format("a") for thing in CROWD), rows=12)
+    told = view.as_dict()
+    assert list(told) == [(row + 0.5) / 12 for row in range(12)]
+    assert {} in told.values()
+    array = view.as_array()
+    flat = [(y, label, *extent) for y, row in told.items() for label, some in row.items() for extent in some]
+    assert sorted(flat) == sorted(array[["y", "label", "x1", "x2", "d1", "d2", "a1", "a2"]].tolist())
+    assert (array["y"] == (array["row"] + 0.5) / 12).all()
+    with pytest.raises(ValueError, match="read-only"):
+        array["x1"] = 0
+    told.clear()
+    assert view.as_dict() != {}
+
+
+def test_looking_writes_nothing() -> None:
+    mj_model, mj_data = compiled("".join(thing.format("a") for thing in CROWD))
+    camera = GeometricCamera(mj_model, site="eye")
+    before = pickle.dumps(mj_data)
+    view = camera.look(mj_data).as_array().tobytes()
+    assert pickle.dumps(mj_data) == before
+    assert camera.look(mj_data).as_array().tobytes() == view
+
+
+def test_a_view_stays_as_it_was() -> None:
+    mj_model, mj_data = compiled(BALL)
+    camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=9))
+    view = camera.look(mj_data)
+    before = view.as_array().tobytes()
+    mj_model.geom_size[0, 0] = 0.5
+    assert camera.look(mj_data).as_array().tobytes() != before
+    assert view.as_array().tobytes() == before
+
+
+def test_live_changes_are_seen() -> None:
+    mocap = '<body name="wall" mocap="true" pos="3 0 1.5"><geom type="box" size=".1 .5 1"/></body>'
+    mj_model, mj_data = compiled(mocap)
+    camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=1))
+
+    def edges() -> list[float]:
+        mujoco.mj_kinematics(mj_model, mj_data)
+        return [edge for row in camera.look(mj_data).as_array() for edge in (row["x1"], row["x2"])]
+
+    assert edges() == pytest.approx([0.5 - 0.25 / 2.9, 0.5 + 0.25 / 2.9])
+    mj_data.mocap_pos[0] = 3, 0.5, 1.5
+    assert edges() == pytest.approx([0.5 - 0.5 / 2.9, 0.5])
+    mj_model.geom_size[0, 1] = 0.25
+    assert edges() == pytest.approx([0.5 - 0.375 / 2.9, 0.5 - 0.125 / 3.1])
+    mj_model.geom_rgba[0, 3] = 0
+    assert edges() == []
+
+
+def test_heights_are_read_at_each_look() -> None:
+    land = '<hfield name="land" nrow="4" ncol="4" size="1 1 1 .1" elevation="0 0 0 0 0 1 1 0 0 1 1 0 0 0 0 0"/>'
+    mj_model, mj_data = compiled('<geom type="hfield" hfield="land" pos="4 0 1"/>', land)
+    camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=1))
+    assert len(camera.look(mj_data).as_array()) == 1
+    mj_model.hfield_data[:] = 0
+    assert len(camera.look(mj_data).as_array()) == 0
+
+
+@pytest.mark.parametrize("alpha", [0, 1])
+def test_a_material_may_be_transparent(alpha: int) -> None:
+    material = f'<material name="m" rgba="1 1 1 {alpha}"/>'
+    _, view = seen('<geom type="sphere" size=".3" pos="3 0 1.5" material="m"/>', material)
+    assert (len(view.as_array()) > 0) == bool(alpha)
+
+
+def test_groups_of_geoms_can_be_left_out() -> None:
+    world = '<body><geom type="sphere" size=".3" pos="3 0 1.5" group="3"/><geom type="sphere" size=".2" pos="3 0 1.5" group="2"/></body>'
+    wide, narrow = (seen(world, rows=1, groups=groups)[1].as_array()[0] for groups in (None, (0, 1, 2)))
+    assert wide["x1"] < narrow["x1"]
+
+
+BODY = (
+    '<body name="torso" pos="0 0 1"><geom name="trunk" type="box" size=".1 .2 .5"/><site name="eye" pos=".2 0 .5"/>'
+    '<body pos=".5 .3 .4"><geom name="left" type="capsule" size=".05 .3"/></body>'
+    '<body pos=".5 -.3 .4"><geom name="right" type="capsule" size=".05 .3"/></body></body>'
+)
+
+
+def test_own_limbs_are_looked_through_or_seen_one_by_one() -> None:
+    mj_model, mj_data = compiled(BODY + '<body pos="2 0 1.5"><geom name="a" type="sphere" size=".1"/></body>', eye="<light/>")
+    blind = GeometricCamera(mj_model, site="eye")
+    assert set(labels(blind.look(mj_data))) == {blind.label_of("a")} == {1}
+    aware = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(own_limbs=True))
+    assert set(labels(aware.look(mj_data))) == {1, 2, 3}
+    assert {aware.label_of("a"), aware.label_of("left"), aware.label_of("right"), aware.label_of("trunk")} == {1, 2, 3, None}
+
+
+def test_more_extents_than_there_is_room_for_at_first() -> None:
+    fence = "".join(f'<geom type="box" size=".01 .01 1" pos="2 {y} 1.5"/>' for y in np.linspace(-1.5, 1.5, 90))
+    assert len(seen(fence, rows=5)[1].as_array()) == 5 * 90
+
+
+def test_no_memory_is_lost() -> None:
+    mj_model, mj_data = compiled(BALL)
+    camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=10))
+
+    def growth(looks: int) -> int:
+        before = tracemalloc.get_traced_memory()[0]
+        for _ in range(looks):
+            camera.look(mj_data)
+        return tracemalloc.get_traced_memory()[0] - before
+
+    tracemalloc.start()
+    try:
+        growth(20_000)  # Python keeps some small objects in store
+        assert growth(20_000) < 20_000  # less than a byte a look
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({}, r"name one of camera, site or body to look from \(got none\)"),
+        ({"site": "eye", "body": "world"}, r"\(got site='eye', body='world'\)"),
+        ({"site": "eyes"}, "no site 'eyes'; did you mean 'eye'"),
+        ({"site": ""}, "no site ''; there are: eye"),
+        ({"camera": "front"}, "no camera 'front'; this model has no named camera"),
+        ({"site": "eye", "parameters": CameraParameters(background=("bal",))}, "background: no geom 'bal'; did you mean 'ball'"),
+    ],
+)
+def test_what_does_not_exist_is_named(given: dict[str, Any], message: str) -> None:
+    mj_model, _ = compiled(BALL)
+    with pytest.raises(CameraError, match=message):
+        GeometricCamera(mj_model, **given)
+
+
+WRONG: dict[str, tuple[Any, ...]] = {
+    "horizontal_fov": (0, -1, math.pi, math.nan, "wide", True),
+    "vertical_fov": (math.inf,),
+    "rows": (0, 1.5, -3, 10**6, None),
+    "precision": (-1e-9, 1, math.nan),
+    "near": (-1, math.inf, math.nan),
+    "range": (0, -1, math.nan),
+    "retinotopic": (1,),
+    "e2": (0,),
+    "own_limbs": ("yes",),
+    "background": ("floor", (1,)),
+    "groups": ((6,), (-1,), 3, ("a",)),
+}
+
+
+@pytest.mark.parametrize(("field", "value"), [(field, value) for field, values in WRONG.items() for value in values])
+def test_wrong_parameters_are_told(field: str, value: Any) -> None:
+    with pytest.raises(ConfigurationError, match=rf"CameraParameters\.{field}.*: must be .* \(got "):
+        CameraParameters(**{field: value})
+
+
+def test_poses_must_be_there_and_be_numbers() -> None:
+    mj_model, mj_data = compiled(BALL)
+    camera = GeometricCamera(mj_model, site="eye")
+    with pytest.raises(CameraError, match=r"the pose of the site 'eye' was not computed; call mujoco\.mj_forward"):
+        camera.look(mujoco.MjData(mj_model))
+    mj_data.geom_xpos[0, 1] = math.nan
+    with pytest.raises(CameraError, match="the pose of geom 'ball' is no number"):
+        camera.look(mj_data)
+    mj_data.site_xpos[0, 1] = math.inf
+    with pytest.raises(CameraError, match="the pose of the site 'eye' is no number"):
+        camera.look(mj_data)
+    _, other = compiled(BALL + '<geom size=".1"/>')
+    with pytest.raises(CameraError, match="mj_data belongs to another model: 2 geoms, not 1"):
+        camera.look(other)
+    with pytest.raises(CameraError, match="label_of: no geom 'bell'"):
+        camera.label_of("bell")
+
+
+def test_an_empty_world_is_seen_as_empty() -> None:
+    _, view = seen("", rows=3)
+    assert view.as_dict() == {0.5 / 3: {}, 1.5 / 3: {}, 2.5 / 3: {}}
+
+
+def test_a_distance_field_is_refused() -> None:
+    field = """<mujoco><extension><plugin plugin="mujoco.sdf.torus"><instance name="t"/></plugin></extension>
+      <asset><mesh name="m"><plugin instance="t"/></mesh></asset>
+      <worldbody><site name="eye"/><geom name="ring" type="sdf" mesh="m"><plugin instance="t"/></geom></worldbody></mujoco>"""
+    mj_model = mujoco.MjModel.from_xml_string(field)
+    with pytest.raises(CameraError, match="geom 'ring' is a signed distance field"):
+        GeometricCamera(mj_model, site="eye")
+
+
+def test_the_library_is_imported_without_the_camera() -> None:
+    code = "import sys, actr3d, actr3d.actr, actr3d.cli; print(sorted({'numba', 'numpy', 'mujoco'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"
+
+
+def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> None:
+    lines = ("from actr3d.camera.kernel.jit import kept", "add = kept(lambda a, b: a + b)", "print(add(1, 2), type(add._cache).__name__)")
+    (tmp_path / "adding.py").write_text("\n".join(lines))
+    for places, cache in (("InTreeCacheLocator", "FunctionCache"), ("ZipCacheLocator", "NullCache")):
+        run = [sys.executable, str(tmp_path / "adding.py")]
+        environment = {**os.environ, "NUMBA_CACHE_LOCATOR_CLASSES": places}
+        assert subprocess.run(run, check=True, capture_output=True, text=True, env=environment).stdout == f"3 {cache}\n"
+
+
+def test_old_code_is_not_used_after_any_file_has_changed(tmp_path: Path) -> None:
+    for path in Path(jit.__file__).parent.glob("*.py"):
+        shutil.copy(path, tmp_path)
+
+    def digest() -> int:
+        spec = importlib.util.spec_from_file_location("copied_jit", tmp_path / "jit.py")
+        assert spec is not None
+        assert spec.loader is not None
+        module = ModuleType("copied_jit")
+        module.__file__ = str(tmp_path / "jit.py")
+        spec.loader.exec_module(module)
+        return module.sources_digest()
+
+    before = digest()
+    assert before == jit.sources_digest()
+    with (tmp_path / "roots.py").open("a") as file:
+        file.write("# changed\n")
+    assert digest() != before
