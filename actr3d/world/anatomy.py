@@ -56,6 +56,9 @@ class Anatomy:
     push: tuple[str, str, str] | None = None
     """The servos that walk forward, to the left and turn; None cannot walk."""
 
+    noise: tuple[tuple[str, float], ...] = ()
+    """Of sensors that are never exact: the word and the standard deviation of every number it reads, in its unit."""
+
     steering: Steering | None = None
     """How it is driven; None cannot be driven."""
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from mujoco import MjModel, MjSpec, mjtBias, mjtGain, mjtTrn
+import mujoco
+import numpy as np
+from mujoco import MjData, MjModel, MjSpec, mjtBias, mjtGain, mjtTrn
 
 
 def add_servo(mj_spec: MjSpec, name: str, target: str, force: float, gear: tuple[float, ...] | None = None) -> None:
@@ -27,15 +29,27 @@ def add_servo(mj_spec: MjSpec, name: str, target: str, force: float, gear: tuple
     _tune(actuator, 1.0)
 
 
-def fit_servos(mj_model: MjModel, names: Iterable[str]) -> None:
-    """Gives each servo the highest gain that cannot make it rattle.
+def fit_servos(mj_model: MjModel, mj_data: MjData, names: Iterable[str]) -> None:
+    """Gives each servo the highest gain that cannot make it rattle, from the inertia it moves while all else is held.
 
     While its force is at its bound, one step changes the speed by force * step / inertia; the band of speeds in which it is
-    not at its bound is 2 * force / gain wide. A gain of inertia / step makes the band twice as wide as the change.
+    not at its bound is 2 * force / gain wide. A gain of inertia / step makes the band twice as wide as the change; with
+    more than twice that gain the speed can jump over the band, back and forth for ever.
+
+    Args:
+        mj_model: The model whose gains are set.
+        mj_data: Its state at the start, positions up to date.
+        names: The servos.
     """
     for name in names:
         actuator = mj_model.actuator(name)
-        _tune(actuator, 1 / (float(mj_model.actuator_acc0[actuator.id]) * mj_model.opt.timestep))
+        moment, product = np.zeros(mj_model.nv), np.zeros(mj_model.nv)
+        start = mj_data.moment_rowadr[actuator.id]
+        row = slice(start, start + mj_data.moment_rownnz[actuator.id])
+        moment[mj_data.moment_colind[row]] = mj_data.actuator_moment[row]
+        mujoco.mj_mulM(mj_model, mj_data, product, moment)
+        inertia = float(moment @ product) / float(moment @ moment) ** 2
+        _tune(actuator, inertia / mj_model.opt.timestep)
 
 
 def _tune(actuator: Any, gain: float) -> None:
