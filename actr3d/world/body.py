@@ -20,6 +20,7 @@ from actr3d.world.joints import Base, Joint
 from actr3d.world.noise import Noise, Sd
 from actr3d.world.running import Running
 from actr3d.world.sensors import SENSORS
+from actr3d.world.sensors.touch import Touch
 
 if TYPE_CHECKING:
     from actr3d.world.world import World
@@ -37,6 +38,9 @@ class BodyState:
 
     held: tuple[tuple[str, Held], ...]
     """What each hand holds and how."""
+
+    touched: tuple[Touch, ...] | None
+    """What the skin has felt in the last tick; None before anyone asks."""
 
 
 class Body:
@@ -75,6 +79,8 @@ class Body:
         self.skin: tuple[str, ...] = tuple(self.geom_name(geom) for geom in self.feeling.tolist())
         self.hands: dict[str, Hand] = {self.short(name).removesuffix("_hand"): Hand(world, name) for name in self.anatomy.hands}
         self.running = Running(self)
+        self.touched: tuple[Touch, ...] | None = None
+        """What the skin has felt in the last tick; None before anyone asks."""
         self.noise = Noise(world.seed, self.name)
         self.extent = Extent(world, self.geoms)
         self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
@@ -111,32 +117,34 @@ class Body:
         self._known("actuator", word, self.actuators)
         ACTUATORS[word](self, *values, **named)
 
-    def get(self, word: str, *, noise: Sd = None, **options: Any) -> Any:
+    def get(self, word: str, *values: Any, noise: Sd = None, **options: Any) -> Any:
         """Reads a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
 
         Args:
             word: One of `sensors`; see the functions in the `sensors` package.
+            values: What the sensor takes.
             noise: The standard deviation that is added to every number of the reading, in its unit, or by field; None is
                 what the body's description says, if anything.
-            options: What the sensor takes.
+            options: The same, by name.
 
         Raises:
             WorldError: If there is no such sensor, or an option is not what it takes.
         """
         self._known("sensor", word, self.sensors)
-        reading = SENSORS[word](self, **options)
+        reading = SENSORS[word](self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
 
     def state(self) -> BodyState:
         """Returns what is not in the physics state: commands on their way, noise, what hands hold."""
         held = tuple((side, hand.held) for side, hand in self.hands.items() if hand.held is not None)
-        return BodyState(running=self.running.state(), noise=self.noise.state(), held=held)
+        return BodyState(running=self.running.state(), noise=self.noise.state(), held=held, touched=self.touched)
 
     def restore(self, state: BodyState) -> None:
         """Brings back a state of its own, after the physics state."""
         self.running.restore(state.running)
         self.noise.restore(state.noise)
+        self.touched = state.touched
         held = dict(state.held)
         for side, hand in self.hands.items():
             hand.restore(held.get(side))

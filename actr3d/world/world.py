@@ -16,6 +16,7 @@ from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
+from actr3d.world.sensors.touch import step_and_feel
 from actr3d.world.servo import fit_servos
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
@@ -83,7 +84,11 @@ class World:
         running = [body.running for body in self.bodies.values() if body.running]
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
-        mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+        feeling = [body for body in self.bodies.values() if body.touched is not None]
+        if feeling:
+            step_and_feel(self, feeling, steps)
+        else:
+            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
         self._steps += steps
         self.changed()
         for commands in running:

@@ -6,6 +6,8 @@ import math
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
+import mujoco
+import numpy as np
 from mujoco import MjSpec, mjtEq, mjtGeom, mjtJoint, mjtObj
 
 from actr3d.world.bodies.base import add_base
@@ -27,8 +29,9 @@ HINGED = (
 CLEARANCE = 0.005
 """Between the legs and the floor [m], so that gliding meets no friction."""
 
-ARMATURE = 0.02
-"""Inertia added to every hinge [kg m^2], so that thin limbs move as steadily as thick ones. Ours."""
+BRISKNESS = 100.0
+"""How fast its full strength can speed up a joint [rad/s^2], from which its armature follows: inertia against the segment that
+carries it. With less of it, thin limbs on strong joints rattle for ever once a shove has set them off. Ours."""
 
 TURN = 150.0
 """The most the legs turn the body with [N m]. Ours, of the order of a trunk's rotation."""
@@ -58,7 +61,7 @@ class Limbs:
         self._trunk("pelvis", 0.50, 0.64, 0.191 * tall, 0.142)
         self._segment("torso", "pelvis", (0, 0, 0.60 * tall))
         width = 0.191 * tall if person.trunk == "ellipsoid" else 2 * self.shoulder_y
-        self._trunk("torso", 0.58, 0.85, min(width, 2 * self.shoulder_y), 0.335)
+        self._trunk("torso", 0.58, 0.85, min(width, 2 * self.shoulder_y), 0.325)
         for side, sign in zip(SIDES, (1, -1), strict=True):
             self._shoulder(side, sign)
             self._arm(side, sign)
@@ -95,9 +98,9 @@ class Limbs:
                 axis=_AXES[hinge],
                 range=limits,
                 limited=True,
-                armature=ARMATURE,
+                armature=strength_of(part) / BRISKNESS,
                 solref_limit=WALL_SOLREF,
-                solimp_limit=[0.99, 0.999, 0.001, 0.5, 2],
+                solimp_limit=[0.999, 0.9999, 0.001, 0.5, 2],
             )
         self.bodies[part] = (body, joint)
 
@@ -110,14 +113,14 @@ class Limbs:
     def _shoulder(self, side: str, sign: int) -> None:
         """Adds the segment from the breastbone to the shoulder joint, and the round of the joint."""
         part, r = f"{side}_shoulder", self.deltoid
-        inner, outer = 0.015 * self.person.height * sign, self.shoulder_y * sign
-        self._segment(part, "torso", (0, inner, self.shoulder_z))
+        outer = self.shoulder_y * sign
+        self._segment(part, "torso", (0, 0, self.shoulder_z))
         if self.person.trunk == "box":
-            y = (inner + outer + sign * r) / 2
-            half = (self.person.depth / 2, abs(y - inner), r)
+            y = (outer + sign * r) / 2
+            half = (self.person.depth / 2, abs(y), r)
             self._geom(part, part, mjtGeom.mjGEOM_BOX, (0, y, self.shoulder_z), half, 0.01)
         else:
-            self._capsule(part, part, (0, inner, self.shoulder_z), (0, outer, self.shoulder_z), 0.9 * r, 0.01)
+            self._capsule(part, part, (0, 0, self.shoulder_z), (0, outer, self.shoulder_z), 0.9 * r, 0.01)
         self._geom(part, f"{side}_shoulder_joint", mjtGeom.mjGEOM_SPHERE, (0, outer, self.shoulder_z), (r, 0, 0), 0.005)
 
     def _arm(self, side: str, sign: int) -> None:
@@ -210,7 +213,9 @@ class Limbs:
     def _capsule(self, part: str, name: str, start: Point, end: Point, r: float, mass: float, colour: Any = None) -> None:
         middle: Any = tuple((a + b) / 2 for a, b in zip(start, end, strict=True))
         geom = self._geom(part, name, mjtGeom.mjGEOM_CAPSULE, middle, (r, math.dist(start, end) / 2, 0), mass, colour)
-        geom.alt.zaxis = [b - a for a, b in zip(start, end, strict=True)]
+        turn = np.zeros(4)
+        mujoco.mju_quatZ2Vec(turn, np.subtract(end, start))
+        geom.quat = turn
 
     def _geom(self, part: str, name: str, kind: Any, at: Point, size: Any, mass: float, colour: Any = None, touches: bool = True) -> Any:
         """Adds a geom of a share of the mass; its contacts are as stiff and as slippery as ours, whatever it meets."""
