@@ -59,6 +59,7 @@ class World:
         self._steps = 0
         self._refreshed = False
         self._solved = False
+        self._scratch: MjData | None = None
         self._state_size: int = mujoco.mj_stateSize(self.mj_model, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
         mujoco.mj_forward(self.mj_model, self.mj_data)
@@ -118,6 +119,18 @@ class World:
             mujoco.mj_forwardSkip(self.mj_model, self.mj_data, mujoco.mjtStage.mjSTAGE_POS, 1)
             self.mj_data.qacc_warmstart[:] = start
             self._solved = True
+
+    def accelerations(self) -> NDArray[np.float64]:
+        """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2] [rad/s^2].
+
+        MuJoCo's `qacc` leaves out that the integrator is implicit: with stiff servos it is not what happens.
+        """
+        if self._scratch is None:
+            self._scratch = MjData(self.mj_model)
+        mj_state = self.state().mj_state
+        mujoco.mj_setState(self.mj_model, self._scratch, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        mujoco.mj_step(self.mj_model, self._scratch)
+        return (self._scratch.qvel - self.mj_data.qvel) / self.mj_model.opt.timestep
 
     def state(self) -> WorldState:
         """Returns the present state, apart from the world: later steps do not change it."""

@@ -1,7 +1,7 @@
 """Where a body is and how it moves: pose, velocity, accelerometer, gyroscope, joints, and what its hands hold.
 
-Of the present state: positions and speeds are those after the last physics step. Accelerations are those that the solver
-finds for this state, contacts included; MuJoCo's own accelerometer would still say those of the step before.
+Of the present state: positions and speeds are those after the last physics step. Accelerations are those of the physics
+step to come, contacts included; MuJoCo's own accelerometer would still say those of the step before.
 """
 
 from __future__ import annotations
@@ -107,9 +107,13 @@ def accelerometer(body: Body, part: str | None = None) -> Vector:
     """
     world = body.world
     world.solve()
-    mujoco.mj_rnePostConstraint(world.mj_model, world.mj_data)
+    mj_data = world.mj_data
+    solved = mj_data.qacc.copy()
+    mj_data.qacc[:] = world.accelerations()
+    mujoco.mj_rnePostConstraint(world.mj_model, mj_data)
+    mj_data.qacc[:] = solved
     felt: NDArray[np.float64] = np.zeros(6)
-    mujoco.mj_objectAcceleration(world.mj_model, world.mj_data, mjtObj.mjOBJ_XBODY, _head(body, part), felt, 1)
+    mujoco.mj_objectAcceleration(world.mj_model, mj_data, mjtObj.mjOBJ_XBODY, _head(body, part), felt, 1)
     x, y, z = felt[3:].tolist()
     return (x, y, z)
 
