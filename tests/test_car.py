@@ -37,8 +37,10 @@ def test_it_drives_the_circle_of_a_bicycle(wheel: float, speed: float) -> None:
         world.step(5)
         path.append(car.base.place[:2])
     points = np.array(path)
-    fit: Any = np.linalg.lstsq(np.c_[2 * points, np.ones(len(points))], (points**2).sum(axis=1), rcond=None)[0]
-    assert math.sqrt(fit[2] + fit[0] ** 2 + fit[1] ** 2) == near(2.665 / abs(math.tan(wheel / 16)), rel=4e-3)
+    # A circle's points: x^2 + y^2 = 2 a x + 2 b y + c, with the middle (a, b) and c = r^2 - a^2 - b^2.
+    least_squares: Any = np.linalg.lstsq
+    a, b, c = least_squares(np.c_[2 * points, np.ones(len(points))], (points**2).sum(axis=1), rcond=None)[0]
+    assert math.sqrt(c + a * a + b * b) == near(2.665 / abs(math.tan(wheel / 16)), rel=4e-3)
     turn = car.get("velocity").angular[2]
     assert turn == near(car.get("velocity").linear[0] * math.tan(wheel / 16) / 2.665, rel=4e-3)
 

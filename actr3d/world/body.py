@@ -68,6 +68,7 @@ class Body:
             self.members[number] = number == self.root or self.members[model.body_parentid[number]]
         self.geoms: NDArray[np.intp] = np.flatnonzero(self.members[model.geom_bodyid])
         self.parts: tuple[str, ...] = tuple(self.part_name(int(number)) for number in np.flatnonzero(self.members))
+        self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(world, self.root, self.anatomy)
         self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints()}
         self.controls: dict[str, int] = self._controls()
@@ -190,6 +191,9 @@ class Body:
 
     def geom_name(self, geom: int) -> str:
         """Returns what one of its geoms is called: its own name, else that of its part."""
+        return self._geom_names[geom]
+
+    def _geom_name(self, geom: int) -> str:
         model = self.world.mj_model
         return self.short(model.geom(geom).name) or self.part_name(int(model.geom_bodyid[geom]))
 

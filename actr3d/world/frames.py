@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import mujoco
 import numpy as np
+from mujoco import mjtObj
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, did_you_mean
@@ -40,12 +42,12 @@ def frame_of(body: Body, name: str) -> Frame:
         return (data.xpos[body.root], data.xmat[body.root].reshape(3, 3))
     model: Any = body.world.mj_model
     for called in (body.anatomy.prefix + name, name):
-        for look, positions, matrices in ((model.site, data.site_xpos, data.site_xmat), (model.body, data.xpos, data.xmat)):
-            try:
-                number = look(called).id
-            except KeyError:
-                continue
-            return (positions[number], matrices[number].reshape(3, 3))
+        site = mujoco.mj_name2id(model, mjtObj.mjOBJ_SITE, called)
+        if site >= 0:
+            return (data.site_xpos[site], data.site_xmat[site].reshape(3, 3))
+        number = mujoco.mj_name2id(model, mjtObj.mjOBJ_BODY, called)
+        if number >= 0:
+            return (data.xpos[number], data.xmat[number].reshape(3, 3))
     known = ["world", "body", *body.parts]
     raise WorldError(f"{body.name}: no frame, part or site '{name}'{did_you_mean(name, known)}; there are {', '.join(known)}")
 

@@ -26,7 +26,7 @@ class Joint:
         self.lower: float = float(model.jnt_range[number, 0]) if limited else -math.inf
         self.upper: float = float(model.jnt_range[number, 1]) if limited else math.inf
         self._qpos, self._qvel, self._ctrl = data.qpos, data.qvel, data.ctrl
-        self._q, self._v = int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
+        self.q, self.v = int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
         self._servo = _servo_of(model, number)
 
     @property
@@ -37,12 +37,12 @@ class Joint:
     @property
     def position(self) -> float:
         """Where it is [rad] or [m]."""
-        return float(self._qpos[self._q])
+        return float(self._qpos[self.q])
 
     @property
     def velocity(self) -> float:
         """How fast it moves [rad/s] or [m/s]."""
-        return float(self._qvel[self._v])
+        return float(self._qvel[self.v])
 
     def drive(self, speed: float, free: Callable[[], bool]) -> None:
         """Tells its servo to keep a speed [rad/s].
@@ -61,11 +61,11 @@ class Joint:
             return
         self._ctrl[self._servo] = speed
         if speed == 0 or free():
-            self._qvel[self._v] = speed
+            self._qvel[self.v] = speed
 
     def put(self, position: float) -> None:
         """Puts it at a position [rad] or [m], at once."""
-        self._qpos[self._q] = position
+        self._qpos[self.q] = position
 
     @property
     def driven(self) -> bool:

@@ -63,6 +63,8 @@ class World:
         self._state_size: int = mujoco.mj_stateSize(self.mj_model, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
         mujoco.mj_forward(self.mj_model, self.mj_data)
+        self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
+        """By geom: what the object is called that it belongs to; a geom that lies in the world itself has its own name."""
         described = [part for part in scene.parts if isinstance(part, Embodied)]
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
@@ -187,6 +189,10 @@ class World:
         if name not in free:
             raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(name, free)}")
         return free[name]
+
+    def _owner(self, geom: int) -> str:
+        root = int(self.mj_model.body_rootid[self.mj_model.geom_bodyid[geom]])
+        return str(self.mj_model.body(root).name if root else self.mj_model.geom(geom).name)
 
     def _aperture(self, name: str) -> Aperture:
         if name not in self._apertures:

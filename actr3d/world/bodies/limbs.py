@@ -33,6 +33,9 @@ BRISKNESS = 100.0
 """How fast its full strength can speed up a joint [rad/s^2], from which its armature follows: inertia against the segment that
 carries it. With less of it, thin limbs on strong joints rattle for ever once a shove has set them off. Ours."""
 
+AHEAD = 0.002
+"""From the front of the eye to where it sees from [m], so that its own ball is not in the way."""
+
 TURN = 150.0
 """The most the legs turn the body with [N m]. Ours, of the order of a trunk's rotation."""
 
@@ -165,8 +168,9 @@ class Limbs:
         self._segment("eye", "head", (front - r, 0, person.eyes))
         self._geom("eye", "eye", mjtGeom.mjGEOM_SPHERE, (front - r, 0, person.eyes), (r, 0, 0), 0.0001, touches=False)
         body, _ = self.bodies["eye"]
-        body.add_site(name=self._name("eye"), pos=[r, 0, 0])
-        body.add_camera(name=self._name("eye"), pos=[r, 0, 0], xyaxes=[0, -1, 0, 0, 0, 1], fovy=60)
+        ahead = [r + AHEAD, 0, 0]
+        body.add_site(name=self._name("eye"), pos=ahead)
+        body.add_camera(name=self._name("eye"), pos=ahead, xyaxes=[0, -1, 0, 0, 0, 1], fovy=60)
 
     def _load(self) -> None:
         """Adds the load to the right hand, and ties it to the left one."""

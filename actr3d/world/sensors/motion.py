@@ -121,11 +121,13 @@ def accelerometer(body: Body, part: str | None = None) -> Vector:
 @sensor
 def joints(body: Body) -> dict[str, JointReading]:
     """Senses all joints."""
+    data = body.world.mj_data
+    positions, velocities = data.qpos.tolist(), data.qvel.tolist()
     readings: dict[str, JointReading] = {}
     for name, joint in body.joints.items():
-        at = joint.position
+        at = positions[joint.q]
         limit = "lower" if at <= joint.lower + AT_LIMIT else "upper" if at >= joint.upper - AT_LIMIT else None
-        readings[name] = JointReading(position=at, velocity=joint.velocity, limit=limit)
+        readings[name] = JointReading(position=at, velocity=velocities[joint.v], limit=limit)
     return readings
 
 

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from actr3d.world.frames import frame_of
 from actr3d.world.sensors.registry import sensor
-from actr3d.world.sensors.touch import object_name
 from actr3d.world.words import number
 
 if TYPE_CHECKING:
@@ -79,7 +78,7 @@ def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
             nearest, found = distance, (mine, other)
     if found is None:
         return None
-    return Proximity(distance=nearest, part=body.geom_name(found[0]), other=object_name(model, found[1]))
+    return Proximity(distance=nearest, part=body.geom_name(found[0]), other=body.world.owners[found[1]])
 
 
 def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -78,11 +78,5 @@ def _touches(body: Body) -> tuple[Touch, ...]:
         mine, other = pairs[number] if ours[number, 0] else pairs[number][::-1]
         if int(mine) in body.feels and data.contact.dist[number] <= 0:
             mujoco.mj_contactForce(model, data, number, wrench)
-            forces[body.geom_name(int(mine)), object_name(model, int(other))] += float(wrench[0])
+            forces[body.geom_name(int(mine)), body.world.owners[int(other)]] += float(wrench[0])
     return tuple(Touch(part=part, other=other, force=force) for (part, other), force in sorted(forces.items()))
-
-
-def object_name(model: Any, geom: int) -> str:
-    """Returns what an object in the world is called: its body's name, or its own where it lies in the world itself."""
-    root = int(model.body_rootid[model.geom_bodyid[geom]])
-    return str(model.body(root).name if root else model.geom(geom).name)
