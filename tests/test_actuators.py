@@ -119,6 +119,7 @@ def test_what_is_grasped_comes_along_until_released() -> None:
     ticks(world, 100)
     body.set("walk", 1.0)
     ticks(world, 50)
+    assert body.get("pose").x == near(0.5, abs=0.01)
     body.set("stop")
     ticks(world, 50)
     world.refresh()
@@ -135,6 +136,21 @@ def test_what_is_grasped_comes_along_until_released() -> None:
     world.refresh()
     assert body.get("grasp")["right"] is None
     assert cup.xpos[2] < 0.2
+
+
+def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
+    world, body = living(Loose(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
+    body.set("grasp", "tray", "left")
+    body.set("grasp", "tray", "right")
+    assert body.get("grasp") == {"left": "tray", "right": "tray"}
+    body.set("release", "left")
+    ticks(world, 100)
+    world.refresh()
+    assert world.mj_data.body("tray").xpos[2] == near(0.66, abs=0.02)
+    body.set("release")
+    ticks(world, 100)
+    world.refresh()
+    assert world.mj_data.body("tray").xpos[2] < 0.2
 
 
 def test_nothing_out_of_reach_is_grasped() -> None:

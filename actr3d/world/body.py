@@ -121,6 +121,9 @@ class Body:
     def get(self, word: str, *values: Any, noise: Sd = None, **options: Any) -> Any:
         """Reads a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
 
+        This is for minds. Who only looks on calls the functions of the `sensors` package (for contacts `touch.present`):
+        they use up no random numbers and start no watch.
+
         Args:
             word: One of `sensors`; see the functions in the `sensors` package.
             values: What the sensor takes.
@@ -169,13 +172,20 @@ class Body:
         return self.controls[name]
 
     def free(self) -> bool:
-        """Returns whether nothing of it touches anything else, at the present positions."""
+        """Returns whether neither it nor what it holds touches anything else, at the present positions."""
         self.world.refresh()
         data = self.world.mj_data
         if data.ncon == 0:
             return True
-        ours = self.members[self.world.mj_model.geom_bodyid[data.contact.geom]]
+        ours = self.own()[data.contact.geom]
         return not np.any(ours[:, 0] != ours[:, 1])
+
+    def own(self) -> NDArray[np.bool_]:
+        """Returns for each geom of the world whether it is part of the body or held by it."""
+        own: NDArray[np.bool_] = self.members[self.world.mj_model.geom_bodyid]
+        for hand in self.hands.values():
+            own[list(hand.geoms)] = True
+        return own
 
     def short(self, name: str) -> str:
         """Returns a MuJoCo element's name as this body calls it."""

@@ -66,8 +66,11 @@ class Hand:
         data.xfrc_applied[object, :3] = -model.opt.gravity * model.body_mass[object]
 
     def release(self) -> None:
-        """Lets go of what it holds, if anything."""
-        if self.held is not None:
+        """Lets go of what it holds, if anything; another hand that holds it too goes on carrying it."""
+        others = {
+            hand.held.object for body in self._world.bodies.values() for hand in body.hands.values() if hand is not self and hand.held
+        }
+        if self.held is not None and self.held.object not in others:
             self._world.mj_data.xfrc_applied[self.held.object, :3] = 0
         self._world.mj_data.eq_active[self._weld] = 0
         self.restore(None)

@@ -87,20 +87,12 @@ def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
     mine = body.feeling
     solid = (model.geom_contype | model.geom_conaffinity) != 0
     ground = (model.geom_type == int(mjtGeom.mjGEOM_PLANE)) | (model.geom_type == int(mjtGeom.mjGEOM_HFIELD))
-    solid &= ~ground & ~_own(body)
+    solid &= ~ground & ~body.own()
     others = np.flatnonzero(solid)
     between = np.linalg.norm(data.geom_xpos[mine][:, None] - data.geom_xpos[others][None], axis=2)
     bounds = between - model.geom_rbound[mine][:, None] - model.geom_rbound[others][None]
     near = np.argwhere(bounds < reach)
     return sorted((float(bounds[i, j]), int(mine[i]), int(others[j])) for i, j in near.tolist())
-
-
-def _own(body: Body) -> NDArray[np.bool_]:
-    """Returns for each geom of the world whether it is the body's or held by it."""
-    own = np.array(body.members[body.world.mj_model.geom_bodyid])
-    for hand in body.hands.values():
-        own[list(hand.geoms)] = True
-    return own
 
 
 def _cast(body: Body, at: str | None, angles: NDArray[np.float64], elevation: float, reach: float) -> tuple[float | None, ...]:
@@ -114,7 +106,7 @@ def _cast(body: Body, at: str | None, angles: NDArray[np.float64], elevation: fl
     hit: NDArray[np.int32] = np.full(len(ways), -1, dtype=np.int32)
     far: NDArray[np.float64] = np.zeros(len(ways))
     mujoco.mj_multiRay(model, data, origin, ways.ravel(), None, 1, -1, hit, far, None, len(ways), reach)
-    own = _own(body)
+    own = body.own()
     for ray in np.flatnonzero((hit >= 0) & own[hit]).tolist():
         far[ray] = _past(model, data, origin, ways[ray], own, float(far[ray]))
     return tuple(distance if 0 <= distance <= reach else None for distance in far.tolist())
