@@ -11,6 +11,7 @@ from mujoco import MjSpec
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy
+from actr3d.world.bodies.limbs import HINGED, HINGES, SIDES, Limbs
 from actr3d.world.bodies.load import Load
 from actr3d.world.parts import Colour, Length, Name
 
@@ -96,14 +97,10 @@ class Mannequin(Configuration):
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds all segments, joints and servos, and what its hands can hold things with."""
-        from actr3d.world.bodies.limbs import Limbs
-
         Limbs(self, mj_spec).build()
 
     def anatomy(self) -> Anatomy:
         """Returns what a `Body` needs to know of it."""
-        from actr3d.world.bodies.limbs import HINGED, HINGES, SIDES
-
         prefix = f"{self.name}_"
         push = (f"{prefix}forward", f"{prefix}sideways", f"{prefix}turn")
         joints = tuple(f"{prefix}{segment}_{hinge}" for segment in HINGED for hinge in HINGES)
