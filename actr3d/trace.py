@@ -32,6 +32,7 @@ KINDS = {
     "utility": "a production's utility has become this by learning",
     "request": "a module is asked for something; a memory's request with all candidates",
     "retrieval": "a memory's answer arrives, or its failure",
+    "answer": "a body answers what it was asked for",
     "output": "the model prints a line",
     "command": "a user changes the run",
 }

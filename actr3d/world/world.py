@@ -52,6 +52,8 @@ class World:
         self._mocap_moved = False
         self._state_size: int = mujoco.mj_stateSize(self.mj_model, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
+        self.bodies: dict[str, Any] = {}
+        """The bodies by name."""
         mujoco.mj_forward(self.mj_model, self.mj_data)
 
     @property

@@ -1,0 +1,133 @@
+"""What is told of a run while it goes on: its trace, its listeners and its recording."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from actr3d.actr.modules.port import Request
+from actr3d.errors import ParameterError
+from actr3d.recording import Recording
+from actr3d.simulation.commands import Command
+from actr3d.trace import LEVELS, Trace, TraceEvent
+from actr3d.world import World
+
+Listener = Callable[[TraceEvent], object]
+
+
+class Journal:
+    """Hands everything that happens to who listens, and to the recording each thing once.
+
+    A run that has gone back to an earlier time lives through what was recorded already. Because the same things happen
+    in the same order, counting them tells which are new.
+
+    Args:
+        level: What the trace records; one of `actr3d.trace.LEVELS`.
+    """
+
+    def __init__(self, level: str) -> None:
+        self._level = level
+        self._keep = level != "none"
+        self._listeners: list[Listener] = []
+        self._recording: Recording | None = None
+        self._failure: Exception | None = None
+        self.silent = False
+        """Whether the past is being gone through again on the way to another time, which no listener is to hear."""
+        self.trace: Trace | None = None
+        """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
+        self._events = self._answers = 0
+        self._held: list[TraceEvent] | None = None
+
+    def raise_level(self, level: str) -> None:
+        """Lets the next trace record at least as much as a level.
+
+        Raises:
+            ParameterError: If the level is unknown.
+        """
+        self._level = max(self._level, Trace(level).level, key=LEVELS.index)
+
+    def listen(self, listener: Listener) -> None:
+        """Calls a listener with every event from now on.
+
+        Raises:
+            ParameterError: If nothing is traced.
+        """
+        if self.trace is not None and not self._listeners and self._recording is None:
+            self.trace.listen(self._hear)
+        if self._level == "none":
+            raise ParameterError("nothing is traced; make the simulation with trace='all', or another level")
+        self._listeners.append(listener)
+
+    def record(self, recording: Recording) -> None:
+        """Lets everything be recorded."""
+        self.raise_level("all")
+        self._recording = recording
+
+    def begin(self) -> Trace | None:
+        """Begins a new trace, of a run that is at its start; returns it, or None where nobody wants one."""
+        self._events = self._answers = 0
+        self._failure = None
+        self.trace = None if self._level == "none" else Trace(self._level, keep=self._keep)
+        if self.trace is not None and (self._listeners or self._recording is not None):
+            self.trace.listen(self._hear)
+        return self.trace
+
+    @contextmanager
+    def holding(self) -> Generator[None]:
+        """Holds events back inside the block: whether they belong to the known run or to a new one is decided there."""
+        held = self._held = []
+        try:
+            yield
+        finally:
+            self._held = None
+            for event in held:
+                self._hear(event)
+
+    def _hear(self, event: TraceEvent) -> None:
+        if self._held is not None:
+            self._held.append(event)
+            return
+        self._events += 1
+        try:
+            if self._recording is not None and self._events > self._recording.events:
+                self._recording.event(event)
+            if not self.silent:
+                for listener in self._listeners:
+                    listener(event)
+        except Exception as error:  # noqa: BLE001 - raised by `check`, where no event of a mind is half done
+            self._failure = self._failure or error
+
+    def check(self) -> None:
+        """Raises what a listener or the recording has raised meanwhile; the run can go on afterwards.
+
+        Raises:
+            Exception: That error.
+        """
+        failure, self._failure = self._failure, None
+        if failure is not None:
+            raise failure
+
+    def answers(self, requests: Sequence[Request], answers: Sequence[Any]) -> None:
+        """Takes what bodies answered in this tick."""
+        recording = self._recording
+        if recording is not None:
+            for request, answer in zip(requests, answers, strict=True):
+                self._answers += 1
+                if self._answers > recording.answers:
+                    recording.answer(request.body, request.word, answer)
+
+    def state(self, tick: int, world: World) -> None:
+        """Takes the end of a tick."""
+        if self._recording is not None and tick == self._recording.states:
+            self._recording.state(world.state().mj_state.tobytes())
+
+    def command(self, command: Command) -> None:
+        """Takes something new that a user did."""
+        if self._recording is not None:
+            self._recording.command(command.to_data())
+
+    def cut(self, tick: int, commands: int) -> None:
+        """Lets the recording end here, because from here the run goes another way."""
+        if self._recording is not None:
+            self._recording.cut(tick, self._events, commands, self._answers)

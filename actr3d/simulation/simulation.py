@@ -1,0 +1,400 @@
+"""Simulation: minds and their bodies in one world, in lockstep."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.limits import RunLimits, fresh_seed
+from actr3d.actr.model import Model
+from actr3d.clock import microseconds, seconds
+from actr3d.errors import SimulationError, did_you_mean
+from actr3d.recording import Recording
+from actr3d.simulation.commands import command_of
+from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.history import History, Moment
+from actr3d.simulation.journal import Journal, Listener
+from actr3d.simulation.lockstep import Lockstep
+from actr3d.simulation.minds import Factory
+from actr3d.simulation.pace import Ending, Pace, RunReport
+from actr3d.simulation.sources import sources_of
+from actr3d.trace import Trace
+from actr3d.world import Scene, World
+
+Observer = Callable[[Glimpse], object]
+
+
+class Simulation:
+    """Runs minds and their bodies through the same time: a tick of cognition, then a tock of physics, then sensing.
+
+    A tick lets every mind think for one period, events at its very end included. The tock carries out what the minds
+    told their bodies meanwhile, simulates the physics of the same period, and lets the bodies answer what they were
+    asked; the answers are there when the next tick begins. However long a tick takes on the wall, the result is the
+    same: it depends on scene, minds, seed and commands alone.
+
+    A simulation belongs to the thread that makes it; others may `submit` commands.
+
+    Args:
+        scene: What the world is made of, or a world already compiled.
+        minds: By a body's name, what makes its mind: an agent's class, or a function without arguments. It is called again
+            where the run goes back to an earlier time. A body that is not named has no mind.
+        bodiless: By a name, what makes a mind that has no body.
+        period: How long a tick is [s]; a whole multiple of the physics step. Source of 10 ms: the original ACT-R 3D.
+        seed: What all random choices come from; None takes the program's, or draws one.
+        trace: How much of what happens is kept; see `actr3d.trace.LEVELS`.
+
+    Raises:
+        SimulationError: If the period is no whole multiple of the physics step, or a mind's body is not there.
+        ParameterError: If the trace's level is unknown.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | World,
+        minds: Mapping[str, Factory] | None = None,
+        *,
+        bodiless: Mapping[str, Factory] | None = None,
+        period: float = 0.01,
+        seed: int | None = None,
+        trace: str = "none",
+    ) -> None:
+        self.world = scene if isinstance(scene, World) else World(scene)
+        limits = RunLimits.current()
+        self.seed: int | str = seed if seed is not None else fresh_seed() if limits is None else limits.next_seed()
+        self._minds = dict(minds or {})
+        self._bodiless = dict(bodiless or {})
+        self._check_names()
+        self._steps = _steps(period, self.world)
+        self._period = self._steps * self.world.scene.timestep_us
+        self._journal = Journal(trace)
+        if limits is not None and limits.trace is not None:
+            program = limits.trace
+            self._journal.raise_level(program.level)
+            self._journal.listen(lambda event: program.emit(*event))
+        self._history = History(Moment.of(0, self.world))
+        self._lockstep: Lockstep | None = None
+        self._observers: list[Observer] = []
+        self._observing = False
+        self._submitted: deque[tuple[Future[None], str, tuple[Any, ...], str | None, Mapping[str, Any]]] = deque()
+        self._owner = threading.get_ident()
+
+    def _check_names(self) -> None:
+        bodies = self.world.bodies
+        for name in self._minds:
+            if name not in bodies:
+                hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
+                raise SimulationError(f"minds: no body '{name}' in the scene{hint} (a mind without a body goes into `bodiless`)")
+        for name in self._bodiless:
+            if name in self._minds or name in bodies:
+                raise SimulationError(f"bodiless: '{name}' is the name of a body")
+
+    # -- where it stands
+
+    @property
+    def ticks(self) -> int:
+        """How many whole ticks the run has gone."""
+        return 0 if self._lockstep is None else self._lockstep.ticks
+
+    @property
+    def time(self) -> float:
+        """The present [s]."""
+        return seconds(self.ticks * self._period)
+
+    @property
+    def period(self) -> float:
+        """How long a tick is [s]."""
+        return seconds(self._period)
+
+    @property
+    def furthest(self) -> float:
+        """How far the run has come [s]; after `seek` the present may lie before that."""
+        return seconds(self._history.ticks * self._period)
+
+    @property
+    def minds(self) -> dict[str, Model]:
+        """The minds by name, to look at: what is changed here from outside is not repeated when the run goes back.
+
+        Raises:
+            SimulationError: If a mind cannot be made.
+        """
+        environment = self._begun().minds.environment
+        return {name: environment[name] for name in (*self._minds, *self._bodiless)}
+
+    @property
+    def trace(self) -> Trace | None:
+        """The trace of the run up to now; None where nothing is traced. After `seek` it is another one."""
+        self._begun()
+        return self._journal.trace
+
+    # -- going on
+
+    def tick(self) -> None:
+        """Lets the minds think for one period, after carrying out what other threads have submitted.
+
+        Raises:
+            SimulationError: If the last tick has had no tock, or has failed; if this is another thread, or an observer.
+            Exception: What a mind raises.
+        """
+        self._enter()
+        if self._submitted:
+            self.carry_out_submitted()
+        lockstep = self._lockstep or self._begun()
+        if lockstep.commands < len(self._history.commands):
+            lockstep.repeat_commands(self._history.commands)
+        lockstep.tick()
+
+    def tock(self) -> None:
+        """Lets the bodies do what they were told, simulates the physics of the same period, and lets them answer.
+
+        Raises:
+            SimulationError: If there has been no tick before, or something has failed.
+            WorldError: If the physics diverges.
+            Exception: What a body, an observer or a listener of the trace raises.
+        """
+        self._enter()
+        lockstep = self._begun()
+        answers = lockstep.tock()
+        self._note(lockstep, answers)
+        if self._observers:
+            self._show()
+        self._journal.check()
+
+    def step(self, n: int = 1) -> None:
+        """Goes on by a number of ticks, each with its tock.
+
+        Raises:
+            SimulationError: As `tick` does.
+            Exception: As `tick` and `tock` do.
+        """
+        for _ in range(n):
+            self.tick()
+            self.tock()
+
+    def run(
+        self, seconds: float | None = None, *, until: Callable[[Glimpse], bool] | None = None, real_time: float | None = None
+    ) -> RunReport:
+        """Goes on until a time has passed, something has come true, a mind says `stop`, or no mind has anything left to do.
+
+        The last of these ends a run only where neither a time nor a condition is given. A mind that says `stop` ends the
+        run after the present tick and its tock.
+
+        Args:
+            seconds: How long [s from now]; a whole number of ticks.
+            until: Asked after each tock; ends the run when it returns True.
+            real_time: How many times as fast as real time it is to go, at most; None for as fast as possible.
+
+        Returns:
+            How it went: what ended it, how fast it was, and how late where it could not keep to real time.
+
+        Raises:
+            SimulationError: If the time is no whole number of ticks, or the factor is not above 0; and as `tick` does.
+            Exception: As `tick` and `tock` do.
+        """
+        if real_time is not None and not real_time > 0:
+            raise SimulationError(f"run(real_time): must be above 0 (got {real_time!r})")
+        end = None if seconds is None else self.ticks + self._whole_ticks(seconds, "run(seconds)")
+        open_end = end is None and until is None
+        pace = Pace(self._period, real_time)
+        minds = self._begun().minds
+        while end is None or self.ticks < end:
+            if open_end and minds.done and not self._submitted and self.ticks >= self._history.ticks:
+                return pace.report("done")
+            self.tick()
+            self.tock()
+            pace.tick()
+            ending: Ending | None = "stop" if minds.stopped else "until" if until is not None and until(self._glimpse()) else None
+            if ending is not None:
+                return pace.report(ending)
+        return pace.report("seconds")
+
+    def _begun(self) -> Lockstep:
+        """Returns the run, and makes its minds first where there are none yet."""
+        if self._lockstep is None:
+            bodies = frozenset(self._minds)
+            self._lockstep = Lockstep(
+                self.world, {**self._minds, **self._bodiless}, bodies, self.seed, self._steps, self._period, self._journal
+            )
+            self._journal.state(0, self.world)
+        return self._lockstep
+
+    def _enter(self) -> None:
+        if threading.get_ident() != self._owner:
+            raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
+        if self._observing:
+            raise SimulationError("an observer only looks: it cannot step or change the simulation it observes")
+
+    def _note(self, lockstep: Lockstep, answers: tuple[Any, ...]) -> None:
+        """Keeps what going back needs of a tick that is new."""
+        history, ticks = self._history, lockstep.ticks
+        if ticks > history.ticks:
+            history.add_tick(ticks, answers)
+            if history.wants(ticks):
+                history.keep(Moment.of(ticks, self.world))
+        self._journal.state(ticks, self.world)
+
+    # -- commands
+
+    def command(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> None:
+        """Does something to the run, at once, between two ticks: `command("aperture", 0.6)`, `command("walk", 1.2, body="walker")`.
+
+        A word of the world (`aperture`), of the minds (`parameter`, a path and a value), or any word that a body takes. It
+        is recorded with its tick, and done again at the same tick where the run goes back and on again. Where the run
+        has gone back, a new command makes it go another way: what came after the present is forgotten, also by the
+        recording.
+
+        Args:
+            word: What to do.
+            values: With what; numbers, texts, and tuples of these.
+            body: Which body is to do it; the only one unless named.
+            named: More values, by name.
+
+        Raises:
+            SimulationError: If there is no such command or body, or a tick waits for its tock.
+            Exception: What the world or the body raises; then nothing was done.
+        """
+        self._enter()
+        lockstep = self._begun()
+        command = command_of(lockstep.ticks, word, values, named, body, self.world)
+        history, before = self._history, lockstep.commands
+        with self._journal.holding():
+            lockstep.command(command)
+            if lockstep.ticks < history.ticks or before < len(history.commands):
+                history.cut(lockstep.ticks, before)
+                self._journal.cut(lockstep.ticks, before)
+            history.commands.append(command)
+        lockstep.tell(command)
+        self._journal.command(command)
+        self._journal.check()
+
+    def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
+        """Asks for a command from any thread; it is carried out before the next tick.
+
+        Returns:
+            What tells when it is done, or raises what went wrong with it.
+        """
+        future: Future[None] = Future()
+        self._submitted.append((future, word, values, body, named))
+        return future
+
+    def carry_out_submitted(self) -> None:
+        """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
+        while self._submitted:
+            future, word, values, body, named = self._submitted.popleft()
+            try:
+                self.command(word, *values, body=body, **named)
+            except Exception as error:  # noqa: BLE001 - it is told to who asked
+                future.set_exception(error)
+            else:
+                future.set_result(None)
+
+    # -- looking on
+
+    def observe(self, observer: Observer) -> None:
+        """Calls an observer with a `Glimpse` after each tock, and after `seek`; it sees copies and can change nothing."""
+        self._observers.append(observer)
+
+    def listen(self, listener: Listener) -> None:
+        """Calls a listener with every event of the trace from now on; not with those that `seek` goes through again.
+
+        Raises:
+            ParameterError: If nothing is traced.
+        """
+        self._journal.listen(listener)
+
+    def record(self, path: Path | str, **facts: Any) -> Recording:
+        """Records the whole run to a new file, with every event, state, command and answer; to be closed by who asks for it.
+
+        Args:
+            path: The file; it must not exist.
+            facts: What else is to be told of the run: plain values by name.
+
+        Raises:
+            SimulationError: If the run has begun already.
+            RecordingError: If the file exists, or cannot be made.
+        """
+        if self._lockstep is not None:
+            raise SimulationError(f"a recording holds a run from its start on, and this one is at {self.time:g} s already")
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
+        sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
+        recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
+        self._journal.record(recording)
+        return recording
+
+    def _glimpse(self) -> Glimpse:
+        return Glimpse(self.world, self.ticks)
+
+    def _show(self) -> None:
+        self._observing = True
+        try:
+            glimpse = self._glimpse()
+            for observer in self._observers:
+                observer(glimpse)
+        finally:
+            self._observing = False
+
+    # -- going back
+
+    def seek(self, time: float) -> None:
+        """Brings the run to any time from its start to the furthest it has come; to the end of that tick, before what users did then.
+
+        Going on from there gives what the first run gave, with all its commands, byte for byte. The minds are made anew and
+        live through what was before, with the answers that were kept; the world comes from a kept state.
+
+        Args:
+            time: When [s]; a whole number of ticks.
+
+        Raises:
+            SimulationError: If the run has not come so far, or the time is no whole number of ticks.
+        """
+        self._enter()
+        to = self._whole_ticks(time, "seek")
+        if to > self._history.ticks:
+            raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
+        lockstep = self._lockstep
+        if lockstep is None or lockstep.broken or to <= lockstep.ticks:
+            self._lockstep = None
+            self._history.before(0).bring_back(self.world)
+        self._journal.silent = True
+        try:
+            self._live_through(to)
+        finally:
+            self._journal.silent = False
+        self._journal.check()
+        if self._observers:
+            self._show()
+
+    def _live_through(self, to: int) -> None:
+        history, lockstep = self._history, self._begun()
+        moment = history.before(to)
+        if moment.tick > lockstep.ticks:
+            while lockstep.ticks < moment.tick:
+                lockstep.repeat_commands(history.commands, only_minds=True)
+                lockstep.remember(history.answers(lockstep.ticks + 1))
+            moment.bring_back(self.world)
+        while lockstep.ticks < to:
+            lockstep.repeat_commands(history.commands)
+            lockstep.tick()
+            lockstep.tock()
+
+    def _whole_ticks(self, time: float, what: str) -> int:
+        ticks, rest = divmod(microseconds(time, f"the time of {what}"), self._period)
+        if rest or ticks < 0:
+            raise SimulationError(f"{what}: must be a whole number of ticks of {self.period:g} s, at least 0 (got {time!r})")
+        return ticks
+
+
+def _steps(period: float, world: World) -> int:
+    """Returns how many physics steps a period is.
+
+    Raises:
+        SimulationError: If it is no whole number of them.
+    """
+    step = world.scene.timestep_us
+    steps, rest = divmod(microseconds(period, "Simulation.period"), step)
+    if rest or steps < 1:
+        raise SimulationError(f"Simulation.period: must be a whole multiple of the physics step of {seconds(step):g} s (got {period!r})")
+    return steps
