@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any, TextIO, cast
 
 from actr3d.actr.limits import RunLimits
-from actr3d.actr.loading import run_file
 from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError
+from actr3d.recording import Recorded
+from actr3d.running.run import run_model, settings_of
 from actr3d.trace import LEVELS, Trace, TraceEvent
 
 
@@ -74,7 +75,7 @@ def run_command(options: argparse.Namespace) -> int:
             if lines is not None:
                 sys.stdout = lines
             try:
-                run_file(options.file, limits=limits)
+                run_model(options.file, limits, settings=settings_of(options.set), record=options.record)
             finally:
                 sys.stdout = out
                 if lines is not None:
@@ -85,6 +86,20 @@ def run_command(options: argparse.Namespace) -> int:
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
         return _complain(error)
     return 0
+
+
+def replay_command(options: argparse.Namespace) -> int:
+    """Runs a recording again, and says whether every byte agrees: 0 where it does, 1 where not, 2 where it cannot tell."""
+    from actr3d.running.replay import replay
+
+    try:
+        with Recorded(options.file) as recorded:
+            comparison = replay(recorded, any_version=options.any_version)
+    except Actr3dError as error:
+        _complain(error)
+        return 2
+    print(comparison)
+    return 0 if comparison.difference is None else 1
 
 
 def _complain(error: BaseException) -> int:
@@ -143,7 +158,13 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest")
     run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)")
     run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
+    run.add_argument("--record", metavar="RECORDING", help="record everything to this new file")
+    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds")
     run.set_defaults(function=run_command)
+    again = commands.add_parser("replay", help="run a recording again", description="Runs a recording again: does every byte agree?")
+    again.add_argument("file", metavar="RECORDING", help="the recording")
+    again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
+    again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
     bench.add_argument("name", choices=["core"], help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
@@ -159,7 +180,7 @@ def _bench(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if arguments is None and os.environ.get("PYTHONHASHSEED") is None and sys.argv[1:2] == ["run"]:
+    if arguments is None and os.environ.get("PYTHONHASHSEED") is None and sys.argv[1:2] in (["run"], ["replay"]):
         # The order of sets of texts must not differ between two runs of one seed.
         os.environ["PYTHONHASHSEED"] = "0"
         os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])

@@ -35,9 +35,10 @@ PARTS: dict[str, set[str]] = {
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY,
     "simulation": BASE | BODILY | SENSES | {"recording"},
+    "running": BASE | BODILY | SENSES | RUNNING,
     "experiment": BASE | BODILY | SENSES | RUNNING,
     "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"experiment", "bench"},
+    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING,
 }

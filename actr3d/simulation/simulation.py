@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from actr3d.actr.model import Model
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.recording import Recording
-from actr3d.simulation.commands import command_of
+from actr3d.simulation.commands import Command, command_of
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.history import History, Moment
 from actr3d.simulation.journal import Journal, Listener
@@ -291,6 +291,26 @@ class Simulation:
             else:
                 future.set_result(None)
 
+    def plan(self, commands: Sequence[Command]) -> None:
+        """Lets commands of an earlier run be carried out again at their ticks.
+
+        Raises:
+            SimulationError: If the run has begun already.
+        """
+        self._not_begun("a plan")
+        self._history.commands[:] = commands
+
+    def repeat_planned(self) -> None:
+        """Carries out what is planned for the present, without going on.
+
+        Raises:
+            SimulationError: If a tick waits for its tock.
+            Exception: What a body raises.
+        """
+        self._enter()
+        self._begun().repeat_commands(self._history.commands)
+        self._journal.check()
+
     # -- looking on
 
     def observe(self, observer: Observer) -> None:
@@ -305,6 +325,16 @@ class Simulation:
         """
         self._journal.listen(listener)
 
+    def trace_at_least(self, level: str) -> None:
+        """Lets the run, which must not have begun, be traced at this level at least.
+
+        Raises:
+            SimulationError: If the run has begun already.
+            ParameterError: If the level is unknown.
+        """
+        self._not_begun("a trace")
+        self._journal.raise_level(level)
+
     def record(self, path: Path | str, **facts: Any) -> Recording:
         """Records the whole run to a new file, with every event, state, command and answer; to be closed by who asks for it.
 
@@ -316,13 +346,16 @@ class Simulation:
             SimulationError: If the run has begun already.
             RecordingError: If the file exists, or cannot be made.
         """
-        if self._lockstep is not None:
-            raise SimulationError(f"a recording holds a run from its start on, and this one is at {self.time:g} s already")
+        self._not_begun("a recording")
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
         sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
         recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
         self._journal.record(recording)
         return recording
+
+    def _not_begun(self, what: str) -> None:
+        if self._lockstep is not None:
+            raise SimulationError(f"{what} holds a run from its start on, and this one has begun already")
 
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.ticks)
