@@ -7,9 +7,9 @@ import random
 from dataclasses import dataclass
 from typing import Any
 
-from actr3d.actr import ACTR, Buffer
+from actr3d.actr.loading import load_text
 from actr3d.errors import WorldError, did_you_mean
-from actr3d.simulation import BodyPort, Simulation
+from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Loose, Scene, World
 
 
@@ -76,26 +76,32 @@ def world_of(*names: str, timestep: float = 0.002) -> World:
     return world
 
 
-class Driver(ACTR):
-    """Slides, and looks where it is again and again; goes the other way at random."""
+DRIVER = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
 
+class Driver(ACTR):
     goal = Buffer()
     seen = Buffer()
     body = BodyPort(seen)
     looks = 0
 
-    def init():  # type: ignore[misc] # Python ACT-R's own way
-        goal.set("go")  # type: ignore[name-defined] # noqa: F821
+    def init():
+        goal.set("go")
 
-    def go(goal="go"):  # type: ignore[misc]
-        body.set("slide", 0.5)  # type: ignore[name-defined] # noqa: F821
-        body.request("guess", sd=0.05)  # type: ignore[name-defined] # noqa: F821
-        goal.set("look")  # type: ignore[attr-defined]
+    def go(goal="go"):
+        body.set("slide", 0.5)
+        body.request("guess", sd=0.05)
+        goal.set("look")
 
-    def look(goal="look", seen="guess ?x", body="busy:False"):  # type: ignore[misc]
-        self.looks += 1  # type: ignore[name-defined] # noqa: F821
-        body.set("slide", self.random.choice([-0.5, 0.25, 1.0]) - 0.01 * float(x))  # type: ignore[name-defined,attr-defined] # noqa: F821
-        body.request("guess", sd=0.05)  # type: ignore[attr-defined]
+    def look(goal="look", seen="guess ?x", body="busy:False"):
+        self.looks += 1
+        body.set("slide", self.random.choice([-0.5, 0.25, 1.0]) - 0.01 * float(x))
+        body.request("guess", sd=0.05)
+"""
+"""Slides, and looks where it is again and again; goes another way at random."""
+
+Driver: Any = load_text(DRIVER, "driver.py").Driver
 
 
 def driving(trace: str = "none", seed: int = 1) -> Simulation:

@@ -11,15 +11,16 @@ FORM = "actr3d recording 1"
 
 SCHEMA = """
 CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE events (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, time_us INTEGER NOT NULL,
-                     source TEXT NOT NULL, kind TEXT NOT NULL, line TEXT NOT NULL);
-CREATE TABLE states (first INTEGER PRIMARY KEY, ticks INTEGER NOT NULL, data BLOB NOT NULL);
+CREATE TABLE events (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data TEXT NOT NULL);
+CREATE TABLE answers (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data TEXT NOT NULL);
+CREATE TABLE states (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data BLOB NOT NULL, events BLOB NOT NULL);
 CREATE TABLE commands (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, data TEXT NOT NULL);
-CREATE TABLE answers (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, body TEXT NOT NULL, word TEXT NOT NULL, value TEXT NOT NULL);
 """
-"""`facts`: name and JSON. `events`: each a line of JSON, and after how many whole ticks. `states`: the state at the end of
-ticks `first` and following, one after the other, each as many bytes. `commands`: after which tick. `answers`: at the end
-of which tick."""
+"""`facts`: a name and JSON. The next three hold many things a row, because few large rows cost a running simulation least;
+`first` is the number of the first of them. `events` (from 0): a JSON list of [time in us, source, kind, data]. `answers`
+(from 0): a JSON list of [tick, body, word, answer]. `states`: by tick, from 0, the start: the states one after the
+other, each as many 8-byte numbers; and for each, in 8 bytes, how many events there were until then. `commands`: after
+which tick."""
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+from array import array
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
@@ -11,15 +12,18 @@ from typing import Any, NamedTuple, Self
 
 from actr3d.errors import RecordingError
 from actr3d.recording.form import FORM
+from actr3d.recording.writer import Answer
+from actr3d.trace import TraceEvent
 
 
-class RecordedAnswer(NamedTuple):
-    """What a body answered."""
+class RecordedState(NamedTuple):
+    """The physics at the end of a tick."""
 
     tick: int
-    body: str
-    word: str
-    value: Any
+    data: bytes
+    """MuJoCo's `mjSTATE_INTEGRATION`, 8 bytes a number."""
+    events: int
+    """How many events there were until then."""
 
 
 class Recorded:
@@ -48,36 +52,39 @@ class Recorded:
     @property
     def ticks(self) -> int:
         """How many whole ticks it holds."""
-        (last,) = self._file.execute("SELECT max(first + ticks - 1) FROM states").fetchone()
-        return last or 0
+        return max(0, self._count("states") - 1)
 
     @property
     def event_count(self) -> int:
         """How many events it holds."""
-        (count,) = self._file.execute("SELECT count(*) FROM events").fetchone()
-        return count
+        return self._count("events")
 
-    def event_lines(self, kind: str | None = None) -> Iterator[tuple[int, str]]:
-        """Yields each event, or each of a kind, as a line of JSON, and after how many whole ticks it happened."""
-        where, given = ("", ()) if kind is None else ("WHERE kind = ?", (kind,))
-        yield from self._file.execute(f"SELECT tick, line FROM events {where} ORDER BY number", given)
+    def _count(self, table: str) -> int:
+        (count,) = self._file.execute(f"SELECT max(first + count) FROM {table}").fetchone()
+        return count or 0
 
-    def states(self) -> Iterator[tuple[int, bytes]]:
-        """Yields each tick and the bytes of the state at its end (`mjSTATE_INTEGRATION`); first tick 0, the start."""
-        for first, ticks, data in self._file.execute("SELECT first, ticks, data FROM states ORDER BY first"):
-            size = len(data) // ticks
-            for number in range(ticks):
-                yield first + number, data[number * size : (number + 1) * size]
+    def events(self) -> Iterator[TraceEvent]:
+        """Yields every event."""
+        for (text,) in self._file.execute("SELECT data FROM events ORDER BY first"):
+            yield from (TraceEvent(*event) for event in json.loads(text))
+
+    def states(self) -> Iterator[RecordedState]:
+        """Yields the physics at the start (tick 0), and at the end of each tick."""
+        for first, count, data, events in self._file.execute("SELECT * FROM states ORDER BY first"):
+            size = len(data) // count
+            counts = array("q", events)
+            for number in range(count):
+                yield RecordedState(first + number, data[number * size : (number + 1) * size], counts[number])
 
     def commands(self) -> Iterator[tuple[int, dict[str, Any]]]:
         """Yields what the user did, and after which tick."""
         for tick, data in self._file.execute("SELECT tick, data FROM commands ORDER BY number"):
             yield tick, json.loads(data)
 
-    def answers(self) -> Iterator[RecordedAnswer]:
-        """Yields what the bodies answered."""
-        for tick, body, word, value in self._file.execute("SELECT tick, body, word, value FROM answers ORDER BY number"):
-            yield RecordedAnswer(tick, body, word, json.loads(value))
+    def answers(self) -> Iterator[Answer]:
+        """Yields what the bodies answered; the values are plain."""
+        for (text,) in self._file.execute("SELECT data FROM answers ORDER BY first"):
+            yield from (Answer(*answer) for answer in json.loads(text))
 
     def close(self) -> None:
         """Closes the file."""

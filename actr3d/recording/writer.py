@@ -2,55 +2,46 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
+from array import array
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from itertools import groupby
 from pathlib import Path
-from threading import Event, Thread
+from threading import Event, Lock, Thread
 from typing import Any, NamedTuple
 
+from actr3d.actr.answers import plain_answer
 from actr3d.errors import RecordingError
 from actr3d.recording.form import SCHEMA
+from actr3d.trace import TraceEvent
 
 INTERVAL = 0.25
 """How often what has come is written [s on the wall]; a run that is killed loses no more than what came since."""
-MOST_WAITING = 200_000
-"""So many entries may wait; then the run waits for the disk."""
 BLOB = 1_000_000
-"""About how many bytes of states are written as one."""
+"""About how many bytes of states are written as one row."""
+MOST_EVENTS = 10_000
+"""How many events are written as one row, at most."""
 
-INSERT = {
-    "events": "INSERT INTO events (number, tick, time_us, source, kind, line) VALUES (?, ?, ?, ?, ?, ?)",
-    "commands": "INSERT INTO commands (number, tick, data) VALUES (?, ?, ?)",
-    "answers": "INSERT INTO answers (number, tick, body, word, value) VALUES (?, ?, ?, ?, ?)",
-    "facts": "INSERT OR REPLACE INTO facts (name, value) VALUES (?, ?)",
-}
+_ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
 
 
-class State(NamedTuple):
-    """The state at the end of a tick."""
-
-    tick: int
-    data: bytes
+State = tuple[bytes, int]
+"""The physics at the end of a tick, and how many events there were until then."""
 
 
-class Cut(NamedTuple):
-    """From here on the run went another way: what was written beyond these numbers is to go."""
+class Answer(NamedTuple):
+    """What a body answered."""
 
     tick: int
-    events: int
-    commands: int
-    answers: int
+    body: str
+    word: str
+    value: Any
 
 
-Entry = tuple[str, tuple[Any, ...]]
-"""A table and a row of it; `states` has a `State`, `cut` a `Cut`."""
-
-
-class Writer(Thread):
-    """Writes entries to a new file, a few times a second, until it is closed; what fails is raised where entries are put in.
+class Writer:
+    """Writes to a new file what has been put into its queues, a few times a second, until it is closed; by a thread of its own.
 
     Args:
         path: Where the file is to be.
@@ -60,32 +51,35 @@ class Writer(Thread):
         RecordingError: If the file exists already, or cannot be made.
     """
 
-    def __init__(self, path: Path, facts: list[tuple[str, str]]) -> None:
-        super().__init__(name=f"recording {path.name}", daemon=True)
+    def __init__(self, path: Path, facts: Sequence[tuple[str, str]]) -> None:
         self.path = path
         self.failure: RecordingError | None = None
         """Why nothing is written any more."""
-        self.waiting: deque[Entry] = deque()
+        # One thread puts in, another takes out, neither waits for the other.
+        self.events: deque[TraceEvent] = deque()
+        self.answers: deque[Answer] = deque()
+        self.states: deque[State] = deque()
+        self.commands: deque[tuple[int, str]] = deque()
+        self.facts: deque[tuple[str, str]] = deque()
+        self._written = {"events": 0, "answers": 0, "states": 0, "commands": 0}
+        self._writing = Lock()
         self._over = Event()
         if path.exists():
             raise RecordingError(f"'{path}' exists already; a recording does not replace what is there")
         self._attempt(self._create, facts)
         if self.failure is not None:
             raise self.failure
-        self.start()
+        self._thread = Thread(target=self._run, name=f"recording {path.name}", daemon=True)
+        self._thread.start()
 
-    def put(self, table: str, row: tuple[Any, ...]) -> None:
-        """Takes one entry.
+    def flush(self) -> None:
+        """Writes what has come, now; also for a caller that puts things in faster than they are written."""
+        self._attempt(self._write)
 
-        Raises:
-            RecordingError: If the file cannot be written any more.
-        """
-        self.waiting.append((table, row))
-        if len(self.waiting) > MOST_WAITING:
-            while len(self.waiting) > MOST_WAITING // 2 and self.failure is None:
-                self._over.wait(INTERVAL / 10)
-        if self.failure is not None:
-            raise self.failure
+    def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
+        """Drops all but the first few of each: from there the run goes another way."""
+        self.flush()
+        self._attempt(self._cut, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
 
     def close(self) -> None:
         """Writes what is left and closes the file: one file then, without companions.
@@ -94,98 +88,136 @@ class Writer(Thread):
             RecordingError: If the file cannot be written.
         """
         self._over.set()
-        self.join()
+        self._thread.join()
         if self.failure is not None:
             raise self.failure
 
-    def run(self) -> None:
-        """Is the thread."""
+    def _run(self) -> None:
         while not self._over.wait(INTERVAL):
-            self._attempt(self._write_waiting)
-        self._attempt(self._write_waiting)
+            self.flush()
+        self.flush()
         self._attempt(self._finish)
         with suppress(sqlite3.Error):  # where the disk is full, SQLite leaves its journal beside the file, and reads it next time
             self._file.close()
 
     def _attempt(self, work: Callable[..., None], *args: Any) -> None:
         """Does a piece of work with the file; once one has failed, nothing more."""
-        if self.failure is not None:
-            self.waiting.clear()
-            return
-        try:
-            work(*args)
-        except (sqlite3.Error, OSError) as error:
-            reason = "the disk is full" if "full" in str(error) else str(error)
-            self.failure = RecordingError(f"cannot write the recording '{self.path}': {reason}; what was written before is kept")
+        with self._writing:
+            if self.failure is not None:
+                for queue in (self.events, self.answers, self.states, self.commands, self.facts):
+                    queue.clear()
+                return
+            try:
+                work(*args)
+            except (sqlite3.Error, OSError) as error:
+                reason = "the disk is full" if "full" in str(error) else str(error)
+                self.failure = RecordingError(f"cannot write the recording '{self.path}': {reason}; what was written before is kept")
 
     # -- the file
 
-    def _create(self, facts: list[tuple[str, str]]) -> None:
+    def _create(self, facts: Sequence[tuple[str, str]]) -> None:
         self._file = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
         try:
             # A reader may look while the run goes on, and what is committed outlives a killed program.
             self._file.execute("PRAGMA journal_mode=WAL")
             self._file.execute("PRAGMA synchronous=NORMAL")
             self._file.executescript(f"BEGIN; {SCHEMA}")
-            self._file.executemany(INSERT["facts"], facts)
+            self._file.executemany("INSERT INTO facts VALUES (?, ?)", facts)
             self._file.execute("COMMIT")
         except sqlite3.Error:
             self._file.close()
             raise
 
-    def _write_waiting(self) -> None:
+    def _write(self) -> None:
         """Writes what has come, as one transaction."""
-        entries: list[Entry] = []
-        while self.waiting:
-            entries.append(self.waiting.popleft())
-        if not entries:
+        # States first: the events until then have come already.
+        states, facts, commands = _all_of(self.states), _all_of(self.facts), _all_of(self.commands)
+        answers, events = _all_of(self.answers), _all_of(self.events)
+        if not (states or facts or commands or answers or events):
             return
+        rows = [(part, _events_text(part)) for part in _parts(events, MOST_EVENTS)]
+        self._transact(self._insert, rows, states, facts, commands, answers)
+
+    def _insert(
+        self,
+        events: list[tuple[list[TraceEvent], str]],
+        states: list[State],
+        facts: list[tuple[str, str]],
+        commands: list[tuple[int, str]],
+        answers: list[Answer],
+    ) -> None:
+        insert = self._file.execute
+        for part, text in events:
+            insert("INSERT INTO events VALUES (?, ?, ?)", (self._next("events", len(part)), len(part), text))
+        for some in _parts(answers, MOST_EVENTS):
+            text = json.dumps([plain_answer(answer) for answer in some])
+            insert("INSERT INTO answers VALUES (?, ?, ?)", (self._next("answers", len(some)), len(some), text))
+        for row in _parts(states, max(1, BLOB // len(states[0][0])) if states else 1):
+            data, counts = b"".join([state for state, _ in row]), array("q", [events for _, events in row]).tobytes()
+            insert("INSERT INTO states VALUES (?, ?, ?, ?)", (self._next("states", len(row)), len(row), data, counts))
+        for tick, text in commands:
+            insert("INSERT INTO commands VALUES (?, ?, ?)", (self._next("commands", 1), tick, text))
+        for fact in facts:
+            insert("INSERT OR REPLACE INTO facts VALUES (?, ?)", fact)
+
+    def _next(self, table: str, count: int) -> int:
+        """Returns the number of the next thing in a table, and counts so many."""
+        first = self._written[table]
+        self._written[table] += count
+        return first
+
+    def _transact(self, work: Callable[..., None], *args: Any) -> None:
         self._file.execute("BEGIN")
         try:
-            for table, group in groupby(sorted_by_table(entries), key=lambda entry: entry[0]):
-                rows = [row for _, row in group]
-                if table == "cut":
-                    self._cut(*rows[-1])
-                elif table == "states":
-                    self._write_states(rows)
-                else:
-                    self._file.executemany(INSERT[table], rows)
+            work(*args)
             self._file.execute("COMMIT")
         except sqlite3.Error:
             if self._file.in_transaction:
                 self._file.execute("ROLLBACK")
             raise
 
-    def _write_states(self, states: list[Any]) -> None:
-        most = max(1, BLOB // max(1, len(states[0].data)))
-        for start in range(0, len(states), most):
-            part = states[start : start + most]
-            row = (part[0].tick, len(part), b"".join(state.data for state in part))
-            self._file.execute("INSERT INTO states (first, ticks, data) VALUES (?, ?, ?)", row)
+    def _cut(self, kept: dict[str, int]) -> None:
+        self._transact(self._delete, kept)
+        self._written.update(kept)
 
-    def _cut(self, tick: int, events: int, commands: int, answers: int) -> None:
-        for table, last in (("events", events), ("commands", commands), ("answers", answers)):
-            self._file.execute(f"DELETE FROM {table} WHERE number > ?", (last,))
-        self._file.execute("DELETE FROM states WHERE first > ?", (tick,))
-        (last,) = self._file.execute("SELECT max(first) FROM states").fetchone()
+    def _delete(self, kept: dict[str, int]) -> None:
+        self._file.execute("DELETE FROM commands WHERE number >= ?", (kept["commands"],))
+        for table in ("events", "answers"):
+            last = self._delete_rows(table, kept[table])
+            if last is not None:
+                first, _, data = last
+                text = json.dumps(json.loads(data)[: kept[table] - first], ensure_ascii=False)
+                self._file.execute(f"UPDATE {table} SET count = ?, data = ? WHERE first = ?", (kept[table] - first, text, first))
+        last = self._delete_rows("states", kept["states"])
         if last is not None:
-            self._file.execute(
-                "UPDATE states SET data = substr(data, 1, length(data) / ticks * ?1), ticks = ?1 WHERE first = ?2 AND ticks > ?1",
-                (tick - last + 1, last),
-            )
+            first, count, data, events = last
+            left = kept["states"] - first
+            row = (left, data[: len(data) // count * left], events[: 8 * left], first)
+            self._file.execute("UPDATE states SET count = ?, data = ?, events = ? WHERE first = ?", row)
+
+    def _delete_rows(self, table: str, kept: int) -> Any:
+        """Drops the rows beyond the first things of a table; returns the row of which only a part is to be kept, if any."""
+        self._file.execute(f"DELETE FROM {table} WHERE first >= ?", (kept,))
+        return self._file.execute(f"SELECT * FROM {table} WHERE first + count > ?", (kept,)).fetchone()
 
     def _finish(self) -> None:
         # In the old way of keeping a journal a closed file stands alone, and can be read in a folder that is read-only.
         self._file.execute("PRAGMA journal_mode=DELETE")
 
 
-def sorted_by_table(entries: list[Entry]) -> list[Entry]:
-    """Returns entries grouped by table as far as they may be: across a cut, nothing changes its place."""
-    cuts = [place for place, entry in enumerate(entries) if entry[0] == "cut"]
-    ordered: list[Entry] = []
-    start = 0
-    for end in (*cuts, len(entries)):
-        ordered += sorted(entries[start:end], key=lambda entry: entry[0])
-        ordered += entries[end : end + 1]
-        start = end + 1
-    return ordered
+def _all_of(queue: deque[Any]) -> list[Any]:
+    """Takes out all that is in a queue now."""
+    return [queue.popleft() for _ in range(len(queue))]
+
+
+def _parts(things: list[Any], most: int) -> list[list[Any]]:
+    return [things[start : start + most] for start in range(0, len(things), most)]
+
+
+def _events_text(events: list[TraceEvent]) -> str:
+    """Returns events as one JSON list; what JSON has no word for becomes what `TraceEvent.to_json` makes of it."""
+    try:
+        text = _ENCODE(events)
+    except (TypeError, ValueError):
+        text = _ENCODE([[event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]] for event in events])
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -57,7 +57,7 @@ class _Events:
     """
 
     def __init__(self, recorded: Recorded, ticks: int | None = None) -> None:
-        self._lines = iter(recorded.event_lines())
+        self._recorded = recorded.events()
         self._ticks = ticks
         self._over = "ended" in recorded.facts
         self.count = 0
@@ -71,7 +71,8 @@ class _Events:
         """
         if self.difference is not None:
             return
-        _, line = next(self._lines, (0, None))
+        then = next(self._recorded, None)
+        line = None if then is None else then.to_json()
         now = event.to_json()
         if line is None and not self._over and self._ticks is None:
             raise _Differs
@@ -82,7 +83,7 @@ class _Events:
 
     def rest(self) -> int:
         """Returns how many recorded events the new run has not come to."""
-        return sum(1 for _ in self._lines)
+        return sum(1 for _ in self._recorded)
 
 
 def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, any_version: bool = False) -> Comparison:
@@ -156,12 +157,16 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
     simulation.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
     difference: str | None = None
     try:
-        for tick, state in recorded.states():
+        for tick, state, count in recorded.states():
             if tick:
                 simulation.step()
-            now = simulation.world.state().mj_state.tobytes()
+            now = simulation.world.state_bytes()
+            where = f"at the end of tick {tick} ({seconds(tick * period):g} s)"
             if now != state:
-                difference = f"the physics at the end of tick {tick} ({seconds(tick * period):g} s): {_first_number(state, now)}"
+                difference = f"the physics {where}: {_first_number(state, now)}"
+                break
+            if tick and count != events.count:
+                difference = f"there were {count:,} events {where}, and are {events.count:,} now"
                 break
         else:
             simulation.repeat_planned()

@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.simulation.commands import Command
 from actr3d.world import World, WorldState
 
-SPACING = 10
+SPACING = 50
 """How many ticks lie between two kept states at first."""
 MOST_STATES = 256
 """Of more kept states every second one is dropped, so that a long run needs no more memory than a short one."""

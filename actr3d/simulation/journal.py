@@ -89,17 +89,21 @@ class Journal:
             self._held.append(event)
             return
         self._events += 1
+        recording = self._recording
+        if recording is not None and self._events > recording.events:
+            recording.event(event)
+        if self._listeners and not self.silent:
+            self._hand_on(event)
+
+    def _hand_on(self, event: TraceEvent) -> None:
         try:
-            if self._recording is not None and self._events > self._recording.events:
-                self._recording.event(event)
-            if not self.silent:
-                for listener in self._listeners:
-                    listener(event)
+            for listener in self._listeners:
+                listener(event)
         except Exception as error:  # noqa: BLE001 - raised by `check`, where no event of a mind is half done
             self._failure = self._failure or error
 
     def check(self) -> None:
-        """Raises what a listener or the recording has raised meanwhile; the run can go on afterwards.
+        """Raises what a listener has raised meanwhile; the run can go on afterwards.
 
         Raises:
             Exception: That error.
@@ -120,14 +124,14 @@ class Journal:
     def state(self, tick: int, world: World) -> None:
         """Takes the end of a tick."""
         if self._recording is not None and tick == self._recording.states:
-            self._recording.state(world.state().mj_state.tobytes())
+            self._recording.state(world.state_bytes())
 
     def command(self, command: Command) -> None:
         """Takes something new that a user did."""
         if self._recording is not None:
-            self._recording.command(command.to_data())
+            self._recording.command(command.tick, command.to_data())
 
     def cut(self, tick: int, commands: int) -> None:
         """Lets the recording end here, because from here the run goes another way."""
         if self._recording is not None:
-            self._recording.cut(tick, self._events, commands, self._answers)
+            self._recording.cut(tick, self._events, self._answers, commands)

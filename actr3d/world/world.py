@@ -18,6 +18,8 @@ from actr3d.world.scene import Scene
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
 
+_INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
+
 
 @dataclass(frozen=True, kw_only=True)
 class WorldState:
@@ -52,6 +54,8 @@ class World:
         self._mocap_moved = False
         self._state_size: int = mujoco.mj_stateSize(self.mj_model, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
+        self._state_numbers = np.empty(self._state_size)
+        self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
         self.bodies: dict[str, Any] = {}
         """The bodies by name."""
         mujoco.mj_forward(self.mj_model, self.mj_data)
@@ -69,7 +73,7 @@ class World:
         """
         mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
         self._steps += steps
-        if any(self.mj_data.warning.number[_DIVERGED]):
+        if self._warnings.any():
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
 
     def refresh(self) -> None:
@@ -87,6 +91,11 @@ class World:
         mj_state = np.empty(self._state_size)
         mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         return WorldState(steps=self._steps, mj_state=mj_state)
+
+    def state_bytes(self) -> bytes:
+        """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
+        mujoco.mj_getState(self.mj_model, self.mj_data, self._state_numbers, _INTEGRATION)
+        return self._state_numbers.tobytes()
 
     def restore(self, state: WorldState) -> None:
         """Brings the world to a state of its own; going on from there gives the same bytes as the first time.
