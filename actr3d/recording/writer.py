@@ -64,8 +64,6 @@ class Writer:
         self._written = {"events": 0, "answers": 0, "states": 0, "commands": 0}
         self._writing = Lock()
         self._over = Event()
-        if path.exists():
-            raise RecordingError(f"'{path}' exists already; a recording does not replace what is there")
         self._attempt(self._create, facts)
         if self.failure is not None:
             raise self.failure
@@ -110,12 +108,12 @@ class Writer:
             try:
                 work(*args)
             except (sqlite3.Error, OSError) as error:
-                reason = "the disk is full" if "full" in str(error) else str(error)
-                self.failure = RecordingError(f"cannot write the recording '{self.path}': {reason}; what was written before is kept")
+                self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}")
 
     # -- the file
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
+        self.path.open("xb").close()
         self._file = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
         try:
             # A reader may look while the run goes on, and what is committed outlives a killed program.
@@ -203,6 +201,16 @@ class Writer:
     def _finish(self) -> None:
         # In the old way of keeping a journal a closed file stands alone, and can be read in a folder that is read-only.
         self._file.execute("PRAGMA journal_mode=DELETE")
+
+
+def _reason(error: Exception) -> str:
+    """Says why a file cannot be written."""
+    if isinstance(error, FileExistsError):
+        return "it exists already, and a recording does not replace what is there"
+    if isinstance(error, OSError):
+        return error.strerror or str(error)
+    reason = "the disk is full" if "full" in str(error) else str(error)
+    return f"{reason}; what was written before is kept"
 
 
 def _all_of(queue: deque[Any]) -> list[Any]:

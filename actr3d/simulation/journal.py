@@ -24,10 +24,13 @@ class Journal:
 
     Args:
         level: What the trace records; one of `actr3d.trace.LEVELS`.
+
+    Raises:
+        ParameterError: If the level is unknown.
     """
 
     def __init__(self, level: str) -> None:
-        self._level = level
+        self._level = Trace(level).level
         self._keep = level != "none"
         self._listeners: list[Listener] = []
         self._recording: Recording | None = None

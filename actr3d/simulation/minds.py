@@ -6,6 +6,7 @@ import random
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from actr3d.actr.chunk import LASTING_TYPES
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.model import Model
 from actr3d.actr.modules.port import Embodiment, Request
@@ -88,7 +89,7 @@ class Minds:
             trace.emit(self._sch.now_us, "top", kind, data)
 
     def set_parameter(self, path: str, value: Any) -> None:
-        """Sets a parameter of a mind: `walker.memory.latency`.
+        """Sets a parameter of a mind that is a number, a text, True, False or None: `walker.memory.latency`.
 
         Raises:
             SimulationError: If there is no such parameter.
@@ -100,8 +101,8 @@ class Minds:
             if place not in inner:
                 raise SimulationError(f"no parameter '{path}': '{part._path}' has no part '{place}'{did_you_mean(place, inner)}")
             part = inner[place]
-        known = [known for known in part.__dict__ if known[0] != "_"]
-        if name not in known or isinstance(part.__dict__[name], Model):
+        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
+        if name not in known:
             raise SimulationError(f"no parameter '{path}': '{part._path}' has no '{name}'{did_you_mean(name, known)}")
         setattr(part, name, value)
 

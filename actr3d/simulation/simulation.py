@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.actr.limits import RunLimits, fresh_seed
-from actr3d.actr.model import Model
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.recording import Recording
@@ -115,7 +114,7 @@ class Simulation:
         return seconds(self._history.ticks * self._period)
 
     @property
-    def minds(self) -> dict[str, Model]:
+    def minds(self) -> dict[str, Any]:
         """The minds by name, to look at: what is changed here from outside is not repeated when the run goes back.
 
         Raises:

@@ -12,7 +12,6 @@ from actr3d.actr.answers import answer_slots, plain_answer
 from actr3d.actr.events import Event
 from actr3d.actr.model import Model
 from actr3d.actr.parameters import named_parameters
-from actr3d.actr.traced import traceable
 from actr3d.errors import SimulationError
 
 _LIBRARY = str(Path(__file__).parents[2])
@@ -153,7 +152,7 @@ class BodyPort(Model):
         assert reading is not None
         trace = self.sch.trace
         if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "answer", {"word": request.word, "value": traceable(plain_answer(answer))})
+            trace.emit(self.sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
         reading._value = answer
         self._outstanding -= 1
         if request.to_buffer:
