@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import io
 import os
 import sys
@@ -166,16 +167,15 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core"], help="what to measure")
+    bench.add_argument("name", choices=["core", "lockstep", "soak"], help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     return parser
 
 
 def _bench(options: argparse.Namespace) -> int:
-    from actr3d.bench import core
-
-    return core.main(json_output=options.json)
+    bench: Any = importlib.import_module(f"actr3d.bench.{options.name}")
+    return bench.main(json_output=options.json)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,0 +1,141 @@
+"""`actr3d bench lockstep`: what lockstep and recording cost, as ratios to the bare physics of the same scene on the same states."""
+
+from __future__ import annotations
+
+import gc
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import mujoco
+
+from actr3d.actr.loading import load_text
+from actr3d.bench.figures import Figure, ratio, report, seconds_of
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Loose, Scene, World, WorldState
+
+WARM = 200
+"""Ticks before anything is measured."""
+TICKS = 2_000
+"""Ticks that are measured at a time."""
+
+AGENT = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+
+class Agent(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    body = BodyPort(felt)
+    def init():
+        for number in range(20):
+            memory.add(f"count {number} {(number + 1) % 20}")
+        goal.set("count 0")
+        body.request("place")
+    def remember(goal="count ?now", retrieval=None):
+        memory.request("count ?now ?next")
+    def go_on(goal="count ?now", retrieval="count ?now ?next", felt="place ?x"):
+        goal.set("count ?next")
+        retrieval.clear()
+        body.set("speed", 1.0 if float(x) < 2 else -1.0)
+        body.request("place")
+"""
+"""A production each 50 ms, each second one with a word to the body and a question; a retrieval between them."""
+
+
+class Slider:
+    """The least of a body: a box whose speed can be set, and which tells where it is."""
+
+    def __init__(self, world: World, name: str) -> None:
+        self._joint: Any = world.mj_data.joint(name)
+
+    def set(self, word: str, value: float) -> None:
+        """Sets the speed [m/s]."""
+        self._joint.qvel[0] = value
+
+    def get(self, word: str) -> tuple[float]:
+        """Returns where it is [m]."""
+        return (float(self._joint.qpos[0]),)
+
+    def before_step(self, period: float) -> None:
+        """Has nothing to do."""
+
+    def state(self) -> None:
+        """Returns nothing: all is in the physics."""
+
+    def restore(self, state: None) -> None:
+        """Has nothing to bring back."""
+
+
+def typical() -> Simulation:
+    """Returns a body without vision and its mind, in front of a doorway."""
+    world = World(Scene(parts=(Floor(), Aperture(), Loose(name="box", position=(0.0, 0.0, 0.16)))))
+    world.bodies = {"box": Slider(world, "box")}
+    return Simulation(world, {"box": load_text(AGENT, "agent.py").Agent}, seed=1)
+
+
+def _cost(make: Callable[[], Simulation]) -> float:
+    """Returns what a tick and its tock cost [s]."""
+    simulation = make()
+    simulation.step(WARM)
+    return seconds_of(lambda: simulation.step(TICKS)) / TICKS
+
+
+def _recorded_cost(make: Callable[[], Simulation]) -> float:
+    """Returns what they cost while all is recorded, with all that is still to be written in the end [s]."""
+    with tempfile.TemporaryDirectory() as folder:
+        simulation = make()
+        recording = simulation.record(Path(folder) / "run")
+        simulation.step(WARM)
+
+        def work() -> None:
+            simulation.step(TICKS)
+            recording.close()
+
+        return seconds_of(work) / TICKS
+
+
+def _bare_cost(make: Callable[[], Simulation]) -> float:
+    """Returns what MuJoCo alone costs for a tick, from each state that the same run comes through [s]."""
+    simulation = make()
+    states: list[WorldState] = []
+    simulation.step(WARM)
+    simulation.observe(lambda seen: states.append(seen.state()))
+    simulation.step(TICKS)
+    world = simulation.world
+    steps = round(simulation.period / world.scene.timestep)
+    mj_model, mj_data, clock, spent = world.mj_model, world.mj_data, time.perf_counter, 0.0
+    gc.collect()
+    gc.disable()
+    try:
+        for state in states:
+            world.restore(state)
+            start = clock()
+            mujoco.mj_step(mj_model, mj_data, nstep=steps)
+            spent += clock() - start
+    finally:
+        gc.enable()
+    return spent / len(states)
+
+
+def measure() -> list[Figure]:
+    """Measures everything."""
+    times = "times the bare physics"
+    lockstep = ratio(lambda: _cost(typical), lambda: _bare_cost(typical), rounds=7)
+    recorded = ratio(lambda: _recorded_cost(typical), lambda: _cost(typical), rounds=7)
+    overhead = median(_cost(typical) - _bare_cost(typical) for _ in range(5)) * 1e6
+    return [
+        Figure(name="tick and tock, no vision", value=lockstep, sense="at most", bar=3, what=times),
+        Figure(name="cognition and lockstep", value=overhead, sense="at most", bar=40, what="us a tick beyond the bare physics"),
+        Figure(name="recording everything", value=recorded, sense="at most", bar=1.5, what="times the unrecorded run"),
+    ]
+
+
+def main(*, json_output: bool) -> int:
+    """Measures and prints; returns the exit code."""
+    return report(measure(), json_output=json_output)
