@@ -184,6 +184,22 @@ def test_onlookers_see_everything_and_change_nothing() -> None:
     assert events == list(watched.trace)
 
 
+def test_a_listener_that_fails_ends_the_run_after_the_tick_that_can_go_on_then() -> None:
+    simulation, other = driving("all"), driving("all")
+
+    def listener(event: Any) -> None:
+        if event.kind == "fire" and event.time == 0.05:
+            raise OSError("nobody hears")
+
+    simulation.listen(listener)
+    with pytest.raises(OSError, match="nobody hears"):
+        simulation.run(0.5)
+    assert simulation.time == 0.05
+    simulation.run(0.45)
+    other.run(0.5)
+    assert digest(simulation) == digest(other)
+
+
 def test_an_observer_cannot_step_what_it_observes() -> None:
     simulation = driving()
     simulation.observe(lambda seen: simulation.step())
