@@ -152,9 +152,9 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
     if round(simulation.period * MICROSECONDS) != period or simulation.seed != recorded.facts["seed"]:
         was = f"period {seconds(period):g} s, seed {recorded.facts['seed']}"
         return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
-    simulation.trace_at_least("all")
+    simulation._journal.raise_level("all")
     simulation.listen(events.take)
-    simulation.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
+    simulation._course.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
     difference: str | None = None
     try:
         for tick, state, count in recorded.states():
@@ -169,7 +169,8 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
                 difference = f"there were {count:,} events {where}, and are {events.count:,} now"
                 break
         else:
-            simulation.repeat_planned()
+            simulation._course.repeat_commands()
+            simulation._journal.check()
     except _Differs:
         pass
     left = events.rest()

@@ -56,10 +56,10 @@ class Journal:
         Raises:
             ParameterError: If nothing is traced.
         """
-        if self.trace is not None and not self._listeners and self._recording is None:
-            self.trace.listen(self._hear)
         if self._level == "none":
             raise ParameterError("nothing is traced; make the simulation with trace='all', or another level")
+        if self.trace is not None and not self._listeners and self._recording is None:
+            self.trace.listen(self._hear)
         self._listeners.append(listener)
 
     def record(self, recording: Recording) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.modules.port import Request
-from actr3d.clock import seconds
+from actr3d.clock import microseconds, seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.simulation.commands import Command
 from actr3d.simulation.journal import Journal
@@ -46,8 +46,9 @@ class Lockstep:
         self._period_us = period
         self._period = seconds(period)
         self._moving = tuple(world.bodies.values())
-        self._trace = journal.begin()
-        self.minds = Minds(factories, bodies, seed, self._trace)
+        self.trace = journal.begin()
+        """Its trace; None where nothing is traced."""
+        self.minds = Minds(factories, bodies, seed, self.trace)
         self.ticks = 0
         """How many whole ticks it has gone."""
         self.commands = 0
@@ -151,8 +152,8 @@ class Lockstep:
 
     def tell(self, command: Command) -> None:
         """Lets the trace know of a command that has been carried out."""
-        if self._trace is not None:
-            self.minds.tell(self._trace, "command", command.to_data())
+        if self.trace is not None:
+            self.minds.tell(self.trace, "command", command.to_data())
 
     def repeat_commands(self, known: Sequence[Command], *, only_minds: bool = False) -> None:
         """Carries out what users did the first time, after as many ticks."""
@@ -170,3 +171,16 @@ def _ask(request: Request, word: Any, *values: Any) -> Any:
     except Actr3dError as error:
         error.add_note(f"  asked for by '{request.port._path}' in {request.place}")
         raise
+
+
+def steps_of(period: float, world: World) -> int:
+    """Returns how many physics steps a period is.
+
+    Raises:
+        SimulationError: If it is no whole number of them.
+    """
+    step = world.scene.timestep_us
+    steps, rest = divmod(microseconds(period, "Simulation.period"), step)
+    if rest or steps < 1:
+        raise SimulationError(f"Simulation.period: must be a whole multiple of the physics step of {seconds(step):g} s (got {period!r})")
+    return steps

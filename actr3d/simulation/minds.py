@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 from actr3d.actr.chunk import LASTING_TYPES
@@ -116,3 +116,18 @@ def _made(name: str, factory: Factory) -> Model:
     if mind.__dict__.get("parent") is not None or (mind._converted and mind.sch.now_us > 0):
         raise SimulationError(f"minds['{name}']: must make a new agent each time it is called, for the run may go back to its start")
     return mind
+
+
+def check_names(minds: Iterable[str], bodiless: Iterable[str], bodies: Collection[str]) -> None:
+    """Checks that minds have the bodies they should have.
+
+    Raises:
+        SimulationError: If there is no such body, or there is one of a name that should have none.
+    """
+    for name in minds:
+        if name not in bodies:
+            hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
+            raise SimulationError(f"minds: no body '{name}' in the scene{hint} (a mind without a body goes into `bodiless`)")
+    for name in bodiless:
+        if name in bodies:
+            raise SimulationError(f"bodiless: '{name}' is the name of a body")

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.clock import microseconds, seconds
-from actr3d.errors import SimulationError, did_you_mean
+from actr3d.errors import SimulationError
 from actr3d.recording import Recording
-from actr3d.simulation.commands import Command, command_of
+from actr3d.simulation.course import Course
 from actr3d.simulation.glimpse import Glimpse
-from actr3d.simulation.history import History, Moment
 from actr3d.simulation.journal import Journal, Listener
-from actr3d.simulation.lockstep import Lockstep
-from actr3d.simulation.minds import Factory
+from actr3d.simulation.lockstep import Lockstep, steps_of
+from actr3d.simulation.minds import Factory, check_names
 from actr3d.simulation.pace import Ending, Pace, RunReport
 from actr3d.simulation.sources import sources_of
 from actr3d.trace import Trace
@@ -66,37 +66,30 @@ class Simulation:
         self.seed: int | str = seed if seed is not None else fresh_seed() if limits is None else limits.next_seed()
         self._minds = dict(minds or {})
         self._bodiless = dict(bodiless or {})
-        self._check_names()
-        self._steps = _steps(period, self.world)
+        check_names(self._minds, self._bodiless, self.world.bodies)
+        self._steps = steps_of(period, self.world)
         self._period = self._steps * self.world.scene.timestep_us
         self._journal = Journal(trace)
         if limits is not None and limits.trace is not None:
             program = limits.trace
             self._journal.raise_level(program.level)
             self._journal.listen(lambda event: program.emit(*event))
-        self._history = History(Moment.of(0, self.world))
-        self._lockstep: Lockstep | None = None
+        self._course = Course(self.world, self._begin, self._journal)
         self._observers: list[Observer] = []
         self._observing = False
-        self._submitted: deque[tuple[Future[None], str, tuple[Any, ...], str | None, Mapping[str, Any]]] = deque()
+        self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
         self._owner = threading.get_ident()
 
-    def _check_names(self) -> None:
-        bodies = self.world.bodies
-        for name in self._minds:
-            if name not in bodies:
-                hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
-                raise SimulationError(f"minds: no body '{name}' in the scene{hint} (a mind without a body goes into `bodiless`)")
-        for name in self._bodiless:
-            if name in self._minds or name in bodies:
-                raise SimulationError(f"bodiless: '{name}' is the name of a body")
+    def _begin(self) -> Lockstep:
+        minds = {**self._minds, **self._bodiless}
+        return Lockstep(self.world, minds, frozenset(self._minds), self.seed, self._steps, self._period, self._journal)
 
     # -- where it stands
 
     @property
     def ticks(self) -> int:
         """How many whole ticks the run has gone."""
-        return 0 if self._lockstep is None else self._lockstep.ticks
+        return self._course.ticks
 
     @property
     def time(self) -> float:
@@ -111,7 +104,7 @@ class Simulation:
     @property
     def furthest(self) -> float:
         """How far the run has come [s]; after `seek` the present may lie before that."""
-        return seconds(self._history.ticks * self._period)
+        return seconds(self._course.furthest * self._period)
 
     @property
     def minds(self) -> dict[str, Any]:
@@ -120,14 +113,13 @@ class Simulation:
         Raises:
             SimulationError: If a mind cannot be made.
         """
-        environment = self._begun().minds.environment
+        environment = self._course.lockstep.minds.environment
         return {name: environment[name] for name in (*self._minds, *self._bodiless)}
 
     @property
     def trace(self) -> Trace | None:
         """The trace of the run up to now; None where nothing is traced. After `seek` it is another one."""
-        self._begun()
-        return self._journal.trace
+        return self._course.lockstep.trace
 
     # -- going on
 
@@ -141,10 +133,7 @@ class Simulation:
         self._enter()
         if self._submitted:
             self.carry_out_submitted()
-        lockstep = self._lockstep or self._begun()
-        if lockstep.commands < len(self._history.commands):
-            lockstep.repeat_commands(self._history.commands)
-        lockstep.tick()
+        self._course.tick()
 
     def tock(self) -> None:
         """Lets the bodies do what they were told, simulates the physics of the same period, and lets them answer.
@@ -155,9 +144,7 @@ class Simulation:
             Exception: What a body, an observer or a listener of the trace raises.
         """
         self._enter()
-        lockstep = self._begun()
-        answers = lockstep.tock()
-        self._note(lockstep, answers)
+        self._course.tock()
         if self._observers:
             self._show()
         self._journal.check()
@@ -198,9 +185,9 @@ class Simulation:
         end = None if seconds is None else self.ticks + self._whole_ticks(seconds, "run(seconds)")
         open_end = end is None and until is None
         pace = Pace(self._period, real_time)
-        minds = self._begun().minds
+        minds = self._course.lockstep.minds
         while end is None or self.ticks < end:
-            if open_end and minds.done and not self._submitted and self.ticks >= self._history.ticks:
+            if open_end and minds.done and not self._submitted and self.ticks >= self._course.furthest:
                 return pace.report("done")
             self.tick()
             self.tock()
@@ -210,30 +197,11 @@ class Simulation:
                 return pace.report(ending)
         return pace.report("seconds")
 
-    def _begun(self) -> Lockstep:
-        """Returns the run, and makes its minds first where there are none yet."""
-        if self._lockstep is None:
-            bodies = frozenset(self._minds)
-            self._lockstep = Lockstep(
-                self.world, {**self._minds, **self._bodiless}, bodies, self.seed, self._steps, self._period, self._journal
-            )
-            self._journal.state(0, self.world)
-        return self._lockstep
-
     def _enter(self) -> None:
         if threading.get_ident() != self._owner:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
         if self._observing:
             raise SimulationError("an observer only looks: it cannot step or change the simulation it observes")
-
-    def _note(self, lockstep: Lockstep, answers: tuple[Any, ...]) -> None:
-        """Keeps what going back needs of a tick that is new."""
-        history, ticks = self._history, lockstep.ticks
-        if ticks > history.ticks:
-            history.add_tick(ticks, answers)
-            if history.wants(ticks):
-                history.keep(Moment.of(ticks, self.world))
-        self._journal.state(ticks, self.world)
 
     # -- commands
 
@@ -256,17 +224,7 @@ class Simulation:
             Exception: What the world or the body raises; then nothing was done.
         """
         self._enter()
-        lockstep = self._begun()
-        command = command_of(lockstep.ticks, word, values, named, body, self.world)
-        history, before = self._history, lockstep.commands
-        with self._journal.holding():
-            lockstep.command(command)
-            if lockstep.ticks < history.ticks or before < len(history.commands):
-                history.cut(lockstep.ticks, before)
-                self._journal.cut(lockstep.ticks, before)
-            history.commands.append(command)
-        lockstep.tell(command)
-        self._journal.command(command)
+        self._course.command(word, values, named, body)
         self._journal.check()
 
     def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
@@ -276,39 +234,19 @@ class Simulation:
             What tells when it is done, or raises what went wrong with it.
         """
         future: Future[None] = Future()
-        self._submitted.append((future, word, values, body, named))
+        self._submitted.append((future, partial(self.command, word, *values, body=body, **named)))
         return future
 
     def carry_out_submitted(self) -> None:
         """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
         while self._submitted:
-            future, word, values, body, named = self._submitted.popleft()
+            future, command = self._submitted.popleft()
             try:
-                self.command(word, *values, body=body, **named)
+                command()
             except Exception as error:  # noqa: BLE001 - it is told to who asked
                 future.set_exception(error)
             else:
                 future.set_result(None)
-
-    def plan(self, commands: Sequence[Command]) -> None:
-        """Lets commands of an earlier run be carried out again at their ticks.
-
-        Raises:
-            SimulationError: If the run has begun already.
-        """
-        self._not_begun("a plan")
-        self._history.commands[:] = commands
-
-    def repeat_planned(self) -> None:
-        """Carries out what is planned for the present, without going on.
-
-        Raises:
-            SimulationError: If a tick waits for its tock.
-            Exception: What a body raises.
-        """
-        self._enter()
-        self._begun().repeat_commands(self._history.commands)
-        self._journal.check()
 
     # -- looking on
 
@@ -324,16 +262,6 @@ class Simulation:
         """
         self._journal.listen(listener)
 
-    def trace_at_least(self, level: str) -> None:
-        """Lets the run, which must not have begun, be traced at this level at least.
-
-        Raises:
-            SimulationError: If the run has begun already.
-            ParameterError: If the level is unknown.
-        """
-        self._not_begun("a trace")
-        self._journal.raise_level(level)
-
     def record(self, path: Path | str, **facts: Any) -> Recording:
         """Records the whole run to a new file, with every event, state, command and answer; to be closed by who asks for it.
 
@@ -345,16 +273,13 @@ class Simulation:
             SimulationError: If the run has begun already.
             RecordingError: If the file exists, or cannot be made.
         """
-        self._not_begun("a recording")
+        if self._course.begun:
+            raise SimulationError("a recording holds a run from its start on, and this one has begun already")
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
         sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
         recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
         self._journal.record(recording)
         return recording
-
-    def _not_begun(self, what: str) -> None:
-        if self._lockstep is not None:
-            raise SimulationError(f"{what} holds a run from its start on, and this one has begun already")
 
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.ticks)
@@ -373,8 +298,7 @@ class Simulation:
     def seek(self, time: float) -> None:
         """Brings the run to any time from its start to the furthest it has come; to the end of that tick, before what users did then.
 
-        Going on from there gives what the first run gave, with all its commands, byte for byte. The minds are made anew and
-        live through what was before, with the answers that were kept; the world comes from a kept state.
+        Going on from there gives what the first run gave, with all its commands, byte for byte.
 
         Args:
             time: When [s]; a whole number of ticks.
@@ -384,49 +308,15 @@ class Simulation:
         """
         self._enter()
         to = self._whole_ticks(time, "seek")
-        if to > self._history.ticks:
+        if to > self._course.furthest:
             raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
-        lockstep = self._lockstep
-        if lockstep is None or lockstep.broken or to <= lockstep.ticks:
-            self._lockstep = None
-            self._history.before(0).bring_back(self.world)
-        self._journal.silent = True
-        try:
-            self._live_through(to)
-        finally:
-            self._journal.silent = False
+        self._course.seek(to)
         self._journal.check()
         if self._observers:
             self._show()
-
-    def _live_through(self, to: int) -> None:
-        history, lockstep = self._history, self._begun()
-        moment = history.before(to)
-        if moment.tick > lockstep.ticks:
-            while lockstep.ticks < moment.tick:
-                lockstep.repeat_commands(history.commands, only_minds=True)
-                lockstep.remember(history.answers(lockstep.ticks + 1))
-            moment.bring_back(self.world)
-        while lockstep.ticks < to:
-            lockstep.repeat_commands(history.commands)
-            lockstep.tick()
-            lockstep.tock()
 
     def _whole_ticks(self, time: float, what: str) -> int:
         ticks, rest = divmod(microseconds(time, f"the time of {what}"), self._period)
         if rest or ticks < 0:
             raise SimulationError(f"{what}: must be a whole number of ticks of {self.period:g} s, at least 0 (got {time!r})")
         return ticks
-
-
-def _steps(period: float, world: World) -> int:
-    """Returns how many physics steps a period is.
-
-    Raises:
-        SimulationError: If it is no whole number of them.
-    """
-    step = world.scene.timestep_us
-    steps, rest = divmod(microseconds(period, "Simulation.period"), step)
-    if rest or steps < 1:
-        raise SimulationError(f"Simulation.period: must be a whole multiple of the physics step of {seconds(step):g} s (got {period!r})")
-    return steps
