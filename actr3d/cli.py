@@ -4,49 +4,24 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import io
 import os
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
-from typing import Any, TextIO, cast
+from typing import Any, NoReturn, TextIO
 
+from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.python2 import PYTHON_2_NAMES
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, ModelFileError
+from actr3d.output import ModelOutput, all_written, standard_output
 from actr3d.recording import Recorded
 from actr3d.running.run import run_model, settings_of
 from actr3d.trace import LEVELS, Trace, TraceEvent
-
-
-class _Lines(io.TextIOBase):
-    """Takes what a model prints, and hands on whole lines."""
-
-    def __init__(self, take: Callable[[str], None]) -> None:
-        self._take = take
-        self._rest = ""
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, text: str, /) -> int:
-        *lines, self._rest = (self._rest + text).split("\n")
-        for line in lines:
-            self._take(line)
-        return len(text)
-
-    encoding = "utf-8"
-
-    def reconfigure(self, **options: Any) -> None:
-        """Takes what a model says of its output's form; lines of JSON have one form only."""
-
-    def finish(self) -> None:
-        """Hands on what was printed without an end of line."""
-        if self._rest:
-            self._take(self._rest)
-            self._rest = ""
 
 
 def event_line(event: TraceEvent) -> str:
@@ -57,36 +32,73 @@ def event_line(event: TraceEvent) -> str:
 
 def run_command(options: argparse.Namespace) -> int:
     """Runs a model file."""
-    out = sys.stdout
-    if hasattr(out, "reconfigure"):
-        # A text that the terminal cannot show must not end a run; JSON is UTF-8 wherever it is made.
-        cast("Any", out).reconfigure(encoding="utf-8" if options.json else None, errors="backslashreplace")
+    with standard_output(apart=options.json) as out:
+        return _run(options, out)
+
+
+def _run(options: argparse.Namespace, out: TextIO) -> int:
+    """Runs a model file; its events, and with --json its own lines, go to `out`."""
     level = options.trace or ("all" if options.json else "none")
-    trace = Trace(level, keep=False) if level != "none" else None
-    limits = RunLimits(seed=options.seed, until=options.until, trace=trace)
-    lines: _Lines | None = None
+    trace = Trace("all" if options.record else level, keep=False)
+    limits = RunLimits(seed=options.seed, until=options.until, trace=trace if trace.level != "none" else None)
+    printed: ModelOutput | None = None
     if options.json:
-        lines = _Lines(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
-    if trace is not None:
+        printed = ModelOutput(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
+    if level != "none":
         show = TraceEvent.to_json if options.json else event_line
-        trace.listen(lambda event: print(show(event), file=out))
+        trace.listen(lambda event: None if out.closed else print(show(event), file=out), level)
+    limits.last_resort = partial(_leave, out, printed)
+    trouble: Exception | None = None
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _printing_to(printed or out):
             warnings.showwarning = _show_warning
-            if lines is not None:
-                sys.stdout = lines
-            try:
-                run_model(options.file, limits, settings=settings_of(options.set), record=options.record)
-            finally:
-                sys.stdout = out
-                if lines is not None:
-                    lines.finish()
-                out.flush()
-    except BrokenPipeError:
-        raise
+            run_model(options.file, limits, settings=settings_of(options.set), record=options.record)
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
-        return _complain(error)
-    return 0
+        trouble = error
+    except (SystemExit, KeyboardInterrupt):
+        if unwritten := all_written(out, printed):
+            return _complain_of_output(unwritten)
+        raise
+    unwritten = all_written(out, printed)
+    if trouble is not None and not (unwritten and isinstance(trouble, OSError)):
+        _complain(trouble)
+    if unwritten:
+        return _complain_of_output(unwritten)
+    return 0 if trouble is None else 1
+
+
+@contextmanager
+def _printing_to(out: TextIO) -> Generator[None]:
+    """Lets `out` be what a model prints to inside the block."""
+    before = sys.stdout, sys.__stdout__
+    sys.stdout = sys.__dict__["__stdout__"] = out
+    try:
+        yield
+    finally:
+        sys.stdout, sys.__dict__["__stdout__"] = before
+
+
+def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
+    """Ends the whole command as if the model had come to its end.
+
+    For a model that goes on asking for time after its last moment and catches whatever it is told: no error reaches us
+    from there.
+    """
+    with suppress(Exception):
+        logs.finished()
+        sys.stdout.flush()
+    unwritten = all_written(out, printed)
+    code = 0 if unwritten is None else _complain_of_output(unwritten)
+    with suppress(Exception):
+        sys.stderr.flush()
+    os._exit(code)
+
+
+def _complain_of_output(error: OSError) -> int:
+    """Says why the output cannot be written, unless only nobody reads it any more."""
+    if not isinstance(error, BrokenPipeError):
+        print(f"error: cannot write the output: {error.strerror}", file=sys.stderr)
+    return 1
 
 
 def replay_command(options: argparse.Namespace) -> int:
@@ -104,9 +116,11 @@ def replay_command(options: argparse.Namespace) -> int:
 
 
 def _complain(error: BaseException) -> int:
-    """Prints an error, and what caused it, with the modeller's own lines only."""
+    """Prints an error, and what caused it, with the modeller's own lines only; a file that cannot be loaded names its own line."""
     report = traceback.TracebackException.from_exception(error)
     _keep_own_lines(report)
+    if isinstance(error, ModelFileError):
+        report.stack.clear()
     text = "".join(report.format())
     if isinstance(error, Actr3dError):
         if not report.stack:
@@ -180,10 +194,8 @@ def _bench(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if arguments is None and os.environ.get("PYTHONHASHSEED") is None and sys.argv[1:2] in (["run"], ["replay"]):
-        # The order of sets of texts must not differ between two runs of one seed.
-        os.environ["PYTHONHASHSEED"] = "0"
-        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+    if arguments is None and sys.argv[1:2] in (["run"], ["replay"]):
+        _order_sets()
     if sys.stdout is None:  # it was closed before we came
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays until the end
     options: Any = _parser().parse_args(arguments)
@@ -192,9 +204,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 130
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # nobody reads any more
-        return 1
+
+
+def _order_sets() -> None:
+    """Starts the command again where the order of sets of texts would differ between two runs of one seed.
+
+    Whatever PYTHONHASHSEED is, models run with 0. A Python that is told not to read the environment (`-E`, `-I`) cannot be
+    told this either.
+    """
+    if sys.flags.hash_randomization and not sys.flags.ignore_environment:
+        os.environ["PYTHONHASHSEED"] = "0"
+        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
 
 
 if __name__ == "__main__":

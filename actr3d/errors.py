@@ -74,3 +74,17 @@ def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str
     names = sorted({str(name) for name in known} - {word})
     near = difflib.get_close_matches(word, names, n=1, cutoff=cutoff)
     return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def hint_for(error: Exception, names: Iterable[object] = ()) -> str:
+    """Returns `"; did you mean 'x'?"` for the unknown name or attribute that an error tells of, or an empty string.
+
+    Args:
+        error: The error.
+        names: What could be meant by an unknown name.
+    """
+    if isinstance(error, NameError) and error.name:
+        return did_you_mean(error.name, names)
+    if isinstance(error, AttributeError) and error.name and error.obj is not None:
+        return did_you_mean(error.name, [name for name in (*dir(error.obj), *vars(type(error.obj))) if name[0] != "_"])
+    return ""

@@ -1,42 +1,28 @@
-"""The trace: the append-only record of everything that happens in one run.
+"""The trace: the append-only record of everything that happens in one run, or in several that one program makes.
 
 A run has no trace until somebody asks for one, and then records no more than the level asked for. Whoever emits an
 event first looks at the trace's level flags, so that nothing is computed which nobody wants.
+
+An event's source is the dotted path of a part below the top model, such as `agent.goal`, or «top» for that model itself.
+Where one trace records several runs, as of a program that makes one model after another, the second one's top model is
+`top#2` and its parts are `top#2.goal` and so on, in the order in which the runs began to be traced. Each run's time
+begins anew.
+
+Every kind of event is described once, in `actr3d.kinds`: at which level it is recorded, who its source is, and its data.
+A trace that begins in the middle of a run begins with what everything is like: `start`, and then `state`, `buffer`,
+`productions`, `observe`, `utility` and the last `request` of each part.
 """
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import isfinite
-from typing import Any, NamedTuple, cast
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple, Protocol
 
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, did_you_mean
-
-LEVELS = ("none", "production", "buffer", "all")
-"""What a trace may hold: nothing; selections and firings; also buffer changes; everything."""
-
-KINDS = {
-    "start": "a run begins to be traced: its model, seed and profile",
-    "buffer": "a buffer holds another chunk, or none",
-    "state": "attributes of a module or model have these values",
-    "observe": "what productions look at beyond that has these values",
-    "conflict": "the productions that match, with their utilities and the parts of these",
-    "select": "a production is chosen",
-    "fire": "a production fires, with what it bound",
-    "changed": "a chosen production matches no longer and does not fire",
-    "compile": "a production is learned from two others",
-    "reward": "an agent gets a reward",
-    "utility": "a production's utility has become this by learning",
-    "request": "a module is asked for something; a memory's request with all candidates",
-    "retrieval": "a memory's answer arrives, or its failure",
-    "answer": "a body answers what it was asked for",
-    "output": "the model prints a line",
-    "command": "a user changes the run",
-}
-"""What events there are."""
+from actr3d.kinds import KINDS, LEVELS
+from actr3d.values import plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
 """The particulars of an event, or a function that makes them of what it has kept, when somebody reads them."""
@@ -49,7 +35,7 @@ class TraceEvent(NamedTuple):
     time_us: int
     """When [us of simulated time]."""
     source: str
-    """Who: the dotted path below the top model, or «top» for that model itself."""
+    """Who: the dotted path below the top model, or «top» for that model itself; of a later run, `top#2` and what follows."""
     kind: str
     """What: one of `KINDS`."""
     data: dict[str, Any]
@@ -60,63 +46,79 @@ class TraceEvent(NamedTuple):
         """When [s of simulated time]."""
         return seconds(self.time_us)
 
+    @property
+    def run(self) -> int:
+        """Which of the trace's runs it belongs to, counted from 1."""
+        return int(self.source.removeprefix("top#").partition(".")[0]) if self.source.startswith("top#") else 1
+
     def to_json(self) -> str:
         """Returns the event as one line of JSON; the same event always gives the same bytes.
 
         Numbers that JSON does not have become the texts `inf`, `-inf` and `nan`.
         """
-        record = {"time": self.time, "source": self.source, "kind": self.kind, "data": self.data}
-        try:
-            line = json.dumps(record, ensure_ascii=False, allow_nan=False)
-        except (TypeError, ValueError):
-            line = json.dumps({**record, "data": _plain(self.data)}, ensure_ascii=False, allow_nan=False)
+        line = to_json({"time": self.time, "source": self.source, "kind": self.kind, "data": self.data})
         # Where an object's text tells where it lies in memory, that differs from run to run.
         return _ADDRESS.sub("", line) if " at 0x" in line else line
 
 
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
+Listener = Callable[[TraceEvent], object]
 
-def _plain(value: Any) -> Any:
-    """Returns what JSON can hold of a value: what it has no word for becomes text, without addresses."""
-    if value is None or isinstance(value, (bool, int, str)):
-        return value
-    if isinstance(value, float):
-        return value if isfinite(value) else repr(value)
-    if isinstance(value, Mapping):
-        items = cast("Mapping[Any, Any]", value).items()
-        return {key if isinstance(key, str) else str(_plain(key)): _plain(item) for key, item in items}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in cast("Sequence[Any]", value)]
-    if isinstance(value, (set, frozenset)):
-        return sorted((_plain(item) for item in cast("set[Any]", value)), key=repr)
-    text = repr(value)
-    return f"<{type(value).__name__}>" if " at 0x" in text else text
+
+class Run(Protocol):
+    """What a trace asks of a run that it records."""
+
+    def now_us(self) -> int | None:
+        """Returns its present [us]; None where it is over and gone, or has become part of another."""
+        ...
+
+    def tell(self, trace: Trace) -> None:
+        """Tells a trace what everything is like at present."""
+        ...
+
+    def stop(self) -> None:
+        """Ends it once the present event is over."""
+        ...
 
 
 class Trace:
-    """Records the events of one run and hands each to whoever listens.
+    """Records the events of one program's runs and hands each to whoever listens.
 
     Args:
         level: One of `LEVELS`; what is not asked for is neither computed nor kept.
-        keep: Whether the trace keeps its events; a run that only streams them need not.
+        keep: Whether the trace keeps its events. A long run that only streams them need not: without listeners it then
+            costs nothing.
 
     Raises:
         ParameterError: If the level is unknown.
     """
 
-    __slots__ = ("_listeners", "_records", "all", "buffer", "keep", "level", "production")
+    __slots__ = ("_failures", "_listeners", "_records", "_runs", "all", "buffer", "keep", "level", "production")
 
     def __init__(self, level: str = "all", keep: bool = True) -> None:
-        if level not in LEVELS:
-            raise ParameterError(f"Trace.level: no level {level!r}; use one of {', '.join(LEVELS)}{did_you_mean(level, LEVELS)}")
         self.level = level
         self.keep = keep
-        self.production = level != "none"
-        self.buffer = level in ("buffer", "all")
-        self.all = level == "all"
         self._records: list[Record] = []
-        self._listeners: list[Callable[[TraceEvent], None]] = []
+        self._listeners: tuple[tuple[Listener, int], ...] = ()
+        self._runs: list[Run] = []
+        self._failures: list[Exception] = []
+        _rank("Trace.level", level)
+        self._set_flags()
+
+    def _set_flags(self) -> None:
+        """Asks for what is kept or listened to, and no more."""
+        wanted = max([rank for _, rank in self._listeners] + [LEVELS.index(self.level) if self.keep else 0])
+        self.production = wanted >= LEVELS.index("production")
+        self.buffer = wanted >= LEVELS.index("buffer")
+        self.all = wanted >= LEVELS.index("all")
+
+    # -- what happens
+
+    def begin(self, run: Run) -> int:
+        """Takes in a run that begins to be traced; returns its number, counted from 1."""
+        self._runs.append(run)
+        return len(self._runs)
 
     def emit(self, time_us: int, source: str, kind: str, data: Data) -> None:
         """Appends one event; the caller has looked at the level and gives `data` away."""
@@ -124,12 +126,104 @@ class Trace:
             self._records.append((time_us, source, kind, data))
         if self._listeners:
             event = _event((time_us, source, kind, data))
-            for listener in self._listeners:
-                listener(event)
+            rank = _RANKS.get(kind, 0)
+            for listener, level in self._listeners:
+                if level >= rank:
+                    try:
+                        listener(event)
+                    except Exception as error:  # noqa: BLE001 - it is raised where the run can bear it, see `raise_failures`
+                        self._fail(listener, event, error)
 
-    def listen(self, listener: Callable[[TraceEvent], None]) -> None:
-        """Calls `listener` with every event from now on."""
-        self._listeners.append(listener)
+    def command(self, name: str, data: Mapping[str, Any] | None = None, *, run: int | None = None) -> None:
+        """Sends a user's command, such as pause or a new value of a parameter, to a run.
+
+        It is recorded at the run's present time, at every level, and handed to the listeners; whoever can carry commands
+        out is one of them. This is to be called by the thread that runs the model; another one asks for it between two
+        events: `model.sch.add(trace.command, args=("pause",), thread_safe=True)`.
+
+        Args:
+            name: What to do.
+            data: With what; kept as it is now.
+            run: The number of the run; None for the one that began last.
+
+        Raises:
+            ParameterError: If there is no such run any more.
+            Exception: What a listener raises.
+        """
+        known = {number: now for number, one in enumerate(self._runs, start=1) if (now := one.now_us()) is not None}
+        number = max(known, default=1) if run is None else run
+        if number not in known:
+            raise ParameterError(f"Trace.command: no run {number} to send {name!r} to; there are: {', '.join(map(str, known)) or 'none'}")
+        if self.production:
+            self.emit(known[number], top_path(number), "command", {"command": name, "data": plain(dict(data or {}))})
+        self.raise_failures()
+
+    # -- listeners
+
+    def listen(self, listener: Listener, level: str | None = None) -> None:
+        """Calls `listener` with every event from now on, after telling it what everything is like in runs under way.
+
+        A listener that raises an error hears no more; the run ends after the present event, and `run` raises that error.
+        It can go on afterwards.
+
+        Args:
+            listener: Takes an event.
+            level: Up to which level it hears events; None for the trace's own.
+
+        Raises:
+            ParameterError: If the level is unknown, or above the trace's own.
+            Exception: What the listener raises at once.
+        """
+        rank = _rank("Trace.listen(level)", self.level if level is None else level)
+        if rank > LEVELS.index(self.level):
+            raise ParameterError(f"Trace.listen(level): a trace of level '{self.level}' has no events of level '{level}'")
+        self._listeners = (*self._listeners, (listener, rank))
+        self._set_flags()
+        opening = Trace(LEVELS[rank], keep=False)
+        opening._listeners = ((listener, rank),)
+        opening._set_flags()
+        for run in self._runs:
+            if run.now_us() is not None:
+                run.tell(opening)
+        if opening._failures:
+            self.ignore(listener)
+            opening.raise_failures()
+
+    def ignore(self, listener: Listener) -> None:
+        """Calls a listener no more.
+
+        Raises:
+            ParameterError: If it does not listen.
+        """
+        others = tuple(pair for pair in self._listeners if pair[0] != listener)
+        if len(others) == len(self._listeners):
+            raise ParameterError(f"Trace.ignore: {plain(listener)} does not listen")
+        self._listeners = others
+        self._set_flags()
+
+    def _fail(self, listener: Listener, event: TraceEvent, error: Exception) -> None:
+        """Lets a listener go that raised an error, and ends the runs so that it can be raised."""
+        who = f"{event.kind}' of {event.source} at {event.time:g} s"
+        error.add_note(f"raised by a listener of the trace, {plain(listener)}, for the event '{who}; it hears no more")
+        self._listeners = tuple(pair for pair in self._listeners if pair[0] != listener)
+        self._set_flags()
+        self._failures.append(error)
+        for run in self._runs:
+            run.stop()
+
+    def raise_failures(self) -> None:
+        """Raises what a listener has raised; called where no event is half done.
+
+        Raises:
+            Exception: The first error, with a note on each other.
+        """
+        if self._failures:
+            (first, *others), self._failures = self._failures, []
+            for other in others:
+                first.add_note(f"another listener raised {type(other).__name__}")
+            raise first
+
+    # -- what was recorded
 
     def __len__(self) -> int:
         return len(self._records)
@@ -140,6 +234,20 @@ class Trace:
     def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
         """Returns the events of one kind, of one source where it is named, in order."""
         return [e for e in self if e.kind == kind and (source is None or e.source == source)]
+
+
+_RANKS = {name: LEVELS.index(kind.level) for name, kind in KINDS.items()}
+
+
+def top_path(number: int) -> str:
+    """Returns the source's name of a run's top model."""
+    return "top" if number == 1 else f"top#{number}"
+
+
+def _rank(what: str, level: str) -> int:
+    if level not in LEVELS:
+        raise ParameterError(f"{what}: no level {level!r}; use one of {', '.join(LEVELS)}{did_you_mean(level, LEVELS)}")
+    return LEVELS.index(level)
 
 
 def _event(record: Record) -> TraceEvent:

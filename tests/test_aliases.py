@@ -142,3 +142,19 @@ def test_blocks_may_stand_inside_one_another() -> None:
         with aliases():
             assert importlib.import_module("ccm") is not outer
         assert importlib.import_module("ccm") is outer
+
+
+def test_blocks_may_end_in_any_order() -> None:
+    real = ModuleType("ccm")
+    sys.modules["ccm"] = real
+    try:
+        first, second = aliases(), aliases()
+        first.__enter__()
+        second.__enter__()
+        first.__exit__(None, None, None)
+        assert importlib.import_module("ccm.lib.grid") is not real
+        second.__exit__(None, None, None)
+        assert sys.modules["ccm"] is real
+        assert "ccm.lib.grid" not in sys.modules
+    finally:
+        del sys.modules["ccm"]

@@ -6,31 +6,10 @@ import warnings
 from typing import Any
 
 import pytest
+from loud import HEAD, warned
 
 from actr3d.actr.loading import load_text
 from actr3d.errors import ChunkError, ModelWarning, ProductionException
-
-HEAD = """from actr3d.actr import *
-class Colour: depth = 3
-class Eye(Model): busy, colour = False, Colour()
-class Agent(ACTR):
-    goal = Buffer()
-    retrieval = Buffer()
-    memory = Memory(retrieval)
-    imaginal = ImaginalModule(goal)
-    eye = Eye()
-"""
-
-
-def warned(body: str, length: float = 0.0) -> list[tuple[str, int]]:
-    """Returns what is said of an agent with these methods, with the line (the first line of the body is 10)."""
-    text = HEAD + "\n".join("    " + line for line in body.splitlines())
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        agent: Any = load_text(text, "loud.py").Agent()
-        agent.run(length)
-    assert all(w.category is ModelWarning and w.filename == "loud.py" for w in said)
-    return [(str(w.message), w.lineno) for w in said]
 
 
 @pytest.mark.parametrize(
@@ -61,8 +40,8 @@ def warned(body: str, length: float = 0.0) -> list[tuple[str, int]]:
         ("def init(): goal.set('?x')", "nothing binds '?x'", 10),
         ("def p(goal='a ?x'):\n    goal.modify(a='?x')", "a='?x' stores that very text; the variable's value is a=x", 11),
         ("def p(goal='a'): pass\ndef p(goal='b'): pass", "class Agent has two methods 'p', in lines 10 and 11; only the second counts", 11),
-        ("production_tme = 0.1", "has an attribute 'production_tme', which is no parameter; did you mean 'production_time'?", 4),
-        ("def init(): memory.treshold = 3", "'memory' has an attribute 'treshold', which is no parameter; did you mean 'threshold'?", 4),
+        ("production_tme = 0.1", "has an attribute 'production_tme', which is no parameter; did you mean 'production_time'?", 10),
+        ("def init(): memory.treshold = 3", "Memory has no parameter 'treshold'; did you mean 'threshold'?", 10),
     ],
 )
 def test_what_is_not_meant_is_said_at_its_line(body: str, message: str, line: int) -> None:

@@ -104,7 +104,17 @@ def test_numbers_that_json_does_not_have_become_text(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "ending", ["model.run()", "while True: model.run(1)", "while True:\n    try: model.run()\n    except Exception: pass"]
+    "ending",
+    [
+        "model.run()",
+        "while True: model.run(1)",
+        "while True: Endless().run()",
+        "while True:\n    try: model.run()\n    except Exception: pass",
+        "while True:\n    try: Endless().run()\n    except: pass",
+        "while True:\n    try:\n        while True:\n            try: model.run(0.1)\n            except: pass\n    finally: continue",
+        "import threading\nthreading.Thread(target=model.run).start()",
+        "import threading\ndef go():\n    while True: Endless().run()\nthreading.Thread(target=go).start()",
+    ],
 )
 def test_until_ends_every_model(tmp_path: Path, ending: str) -> None:
     done = run(tmp_path, ENDLESS + ending, "--until", "0.5")
@@ -154,6 +164,7 @@ def test_time_that_stands_still_is_an_error(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert "error: time stands still at 0 s" in done.stderr
     assert "'on' (model.py:8)" in done.stderr
+    assert "of 'top'" in done.stderr
 
 
 @pytest.mark.parametrize(("call", "code", "message"), [("3", 3, ""), ("", 0, ""), ("'sorry'", 1, "sorry\n")])
@@ -214,7 +225,10 @@ def test_the_order_of_sets_does_not_differ_between_runs(tmp_path: Path) -> None:
     (tmp_path / "random.py").write_text("raise SystemExit('a file of the model stands in for the library')", encoding="utf-8")
     env = {key: value for key, value in os.environ.items() if key != "PYTHONHASHSEED"}
     command = [str(Path(sys.executable).parent / "actr3d"), "run", "model.py", "--seed", "1"]
-    runs = [subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, timeout=60, check=True).stdout for _ in range(3)]
+    runs: list[bytes] = []
+    for seed in ({}, {}, {"PYTHONHASHSEED": "random"}, {"PYTHONHASHSEED": "0"}, {"PYTHONHASHSEED": "123"}):
+        done = subprocess.run(command, cwd=tmp_path, env={**env, **seed}, capture_output=True, timeout=60, check=True)
+        runs.append(done.stdout)
     assert len(set(runs)) == 1
 
 
@@ -227,3 +241,68 @@ def test_a_name_of_python_2_is_called_that(line: str, tmp_path: Path, capsys: py
     assert "old.py" in said
     assert "line 2" in said
     assert "this file is written for Python 2" in said
+
+
+WRITES = """
+import os, sys, subprocess, io
+print('one', end=' ')
+sys.__stdout__.write('two\\n')
+os.system('echo child')
+subprocess.run([sys.executable, '-c', 'print("grandchild")'], check=True)
+os.write(1, b'raw\\n')
+sys.stdout.buffer.write(b'bytes \\xff\\n')
+sys.stdout.reconfigure(encoding='latin-1')
+wrapper = io.TextIOWrapper(sys.stdout.buffer, encoding='utf-8')
+wrapper.write('wrapped \\u2211\\n')
+del wrapper
+os.fstat(sys.stdout.fileno())
+print(sys.stdout.encoding, sys.stdout.isatty())
+sys.stdout.writelines(['a\\n', 'b\\n'])
+sys.stdout.close()
+"""
+
+
+def test_nothing_comes_between_the_lines_of_json(tmp_path: Path) -> None:
+    done = run(tmp_path, WRITES + NOISY, "--seed", "1", "--json")
+    assert done.returncode == 0
+    printed = [event["data"]["text"] for event in map(json.loads, done.stdout.splitlines()) if event["kind"] == "output"]
+    assert printed[:6] == ["one two", "bytes \\xff", "wrapped \u2211", "utf-8 False", "a", "b"]
+    assert sorted(done.stderr.split()) == ["child", "grandchild", "raw"]
+
+
+@pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("print('x' * 100000)\nprint('y')", ""),
+        ("try:\n    for i in range(9999): print(i)\nexcept OSError: pass", ""),
+        ("import ccm, sys\nprint('x')\nsys.exit(3)", ""),
+        ("print('x')\n1 / 0", "ZeroDivisionError: division by zero\n"),
+    ],
+)
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_a_full_disk_is_one_clear_error(tmp_path: Path, words: list[str], source: str, message: str) -> None:
+    (tmp_path / "model.py").write_text(source, encoding="utf-8")
+    with Path("/dev/full").open("w") as full:
+        env = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
+        command = [*COMMAND, "run", "model.py", *words]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=env, stdout=full, stderr=subprocess.PIPE, encoding="utf-8", timeout=60, check=False
+        )
+    assert done.returncode == 1
+    assert done.stderr.endswith(message + "error: cannot write the output: No space left on device\n")
+    assert done.stderr.count("Traceback") == bool(message)
+
+
+@pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
+def test_a_model_may_close_its_output(tmp_path: Path, words: list[str]) -> None:
+    done = run(tmp_path, "import ccm, sys\nprint('said')\nsys.stdout.close()\nccm.Model().run(1)", *words)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "said" in done.stdout
+
+
+def test_a_helper_of_python_2_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "old.py").write_text("x = 1\nprint x\n", encoding="utf-8")
+    done = run(tmp_path, "import old")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"error: {tmp_path}/old.py:2: this file is written for Python 2 (a print statement); convert it to Python 3\n"

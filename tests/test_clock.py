@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actr3d.clock import EventQueue, microseconds, seconds
+from actr3d.clock import Ends, EventQueue, microseconds, seconds
 from actr3d.errors import SchedulerError
 
 
@@ -48,3 +48,34 @@ def test_events_come_by_time_then_priority_then_order(events: list[tuple[int, in
     order = [queue.pop() for _ in events]
     assert order == sorted(range(len(events)), key=lambda i: (events[i][0], -events[i][1], i))
     assert queue.next_time() is None
+
+
+@given(
+    st.lists(st.one_of(st.fractions(0, 2), st.floats(0, 2), st.sampled_from([1 / 30, 1 / 3, 0.01, 0.07])), max_size=60), st.integers(1, 40)
+)
+def test_runs_that_follow_one_another_do_not_drift(durations: list[Any], times: int) -> None:
+    ends, now, exact = Ends(), 0, Fraction(0)
+    for duration in durations * times:
+        now = ends.after(now, duration)
+        exact += Fraction(duration) * 1_000_000
+        assert abs(now - exact) <= 0.51
+
+
+def test_whole_microseconds_stay_whole_for_ever() -> None:
+    ends, now = Ends(), 0
+    for count in range(1, 100_001):
+        now = ends.after(now, 0.07)
+        assert now == 70_000 * count
+
+
+def test_what_is_left_over_counts_only_where_that_run_has_ended() -> None:
+    ends = Ends()
+    assert ends.after(0, 1 / 3) == 333_333
+    assert ends.after(333_333, 1 / 3) == 666_667
+    assert ends.after(700_000, 1 / 3) == 1_033_333  # something else has moved the clock: this run is as long as it says
+    assert ends.after(1_033_333, 1 / 6) == 1_200_000
+
+
+def test_a_negative_duration_is_refused() -> None:
+    with pytest.raises(SchedulerError, match=r"the limit of a run must not be negative \(got -1 s\)"):
+        Ends().after(5_000_000, -1)

@@ -18,15 +18,17 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "trace", "configuration"}
+BASE = {"errors", "clock", "values", "kinds", "trace", "configuration"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
 PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
+    "values": set(),
+    "kinds": set(),
     "configuration": {"errors"},
-    "trace": {"errors", "clock"},
+    "trace": {"errors", "clock", "values", "kinds"},
     "actr": BASE,
     "world": BASE,
     "camera": BASE | {"world"},
@@ -38,7 +40,8 @@ PARTS: dict[str, set[str]] = {
     "running": BASE | BODILY | SENSES | RUNNING,
     "experiment": BASE | BODILY | SENSES | RUNNING,
     "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench"},
+    "output": set(),
+    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "output"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING,
 }

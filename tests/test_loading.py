@@ -49,7 +49,7 @@ def test_encodings_and_ends_of_lines(tmp_path: Path, data: bytes, text: str) -> 
         (b"y = 1\nx = '\xe9'\n", "'.*model.py' is no Python source: line 2 is no UTF-8"),
         (b"# coding: klingon\n", "is no Python source: unknown encoding"),
         (b"\x89PNG\r\n\x1a\n\x00\x00", "is no Python source"),
-        (b"x = 1\n\x00\n", "is no Python source: .*null bytes|source code .*null bytes"),
+        (b"x = 1\n\x00\n", "model.py:2: there is a NUL character; this is no Python source"),
     ],
 )
 def test_what_is_no_text_is_refused(tmp_path: Path, data: bytes, message: str) -> None:
@@ -105,6 +105,8 @@ PYTHON_2 = [
     ('x = ur"a"', 1),
     ("def f((a, b)):\n    pass", 1),
     ("f = lambda (a, b): a", 1),
+    ("import sys\nprint >>sys.stderr, 'a', 3", 2),
+    ("import sys\ndef f():\n    x = 1\n    print >> sys.stderr\n", 4),
     ("for i in x:\n\tif i:\n        y = i\n", 3),
 ]
 
@@ -136,6 +138,34 @@ BROKEN_PYTHON_3 = [
 def test_a_broken_python_3_file_is_not_taken_for_python_2(source: str, line: int) -> None:
     with pytest.raises(ModelFileError, match=rf"^new.py:{line}: (?!this file is written for Python 2)"):
         compile_source(source, "new.py")
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import sys\nif sys.version_info[0] == 2:\n    print >>sys.stderr, 'a'",
+        "print = 8\nprint >> 2",
+        "x = print and 3 >> 1",
+        "'print >>f, 1'",
+    ],
+)
+def test_what_python_3_can_run_is_not_taken_for_python_2(source: str) -> None:
+    run_text(source)
+
+
+@pytest.mark.parametrize(
+    ("source", "line"),
+    [
+        ("x = 1\n" + "(" * 100_000 + ")" * 100_000, 2),
+        ("x = 1\n\nx = " + "-" * 100_000 + "1", 3),
+        ("x" + ".a" * 100_000, 1),
+        ("def f(" + "(" * 100_000, 1),
+    ],
+)
+def test_what_is_nested_too_deeply_is_one_short_error(source: str, line: int) -> None:
+    with pytest.raises(ModelFileError, match=rf"^deep.py:{line}: .*(nested|parenthes|closed)") as caught:
+        compile_source(source, "deep.py")
+    assert len(str(caught.value)) < 400
 
 
 @pytest.fixture
@@ -194,6 +224,30 @@ def test_everything_is_put_back_after_an_error(folder: Path) -> None:
     with pytest.raises(ZeroDivisionError):
         run_text("import ccm, helper\n1 / 0", folder=folder)
     assert (dict(sys.modules), list(sys.path), list(sys.argv), list(sys.meta_path)) == before
+
+
+def test_a_helper_of_python_2_is_the_same_clear_error(folder: Path) -> None:
+    (folder / "old.py").write_text("import ccm\n\nprint 'a'\n", encoding="utf-8")
+    message = rf"^{folder}/old.py:3: this file is written for Python 2 \(a print statement\); convert it to Python 3$"
+    for load in (run_text, load_text):
+        with pytest.raises(ModelFileError, match=message):
+            load("import ccm\nfrom old import *", folder=folder)
+        assert "old" not in sys.modules
+
+
+def test_a_helper_that_lies_elsewhere_on_the_programs_path_counts_too(folder: Path, tmp_path: Path) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "far.py").write_text("x = 1\nprint x", encoding="utf-8")
+    with pytest.raises(ModelFileError, match=r"far.py:2: this file is written for Python 2"):
+        run_text(f"import sys\nsys.path.append({str(elsewhere)!r})\nimport far", folder=folder / "bare")
+
+
+def test_a_program_is_over_when_its_threads_are() -> None:
+    source = "import threading\nseen = []\ndef late():\n    threading.Event().wait(0.05)\n    seen.append(1)\n"
+    source += "threading.Thread(target=late).start()\n"
+    module: Any = run_text(source)
+    assert module.seen == [1]
 
 
 def test_a_changed_helper_is_read_anew(folder: Path) -> None:

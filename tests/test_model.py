@@ -101,6 +101,35 @@ def test_deep_trees_have_one_clock_and_dotted_names() -> None:
     assert part.now() == 2
 
 
+def test_what_waits_for_changes_hears_of_parts_where_they_are_now() -> None:
+    world: Any = Model()
+    world.left, world.right = Model(), Model()
+    ball = world.left.ball = Ball()
+    heard: list[str] = []
+
+    def listen(name: str) -> Iterator[Any]:
+        while True:
+            yield world[name].changes
+            heard.append(name)
+
+    for name in ("left", "right"):
+        world.sch.add(listen, args=(name,))
+    world.run(0)
+    ball.size = 1
+    world.run(0)
+    assert heard == ["left"]
+    ball.parent = None
+    ball.size = 2
+    world.run(0)
+    assert heard == ["left"]
+    world.right.ball = ball
+    world.run(0)
+    heard.clear()
+    ball.size = 3
+    world.run(0)
+    assert heard == ["right"]
+
+
 def test_a_part_can_move_to_another_parent() -> None:
     world: Any = Model()
     world.left, world.right = Model(), Model()
@@ -244,3 +273,10 @@ def test_a_change_anywhere_below_is_a_change_of_the_whole() -> None:
     world.mover()
     world.run(5)
     assert woken == [1]
+
+
+def test_limits_that_are_no_whole_microseconds_do_not_drift() -> None:
+    model: Any = Model()
+    for _ in range(3000):
+        model.run(1 / 30)
+    assert model.now() == 100

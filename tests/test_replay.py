@@ -11,12 +11,14 @@ from typing import Any
 import pytest
 from carts import driving
 
+from actr3d.actr.limits import RunLimits
 from actr3d.cli import main
-from actr3d.errors import ConfigurationError, ModelFileError, RecordingError
+from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.running.building import build
 from actr3d.running.replay import replay
-from actr3d.running.run import has_build, settings_of
+from actr3d.running.run import has_build, run_model, settings_of
+from actr3d.trace import Trace
 
 ROOT = Path(__file__).parent.parent
 BUILT = """
@@ -110,6 +112,15 @@ def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
         assert recorded.ticks == 12
         assert recorded.facts["ended"] == {"by": "seconds"}
     assert main(["replay", str(path)]) == 0
+
+
+def test_fewer_events_can_be_shown_than_are_recorded(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file, "--trace", "production")
+    shown = [line.split()[2] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
+    with Recorded(path) as recorded:
+        kinds = [event.kind for event in recorded.events()]
+    assert shown == [kind for kind in kinds if kind in ("start", "select", "fire")]
+    assert "buffer" in kinds
 
 
 def test_events_can_be_shown_while_they_are_recorded(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -249,8 +260,8 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
     file.write_text(NOISY, encoding="utf-8")
     assert main(["run", str(file), "--set", "a=1"]) == 1
     assert "so there are no parameters to set" in capsys.readouterr().err
-    assert main(["run", str(file), "--trace", "production", "--record", str(tmp_path / "run")]) == 1
-    assert "a recording holds every event: trace 'all', or none (got 'production')" in capsys.readouterr().err
+    with pytest.raises(ParameterError, match=r"a recording holds every event: trace 'all', or none \(got 'production'\)"):
+        run_model(file, RunLimits(trace=Trace("production")), record=tmp_path / "run")
     assert main(["replay", str(file)]) == 2
     assert "is no recording" in capsys.readouterr().err
 

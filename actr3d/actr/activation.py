@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.utility import logistic_noise
 from actr3d.errors import ChunkError
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from actr3d.actr.memory import Memory
 
 
-class MemorySubModule:
+class MemorySubModule(WithParameters):
     """The base of all activation modules; each method may be overridden.
 
     Args:
@@ -58,7 +58,13 @@ class MemorySubModule:
 
 
 class DMNoise(MemorySubModule):
-    """Adds logistic noise: `noise` drawn anew each time, `baseNoise` once for each chunk."""
+    """Adds logistic noise to activations.
+
+    Args:
+        memory: The memory.
+        noise: s of what is drawn anew each time.
+        baseNoise: s of what is drawn once for each chunk.
+    """
 
     @named_parameters
     def __init__(self, memory: Memory, noise: float = 0.3, baseNoise: float = 0.0) -> None:  # noqa: N803
@@ -204,7 +210,12 @@ def _forgotten(count: int, oldest: float, latest: float | None, d: float, younge
 
 
 class DMFixed(MemorySubModule):
-    """Adds a fixed amount: `memory.add(chunk, fixed=2)`; adding an equal chunk again adds its amount."""
+    """Adds a fixed amount: `memory.add(chunk, fixed=2)`; adding an equal chunk again adds its amount.
+
+    Args:
+        memory: The memory.
+        default: The amount of chunks that are added without one.
+    """
 
     @named_parameters
     def __init__(self, memory: Memory, default: float = 0) -> None:

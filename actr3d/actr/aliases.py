@@ -1,18 +1,16 @@
-"""Lets unchanged model files import `python_actr`, `ccm` and their parts, for as long as one is being loaded and run."""
+"""The old names, `python_actr`, `ccm` and their parts: what model files that are loaded here get when they import them."""
 
 from __future__ import annotations
 
 import importlib
 import importlib.abc
-import importlib.machinery
-import importlib.util
 import sys
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
+from importlib.machinery import ModuleSpec
+from threading import RLock
 from types import ModuleType
 from typing import Any
-
-from actr3d.actr import logger as logs
 
 ROOTS = ("python_actr", "ccm")
 """The names under which models know the library."""
@@ -52,23 +50,41 @@ ROOT_ONLY = frozenset({"Model", "ProductionSystem", "display", "finished", "log"
 """What the root package alone offers; models name variables like these before they import the rest."""
 
 
-class _Aliases(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Finds the old names, and answers with modules that hold ours."""
+class OldNames:
+    """The old library as one program sees it: modules that hold our names, made when they are asked for.
 
-    def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
-    ) -> importlib.machinery.ModuleSpec | None:
-        part = _part(fullname)
+    Args:
+        used: Called whenever the program imports one of them.
+    """
+
+    def __init__(self, used: Callable[[], None] = lambda: None) -> None:
+        self.modules: dict[str, ModuleType] = {}
+        self.used = used
+
+    def imported(self, name: str, wanted: Sequence[str] | None) -> ModuleType:
+        """Returns what an import statement gives: the module itself to `from ... import`, its root to a plain import.
+
+        Raises:
+            ModuleNotFoundError: If the old library had no such part.
+        """
+        self.used()
+        roots = name.split(".")
+        *_, module = [self.module(".".join(roots[:length])) for length in range(1, len(roots) + 1)]
+        return module if wanted else self.modules[roots[0]]
+
+    def module(self, name: str) -> ModuleType:
+        """Returns the module of an old name.
+
+        Raises:
+            ModuleNotFoundError: If the old library had no such part.
+        """
+        with _LOCK:
+            return self.modules.get(name) or self._make(name)
+
+    def _make(self, name: str) -> ModuleType:
+        part = _part(name)
         if part is None or part not in _PARTS:
-            return None
-        return importlib.util.spec_from_loader(fullname, self, is_package=part in PACKAGES)
-
-    def create_module(self, spec: importlib.machinery.ModuleSpec) -> ModuleType | None:
-        return None
-
-    def exec_module(self, module: ModuleType) -> None:
-        part = _part(module.__name__) or ""
-        logs.LOG.announce = True
+            raise ModuleNotFoundError(f"No module named '{name}'", name=name)
         names: dict[str, Any] = {}
         for source in _PARTS[part]:
             ours = importlib.import_module(source)
@@ -76,14 +92,53 @@ class _Aliases(importlib.abc.MetaPathFinder, importlib.abc.Loader):
             names.update({name: getattr(ours, name) for name in public if name != "annotations"})
         if part in ("actr", "lib.actr"):
             names = {name: value for name, value in names.items() if name not in ROOT_ONLY}
+        module = self.modules[name] = ModuleType(name)
+        module.__spec__ = _spec(name, part)
+        if part in PACKAGES:
+            module.__path__ = []
         module.__dict__.update(names)
         # Every part is there after `import ccm`, and those of the root package come with `from ccm import *` too.
         inner = _inner_parts(part)
         for short in inner:
             if short not in names:
-                setattr(module, short, importlib.import_module(f"{module.__name__}.{short}"))
+                setattr(module, short, self.module(f"{name}.{short}"))
         if names:
             module.__dict__["__all__"] = sorted({*names, *inner} - {"lib"} if part == "" else names)
+        above, _, short = name.rpartition(".")
+        if above in self.modules:
+            setattr(self.modules[above], short, module)
+        return module
+
+
+class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+    """Answers with the modules of the program in force; where there is none, it knows nothing."""
+
+    def find_spec(self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
+        part = _part(fullname)
+        return _spec(fullname, part) if _IN_FORCE and part is not None and part in _PARTS else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        if not _IN_FORCE:
+            raise ModuleNotFoundError(f"No module named '{spec.name}'", name=spec.name)
+        names = _IN_FORCE[-1]
+        names.used()
+        return names.module(spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Does nothing: the module has its names already."""
+
+
+_LOCK = RLock()
+_IN_FORCE: list[OldNames] = []
+_REAL: dict[str, ModuleType] = {}
+"""What the old names meant before the first program came into force, a real python_actr for instance."""
+_FINDER = _Finder()
+# It stays: to take a finder away while another thread goes through the list would hide the next one from that thread.
+sys.meta_path.insert(0, _FINDER)
+
+
+def _spec(name: str, part: str) -> ModuleSpec:
+    return ModuleSpec(name, _FINDER, is_package=part in PACKAGES)
 
 
 def _inner_parts(part: str) -> list[str]:
@@ -103,20 +158,41 @@ def _part(fullname: str) -> str | None:
     return part.removeprefix("lib.") if part.startswith("lib.actr.") else part
 
 
-def _is_alias(name: str) -> bool:
-    return _part(name) is not None
+def is_old_name(name: str) -> bool:
+    """Tells whether a dotted name is one of the old library."""
+    return name.partition(".")[0] in ROOTS
 
 
 @contextmanager
-def aliases() -> Generator[None]:
-    """Makes the old names importable inside the block; afterwards everything is as it was, a real python_actr included."""
-    finder = _Aliases()
-    before = {name: sys.modules.pop(name) for name in list(sys.modules) if _is_alias(name)}
-    sys.meta_path.insert(0, finder)
+def aliases(names: OldNames | None = None) -> Generator[None]:
+    """Makes the old names importable for everybody inside the block, also by `importlib.import_module`.
+
+    Blocks of several threads may end in any order: while any is open, the names are those of the last that began; after
+    all of them everything is as it was, a real python_actr included.
+    """
+    names = names or OldNames()
+    with _LOCK:
+        if not _IN_FORCE:
+            _REAL.update(_taken_out())
+        _IN_FORCE.append(names)
+        _put_in()
     try:
         yield
     finally:
-        sys.meta_path.remove(finder)
-        for name in [name for name in sys.modules if _is_alias(name)]:
-            del sys.modules[name]
-        sys.modules.update(before)
+        with _LOCK:
+            del _IN_FORCE[max(i for i, one in enumerate(_IN_FORCE) if one is names)]
+            _put_in()
+
+
+def _put_in() -> None:
+    """Lets `sys.modules` have those old names that are in force, or the real ones where none are."""
+    _taken_out()
+    if _IN_FORCE:
+        sys.modules.update(_IN_FORCE[-1].modules)
+    else:
+        sys.modules.update(_REAL)
+        _REAL.clear()
+
+
+def _taken_out() -> dict[str, ModuleType]:
+    return {name: sys.modules.pop(name) for name in list(sys.modules) if is_old_name(name)}

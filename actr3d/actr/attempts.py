@@ -13,8 +13,10 @@ from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing, calls, ge
 
 Shape = tuple[str, str, int, Any, Any]
 """A test as the code sees it: (operation, where, number, slot, value); «where» is a buffer, a reader or an extra test."""
-Attempt = Callable[[Sequence[Buffer], Sequence[Callable[[], Any]], Sequence[tuple[Condition, Any]]], Bindings | None]
-"""Tries a production: takes its buffers, its readers of anything else, and what straight code cannot test."""
+Attempt = Callable[[], Bindings | None]
+"""Tries a production."""
+Maker = Callable[[Sequence[Buffer], Sequence[Callable[[], Any]], Sequence[tuple[Condition, Any]]], Attempt]
+"""Makes an attempt of a production's buffers, its readers of anything else, and what straight code cannot test."""
 
 
 def has_slots(target: Any, key: Any) -> bool:
@@ -39,9 +41,7 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     return read_anything
 
 
-def attempt_for(
-    conditions: Sequence[Condition], context: Mapping[str, Any], reader: Callable[[str, Any], Callable[[], Any]]
-) -> Callable[[], Bindings | None]:
+def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any], reader: Callable[[str, Any], Callable[[], Any]]) -> Attempt:
     """Returns a function that tries a production now: it gives what the patterns bind, or None where they do not match.
 
     Args:
@@ -71,46 +71,61 @@ def attempt_for(
             if number == len(readers):
                 readers.append(reader(name, key))
             shapes.append((op, "reader", number, None, value))
-    attempt = _compile(tuple(shapes))
-    return lambda: attempt(buffers, readers, extra)
+    return _compile(tuple(shapes))(buffers, readers, extra)
 
 
 @lru_cache(maxsize=4096)
-def _compile(tests: tuple[Shape, ...]) -> Attempt:
+def _compile(tests: tuple[Shape, ...]) -> Maker:
     """Writes and compiles the code for tests of one shape; productions of equal shape share it."""
-    lines = ["def attempt(buffers, readers, extra):"]
+    lines: list[str] = []
     last: list[str] = []
-    bound: list[str] = []
-    seen: set[str] = set()
+    bound: dict[str, str] = {}
     names: dict[tuple[str, int, Any], str] = {}
+    seen: set[str] = set()
+    extra = any(where == "extra" for _, where, _, _, _ in tests)
     for op, where, number, key, value in tests:
         if where == "extra":
-            (lines if op == "empty" else last).append(f"    if not holds(extra[{number}], {'None' if op == 'empty' else 'b'}): return None")
+            (lines if op == "empty" else last).append(f"if not holds(extra{number}, {'None' if op == 'empty' else 'b'}): return None")
             continue
         if where == "buffer" and f"c{number}" not in seen:
             seen.add(f"c{number}")
-            lines += [f"    c{number} = buffers[{number}].chunk", f"    if c{number} is None: return None"]
+            lines += [f"c{number} = buffer{number}.chunk", f"if c{number} is None: return None"]
         text = names.get((where, number, key))
         if text is None:
             text = names[where, number, key] = f"t{len(names)}"
-            lines.append(f"    {text} = " + (f"c{number}.get({key!r}, MISSING)" if where == "buffer" else f"readers[{number}]()"))
+            lines.append(f"{text} = " + (f"c{number}.get({key!r}, MISSING)" if where == "buffer" else f"reader{number}()"))
         if op == "is":
             plain = text in seen or where == "reader"
             other = "" if plain else f" and (type({text}) is str or {text} is MISSING or as_text({text}) != {value!r})"
-            lines.append(f"    if {text} != {value!r}{other}: return None")
+            lines.append(f"if {text} != {value!r}{other}: return None")
             continue
         if text not in seen:
             seen.add(text)
-            lines += [f"    if type({text}) is not str:", f"        if {text} is MISSING: return None", f"        {text} = as_text({text})"]
+            lines += [f"if type({text}) is not str:", f"    if {text} is MISSING: return None", f"    {text} = as_text({text})"]
         if op == "bind":
-            bound.append(f"{value!r}: {text}")
+            bound[value] = text
         elif op == "not":
-            lines.append(f"    if {text} == {value!r}: return None")
-        else:
-            last.append(f"    if {value!r} not in b or {text} {'!=' if op == 'same' else '=='} b[{value!r}]: return None")
-    space: dict[str, Any] = {"MISSING": MISSING, "as_text": as_text, "holds": _holds}
-    exec("\n".join([*lines, "    b = {" + ", ".join(bound) + "}", *last, "    return b"]), space)
-    return space["attempt"]
+            lines.append(f"if {text} == {value!r}: return None")
+        elif value in bound and not extra:
+            lines.append(f"if {text} {'!=' if op == 'same' else '=='} {bound[value]}: return None")
+        else:  # a modeller's function may have bound the variable, or bound it anew
+            last.append(f"if {value!r} not in b or {text} {'!=' if op == 'same' else '=='} b[{value!r}]: return None")
+    lines.append("b = {" + ", ".join(f"{name!r}: {text}" for name, text in bound.items()) + "}")
+    return _assemble([*lines, *last, "return b"], tests)
+
+
+def _assemble(lines: Sequence[str], tests: Sequence[Shape]) -> Maker:
+    """Compiles a function of these lines, inside one that gives it the objects it looks at by name."""
+    given = {f"{where}{number}": f"{_GIVEN[where]}[{number}]" for _, where, number, _, _ in tests}
+    outer = [f"{name} = {place}" for name, place in given.items()]
+    code = ["def make(buffers, readers, extras, MISSING, as_text, holds):", *(f"    {line}" for line in outer), "    def attempt():"]
+    space: dict[str, Any] = {}
+    exec("\n".join([*code, *(f"        {line}" for line in lines), "    return attempt"]), space)
+    make = space["make"]
+    return lambda buffers, readers, extras: make(buffers, readers, extras, MISSING, as_text, _holds)
+
+
+_GIVEN = {"buffer": "buffers", "reader": "readers", "extra": "extras"}
 
 
 def _holds(extra: tuple[Condition, Any], bound: Bindings) -> bool:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.model import Model, traceable
+from actr3d.actr.chunk import LASTING_TYPES, Chunk
+from actr3d.actr.model import Model
 from actr3d.actr.parameters import named_parameters
+from actr3d.actr.texts import plain_text
+from actr3d.actr.traced import lasting_slots, traceable
 from actr3d.errors import ChunkError, did_you_mean
-from actr3d.trace import Trace
+from actr3d.trace import Data, Trace
 
 
 class Buffer(Model):
@@ -94,11 +97,30 @@ class Buffer(Model):
         if key != "chunk":
             super()._trace_change(trace, key, value)
         elif trace.buffer:
-            trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(value)})
+            watch: ChunkWatch | None = self.__dict__.get("_watch")
+            if watch is not None and watch.told is not None:
+                told, watch.told = watch.told, None
+                if told is value:  # `modify` changes a chunk and sets it anew
+                    return
+            self._trace_chunk(trace, value)
 
     def _trace_state(self, trace: Trace) -> None:
         if trace.buffer:
-            trace.emit(self.sch.now_us, self._path, "buffer", {"chunk": traceable(self.chunk)})
+            self._trace_chunk(trace, self.chunk)
+
+    def _trace_chunk(self, trace: Trace, chunk: Chunk | None) -> None:
+        """Records what the buffer holds, and sees to it that the trace learns of changes of the chunk itself."""
+        own = self.__dict__
+        data: Data
+        if type(chunk) is Chunk and LASTING_TYPES.issuperset(map(type, chunk.values())):
+            data = partial(_told, dict(chunk))
+        else:
+            data = {"chunk": traceable(chunk), **(_texts(chunk) if chunk and trace.all else {})}
+        trace.emit(own["sch"].now_us, self._path, "buffer", data)
+        if isinstance(chunk, Chunk):
+            watch = own.get("_watch") or own.setdefault("_watch", ChunkWatch(self))
+            if watch not in chunk._watches:
+                chunk._watches = (*chunk._watches, watch) if chunk._watches else watch.alone
 
     def __getitem__(self, key: Any) -> Any:
         chunk = self.chunk
@@ -114,3 +136,39 @@ class Buffer(Model):
 
     def __len__(self) -> int:
         return 0 if self.chunk is None else len(self.chunk)
+
+
+def _told(slots: dict[Any, Any]) -> dict[str, Any]:
+    """Returns what a trace keeps of a chunk whose values never change by themselves, from a copy of it."""
+    return {"chunk": lasting_slots(slots)}
+
+
+def _texts(chunk: Chunk) -> dict[str, dict[str, str]]:
+    """Returns how patterns compare values that are not plain, such as lists, as far as that can be told."""
+    texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
+    known = {key: text for key, text in texts.items() if text is not None}
+    return {"texts": known} if known else {}
+
+
+class ChunkWatch:
+    """Tells a trace when the chunk in a buffer is changed without the buffer: `goal.chunk['count'] = 3`.
+
+    Args:
+        buffer: The buffer.
+    """
+
+    def __init__(self, buffer: Buffer) -> None:
+        self.alone = (self,)
+        """What a chunk that only this watches has for its watches."""
+        self._buffer = buffer
+        self.told: Chunk | None = None
+        """The chunk in the buffer, if its latest change is recorded and it has not been set since."""
+
+    def changed(self, chunk: Chunk) -> None:
+        """Records a change of a chunk that is, or was, in the buffer."""
+        buffer = self._buffer
+        own = buffer.__dict__
+        trace = own["sch"].trace
+        if trace is not None and trace.buffer and own["chunk"] is chunk:
+            buffer._trace_chunk(trace, chunk)
+            self.told = chunk

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from actr3d.errors import ChunkError, did_you_mean
 
 if TYPE_CHECKING:
+    from actr3d.actr.buffer import ChunkWatch
     from actr3d.actr.store import ChunkStore
 
 Slot = int | str
@@ -48,7 +49,6 @@ def as_text(value: object) -> str:
     return repr(value)
 
 
-@lru_cache(maxsize=4096)
 def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:
     """Splits a chunk's text into slots and values.
 
@@ -63,6 +63,14 @@ def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:
         else:
             slots.append((place, word))
     return tuple(slots)
+
+
+@lru_cache(maxsize=4096)
+def _contents_of(text: str) -> tuple[dict[Slot, Any], tuple[tuple[Slot, str], ...]]:
+    """Returns a chunk's slots with their values as they are written, and those of them, in order, that hold variables."""
+    slots = parse_slots(text)
+    variable = {slot for slot, value in slots if value[:1] == "?"}
+    return dict(slots), tuple(pair for pair in slots if pair[0] in variable)
 
 
 def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any:
@@ -109,9 +117,12 @@ class Chunk(dict[Any, Any]):
             _DICT.update(self, contents)
             return
         if isinstance(contents, str):
-            put = super().__setitem__
-            for slot, value in parse_slots(contents):
-                put(slot, variable_value(value[1:], bound, contents) if value[:1] == "?" else value)
+            slots, variable = _contents_of(contents)
+            if variable:
+                slots = slots.copy()
+                for slot, value in variable:
+                    slots[slot] = variable_value(value[1:], bound, contents) if value[:1] == "?" else value
+            _DICT.update(self, slots)
             return
         if hasattr(contents, "_chunk_of_buffer"):
             contents = cast("Any", contents)._chunk_of_buffer()
@@ -151,6 +162,8 @@ class Chunk(dict[Any, Any]):
     # A chunk that lies in declarative memories tells them of every change, because they find chunks by their slots; for
     # all others `_stores` is empty. A copy lies in none.
     _stores: tuple[ChunkStore, ...] = ()
+    # One that lies in a buffer of a traced run tells the trace too.
+    _watches: tuple[ChunkWatch, ...] = ()
 
     _text: str | None = None
 
@@ -158,9 +171,11 @@ class Chunk(dict[Any, Any]):
         self._text = None
         for store in self._stores:
             store.forget_order()
+        for watch in self._watches:
+            watch.changed(self)
 
     def __getstate__(self) -> dict[str, Any] | None:
-        return {name: value for name, value in vars(self).items() if name not in ("_stores", "_text")} or None
+        return {name: value for name, value in vars(self).items() if name not in ("_stores", "_watches", "_text")} or None
 
     def __ior__(self, other: Any) -> Self:  # pyright: ignore[reportIncompatibleMethodOverride]
         self.update(other)

@@ -38,6 +38,7 @@ class CompiledProduction(Production):
         self.system = pre.system
         self.name = f"{pre.name}-{post.name}-{number}"
         self.base_utility = 0
+        self.parents = (pre.name, post.name)
         self.pre = pre
         self.post = post
         self.pre_bound = dict(pre_bound)
@@ -76,6 +77,7 @@ class CompiledProduction(Production):
         """Carries out what the first production kept, then all that the second did."""
         sch = self.system.sch
         bound: dict[str, Any] = {**(self.bound or {}), **self.pre_bound}
+        sch.fired = sch.firing = self
         try:
             if self._kept_body is not None:
                 bound = sch.bound = Scope(bound, self.context, self.pre.original_func)
@@ -85,6 +87,8 @@ class CompiledProduction(Production):
         except Exception as error:
             self.note(error)
             raise
+        finally:
+            sch.firing = None
 
 
 def _fill(pattern: Any, bound: Bindings) -> Any:
@@ -155,7 +159,7 @@ class PMCompile(ProceduralSubModule):
         self.compiled[key] = made
         trace = self.sch.trace
         if trace is not None and trace.production:
-            trace.emit(self.sch.now_us, agent._path, "compile", {"production": made.name, "parents": [pre.name, post.name]})
+            trace.emit(self.sch.now_us, agent._path, "compile", {"production": made.name, "parents": list(made.parents)})
         for adaptor in agent._adaptors:
             adaptor.create(made, parents=[pre, post])
         agent._add_production(made)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
-from actr3d.errors import ModelWarning
+from actr3d.actr.saying import warn_modeller
 
 
 def display(root: Any, engine: str | None = None, **args: Any) -> None:  # noqa: ARG001 - as models call it
     """Says that there is no window; the workbench shows worlds."""
-    warnings.warn("display() opens no window here; the model runs on without it", ModelWarning, stacklevel=2)
+    warn_modeller("display() opens no window here; the model runs on without it")
 
 
 __all__ = ["display"]

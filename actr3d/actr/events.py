@@ -34,10 +34,36 @@ class Trigger:
         return Trigger(self.name)
 
 
-class Event:
-    """A call that will be made, or a generator that goes on, at a time or when a trigger says so."""
+class Call:
+    """A plain call of the library's own at some time: it returns None, and nobody waits for it."""
 
-    __slots__ = ("args", "call", "cancelled", "done", "generator", "group", "keys", "origin", "parents", "priority")
+    __slots__ = ("args", "call")
+
+    def __init__(self, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
+        self.call = call
+        self.args = args
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.describe()}>"
+
+    def __lt__(self, other: Call) -> bool:
+        return False  # events of one time and priority are equals; the queue alone puts them in order
+
+    def in_milliseconds(self) -> bool:
+        """Tells whether the model whose method this is goes by whole milliseconds."""
+        owner = getattr(self.call, "__self__", self.call)
+        profile = getattr(owner, "_profile", None)
+        return profile is not None and profile.whole_milliseconds
+
+    def describe(self) -> str:
+        """Names the call."""
+        return str(getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call)))
+
+
+class Event(Call):
+    """A call that will be made, or a generator that goes on, at a time or when a trigger says so; it can be waited for."""
+
+    __slots__ = ("cancelled", "done", "generator", "group", "keys", "origin", "parents", "priority")
 
     def __init__(
         self,
@@ -47,23 +73,18 @@ class Event:
         priority: float = 0,
         generator: Generator[Any, Any, Any] | None = None,
     ) -> None:
-        self.call = call
-        self.args = args
+        super().__init__(call, args)
         self.keys: Mapping[str, Any] = keys or {}
         self.priority = priority
         self.group: Sequence[Event] = ()
+        """All that wait for one of several things in an event's place, itself among them; empty where it waits for one."""
         self.origin = self
         """The event as its caller knows it; another one where this waits in its place for one of several things."""
         self.cancelled = False
+        """Whether another of the group has come first."""
         self.done = False
         self.parents: list[Event] = []
         self.generator = generator
-
-    def __repr__(self) -> str:
-        return f"<Event {self.describe()}>"
-
-    def __lt__(self, other: Event) -> bool:
-        return False  # events of one time and priority are equals; the queue alone puts them in order
 
     def cancel_others(self) -> None:
         """Drops what else this has waited for, as one of several things."""
@@ -71,17 +92,10 @@ class Event:
             other.cancelled = other is not self
         self.group = ()
 
-    def in_milliseconds(self) -> bool:
-        """Tells whether the model whose method this is goes by whole milliseconds."""
-        owner = getattr(self.call, "__self__", self.call)
-        profile = getattr(owner, "_profile", None)
-        return profile is not None and profile.whole_milliseconds
-
     def describe(self) -> str:
         """Names the call, and for a generator the line it stands at."""
-        name = getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call))
         if self.generator is None:
-            return str(name)
+            return super().describe()
         generator = self.innermost
         assert generator is not None
         code = generator.gi_code

@@ -6,14 +6,13 @@ from collections import deque
 from typing import Any
 
 from actr3d.actr.model import Model
-from actr3d.clock import seconds
 
 
 class Finst:
     """Marks a few things for a while.
 
-    Marks are taken away when somebody looks, not each by an event of its own; one event keeps a run going until the last
-    of them has expired.
+    Where simultaneous events come as in python_actr 1.9.5, each mark is taken away by an event of its own, as there.
+    Otherwise marks are taken away when somebody looks, and one event keeps a run going until the last has expired.
 
     Args:
         parent: The module whose clock counts.
@@ -46,35 +45,48 @@ class Finst:
         """Marks a thing; the oldest mark goes where there are too many."""
         if self.size == 0:
             return
-        if self._ends or self._fresh:
+        sch = self.parent.sch
+        end = sch.after(self.time)
+        if sch.queue.first_come:
             self._bring_up_to_date()
-        self._mark(obj, self.parent.sch.after(self.time))
+            self._mark(obj)
+            self._expect(obj, end)
+            self._watch(end)
+        else:
+            self._mark(obj)
+            sch.call_at(end, self.remove, (obj,))
 
     def add_after(self, obj: Any) -> None:
-        """Marks a thing once the present event is over: what a production still asks for does not see the mark."""
+        """Marks a thing once the present event is over: what a production still asks for does not see the mark.
+
+        Only for runs in which simultaneous events happen in the order they were scheduled.
+        """
         if self.size == 0:
             return
         sch = self.parent.sch
         if self._fresh and self._fresh_step != sch.step:
             self._bring_up_to_date()
         self._fresh_step = sch.step
-        self._fresh.append((obj, sch.now_us, sch.after(self.time)))
-        self._watch()
+        end = sch.after(self.time)
+        self._fresh.append((obj, sch.now_us, end))
+        self._watch(end)
 
     def remove(self, obj: Any) -> None:
         """Takes the oldest mark of a thing away."""
         if obj in self._marks:
             self._marks.remove(obj)
 
-    def _mark(self, obj: Any, end: int) -> None:
+    def _mark(self, obj: Any) -> None:
         self._marks.append(obj)
         if len(self._marks) > self.size:
             del self._marks[0]
+
+    def _expect(self, obj: Any, end: int) -> None:
+        """Notes when a mark will expire."""
         if self._ends and self._ends[-1][0] > end:  # the time that marks stay was shortened
             self._ends = deque(sorted([*self._ends, (end, obj)], key=lambda mark: mark[0]))
         else:
             self._ends.append((end, obj))
-        self._watch()
 
     def _bring_up_to_date(self) -> None:
         """Takes in the marks of earlier events, and takes away those whose time is over."""
@@ -83,7 +95,8 @@ class Finst:
             fresh, self._fresh = self._fresh, []
             for obj, begin, end in fresh:
                 self._expire(begin)
-                self._mark(obj, end)
+                self._mark(obj)
+                self._expect(obj, end)
         self._expire(sch.now_us)
 
     def _expire(self, now: int) -> None:
@@ -91,18 +104,15 @@ class Finst:
         while ends and ends[0][0] <= now:
             self.remove(ends.popleft()[1])
 
-    def _watch(self) -> None:
+    def _watch(self, end: int) -> None:
         """Keeps the run going until the last mark has expired."""
-        sch = self.parent.sch
-        if not sch.queue.first_come:
-            sch.call_after(self.time, self._bring_up_to_date)
-        elif not self._watched:
+        if not self._watched:
             self._watched = True
-            sch.call_after(self.time, self._look)
+            self.parent.sch.call_at(end, self._look)
 
     def _look(self) -> None:
         self._bring_up_to_date()
         self._watched = bool(self._ends)
         if self._watched:
             sch = self.parent.sch
-            sch.call_after(seconds(self._ends[-1][0] - sch.now_us), self._look)
+            sch.call_at(self._ends[-1][0], self._look)

@@ -164,8 +164,7 @@ class World(Model):
                 above = above.parent
         trace = self.sch.trace
         if trace is not None and trace.all:
-            path = "" if self.parent is None else f"{self._path}."
-            trace.emit(self.sch.now_us, f"{path}cell({cell.x},{cell.y})", "state", {key: traceable(value)})
+            trace.emit(self.sch.now_us, self._path_of(f"cell({cell.x},{cell.y})"), "state", {key: traceable(value)})
 
     # -- agents
 

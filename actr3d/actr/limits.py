@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import random
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from contextvars import ContextVar, Token
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
+from weakref import WeakSet
 
 from actr3d.clock import microseconds
 from actr3d.trace import Trace
@@ -20,21 +23,35 @@ class EndOfRun(BaseException):
     """
 
 
-@dataclass
+RUNS_TOGETHER = 1000
+"""How many times `until` all runs together may last: a program that makes one short run after another never ends by itself."""
+MOST_REFUSALS = 100
+"""A program that has asked so often for time after its end swallows every error: it is never going to end by itself."""
+
+
+@dataclass(eq=False)
 class RunLimits:
-    """The seed, end and trace of every top model made inside a `with RunLimits(...)` block."""
+    """The seed, end and trace of every top model made inside a `with RunLimits(...)` block, also by threads started in it."""
 
     seed: int | str | None = None
     """What all random choices come from; None draws a seed for each block, which its runs record."""
     until: float | None = None
-    """When each run ends at the latest [s of simulated time]; None for no end."""
+    """When every run ends at the latest [s of its own simulated time]; the program ends with the first run that is cut short
+    there, or when all its runs together have lasted `RUNS_TOGETHER` times as long. None for no end."""
     trace: Trace | None = None
     """Where events go; None for no trace."""
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
     """Tells the time of the latest run [us]."""
-    _drawn: int = 0
-    _models: int = 0
-    _tokens: list[Token[RunLimits | None]] = field(default_factory=list[Token["RunLimits | None"]])
+    last_resort: Callable[[], Any] | None = field(default=None, repr=False)
+    """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
+    _outer: RunLimits | None = field(default=None, init=False, repr=False)
+    _used_us: int = field(default=0, init=False, repr=False)
+    _ended: bool = field(default=False, init=False, repr=False)
+    _refused: int = field(default=0, init=False, repr=False)
+    _drawn: int = field(default=0, init=False, repr=False)
+    _models: int = field(default=0, init=False, repr=False)
+    _tokens: list[Token[RunLimits | None]] = field(default_factory=list[Token["RunLimits | None"]], init=False, repr=False)
+    _threads: WeakSet[threading.Thread] = field(default_factory=WeakSet[threading.Thread], init=False, repr=False)
 
     @staticmethod
     def current() -> RunLimits | None:
@@ -47,32 +64,97 @@ class RunLimits:
         return self._drawn if self.seed is None else self.seed
 
     def next_seed(self) -> int | str:
-        """Returns the seed of the next top model: the program's own for the first, one made from it for each other."""
-        self._models += 1
-        return self.program_seed if self._models == 1 else f"{self.program_seed}/{self._models}"
+        """Returns the seed of the next top model: the program's own for the first, one made from it for each other.
+
+        Threads that make models at the same time share out the numbers as they come; only one after the other are they
+        the same each time.
+        """
+        with _LOCK:
+            self._models += 1
+            number = self._models
+        return self.program_seed if number == 1 else f"{self.program_seed}/{number}"
+
+    # -- the end
+
+    @property
+    def ended(self) -> bool:
+        """Whether the end has come: no run gets any more time."""
+        return self._ended
+
+    def spend(self, time_us: int) -> None:
+        """Takes note of time that a run has used [us]."""
+        if self.until is not None:
+            with _LOCK:
+                self._used_us += time_us
+        if self._outer is not None:
+            self._outer.spend(time_us)
 
     def clip(self, now_us: int) -> int | None:
-        """Returns when a run that starts now must end [us].
+        """Returns when a run that starts now must end [us]; None where nothing ends it.
 
         Raises:
-            EndOfRun: If that moment has come already.
+            EndOfRun: If there is no time left.
         """
+        outer = self._outer.clip(now_us) if self._outer is not None else None
         if self.until is None:
-            return None
-        end = microseconds(self.until, "until")
-        if now_us >= end and now_us > 0:
+            return outer
+        end = self._last_us(now_us)
+        if self._ended or end <= now_us:
+            self._ended = True
+            self._refused += 1
+            if self._refused > MOST_REFUSALS and self.last_resort is not None:
+                self.last_resort()
             raise EndOfRun
-        return end
+        return end if outer is None else min(end, outer)
+
+    def cut(self, now_us: int) -> None:
+        """Takes note that a run was cut short now [us]: those limits that did it give no more time."""
+        if self.until is not None and self._last_us(now_us) <= now_us:
+            self._ended = True
+        if self._outer is not None:
+            self._outer.cut(now_us)
+
+    def _last_us(self, now_us: int) -> int:
+        """Returns the last moment of a run whose clock stands at `now_us`."""
+        until = microseconds(self.until or 0, "until")
+        return min(until, now_us + RUNS_TOGETHER * until - self._used_us)
+
+    # -- where they are in force
 
     def __enter__(self) -> Self:
         if not self._tokens:  # the same limits may serve one program after another
             self._drawn = fresh_seed()
-            self._models = 0
+            self._models = self._used_us = self._refused = 0
+            self._ended = False
+            self._outer = _CURRENT.get()
         self._tokens.append(_CURRENT.set(self))
+        _follow_threads(1)
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        _follow_threads(-1)
         _CURRENT.reset(self._tokens.pop())
+
+    def adopt(self, thread: threading.Thread) -> None:
+        """Lets a thread that is about to start keep to these limits."""
+        run = thread.run
+
+        def run_within() -> None:
+            _CURRENT.set(self)
+            with suppress(EndOfRun):
+                run()
+
+        thread.run = run_within
+        self._threads.add(thread)
+
+    def wait_for_threads(self) -> None:
+        """Waits for the threads that were started under these limits, as Python itself does before a program is over.
+
+        Daemon threads are not waited for, nor those of a thread pool, which are only over when Python is.
+        """
+        while waiting := [thread for thread in list(self._threads) if thread.is_alive() and not thread.daemon and not _of_pool(thread)]:
+            for thread in waiting:
+                thread.join()
 
 
 def fresh_seed() -> int:
@@ -81,3 +163,29 @@ def fresh_seed() -> int:
 
 
 _CURRENT: ContextVar[RunLimits | None] = ContextVar("actr3d_run_limits", default=None)
+_LOCK = threading.Lock()
+_START = threading.Thread.start
+_blocks = 0
+
+
+def _start(self: threading.Thread) -> None:
+    """Starts a thread; it keeps to the limits of the thread that starts it (before Python 3.14 none inherits them)."""
+    limits = _CURRENT.get()
+    if limits is not None:
+        limits.adopt(self)
+    _START(self)
+
+
+def _follow_threads(more: int) -> None:
+    """Lets `Thread.start` be `_start` while any block is open."""
+    global _blocks
+    with _LOCK:
+        _blocks += more
+        if _blocks and threading.Thread.start is _START:
+            threading.Thread.start = _start
+        elif not _blocks and threading.Thread.start is _start:
+            threading.Thread.start = _START
+
+
+def _of_pool(thread: threading.Thread) -> bool:
+    return getattr(getattr(thread, "_target", None), "__module__", "") == "concurrent.futures.thread"

@@ -1,112 +1,60 @@
-"""Loads and runs model files: as programs, unchanged, from a file or from text."""
+"""Loads and runs model files: as programs, unchanged, from a file or from text.
+
+A file that is run is a program: `__main__`, alone in `sys.argv`, its folder first on the path. So a process runs one
+program at a time (or one inside another, as a parameter sweep does). A text that is loaded is a module; any number of
+them can be loaded and used at once, also by several threads. See `actr3d.actr.program` for what both share.
+"""
 
 from __future__ import annotations
 
 import importlib
-import io
-import linecache
 import random
 import sys
-import tokenize
+import weakref
 from collections.abc import Callable, Generator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from types import ModuleType
+from threading import Lock
+from types import CodeType, ModuleType
 from typing import Any
 from zlib import crc32
 
 from actr3d.actr import logger as logs
 from actr3d.actr.aliases import aliases
 from actr3d.actr.limits import EndOfRun, RunLimits
-from actr3d.actr.python2 import python_2_reason
-from actr3d.actr.sources import SOURCE, WRITTEN_FOR_PYTHON_ACTR
-from actr3d.errors import ModelFileError, did_you_mean
+from actr3d.actr.program import Program
+from actr3d.actr.reading import compile_source, read_source
+from actr3d.actr.sources import WRITTEN_FOR_PYTHON_ACTR, drop_lines
 
-
-def read_source(path: Path) -> str:
-    """Returns a model file's text, in the encoding it declares.
-
-    Raises:
-        ModelFileError: If there is no such file, or it is no text.
-    """
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        near = [p.name for p in path.parent.glob("*.py")] if path.parent.is_dir() else []
-        raise ModelFileError(f"no model file '{path}'{did_you_mean(path.name, near)}") from None
-    except IsADirectoryError:
-        raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
-    except OSError as error:
-        raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
-    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    try:
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-        return data.decode(encoding)
-    except (SyntaxError, UnicodeDecodeError, LookupError) as error:
-        raise ModelFileError(f"'{path}' is no Python source: {_why_no_text(data, error)}") from None
-
-
-def _why_no_text(data: bytes, error: Exception) -> str:
-    """Says what is wrong with a file's encoding; where it declares none, which line is no UTF-8."""
-    if "encoding declaration" in str(error) or getattr(error, "encoding", None) == "utf-8":
-        try:
-            data.decode("utf-8")
-        except UnicodeDecodeError as wrong:
-            line = data.count(b"\n", 0, wrong.start) + 1
-            return f"line {line} is no UTF-8; save it as UTF-8, or name its encoding in the first line (# -*- coding: latin-1 -*-)"
-    return str(error)
-
-
-def compile_source(source: str, filename: str) -> Any:
-    """Compiles a model's text, and makes it known to tracebacks.
-
-    Raises:
-        ModelFileError: If it is no Python 3; the message names the line, and says so where it is Python 2.
-    """
-    linecache.cache[filename] = (len(source), None, [f"{line}\n" for line in source.split("\n")], filename)
-    try:
-        return compile(source, filename, "exec", dont_inherit=True)
-    except SyntaxError as error:
-        reason = python_2_reason(source, error)
-        line = error.lineno or 0
-        text = (error.text or "").strip()
-        if reason is not None:
-            line, reason = reason
-            raise ModelFileError(f"{filename}:{line}: this file is written for Python 2 ({reason}); convert it to Python 3") from None
-        raise ModelFileError(f"{filename}:{line}: {error.msg}" + (f": {text}" if text else "")) from None
-    except ValueError as error:  # NUL bytes
-        raise ModelFileError(f"'{filename}' is no Python source: {error}") from None
+_LOADING = Lock()
 
 
 @contextmanager
-def _as_main(module: ModuleType, folder: Path) -> Generator[None]:
+def _as_main(module: ModuleType, program: Program) -> Generator[None]:
     """Lets a module be the program: `__main__`, alone in `sys.argv`, its folder first on the path; its helper modules go with it."""
     main, path, argv, known = sys.modules.get("__main__"), list(sys.path), list(sys.argv), set(sys.modules)
     importlib.invalidate_caches()  # helper modules may be newer than the last look into their folder
     sys.modules["__main__"] = module
-    sys.path.insert(0, str(folder))
+    sys.path.insert(0, str(program.folder))
     sys.argv[:] = [str(module.__file__)]
     try:
-        yield
+        with program.running():
+            yield
     finally:
+        helpers = [name for name in set(sys.modules) - known if program.owns_module(sys.modules[name])]
         sys.path[:], sys.argv[:] = path, argv
         if main is not None:
             sys.modules["__main__"] = main
-        for name in set(sys.modules) - known:
-            helper = sys.modules[name]
-            places = [getattr(helper, "__file__", None) or "", *getattr(helper, "__path__", ())]
-            if any(_is_in(place, folder) and not _is_in(place, Path(sys.prefix)) for place in places):
-                del sys.modules[name]
+        for name in helpers:
+            del sys.modules[name]
 
 
-def _is_in(place: str, folder: Path) -> bool:
-    return bool(place) and Path(place).is_relative_to(folder)
-
-
-def _module(name: str, source: str, filename: str) -> ModuleType:
-    """Makes the module that a model's text is to run in."""
+def _module(name: str, filename: str, program: Program) -> ModuleType:
+    """Makes the module that a model's text is to run in, and forgets the text's lines when nothing of the module is left."""
     module = ModuleType(name)
-    module.__dict__.update({"__file__": filename, SOURCE: source})
+    # Its functions hold its globals only; through these they hold the module, which must be there as long as they are.
+    module.__dict__.update({"__file__": filename, "__actr3d_module__": module})
+    weakref.finalize(module, drop_lines, program.files).atexit = False
     return module
 
 
@@ -119,7 +67,7 @@ def run_text(
     names: dict[str, Any] | None = None,
     prepare: Callable[[ModuleType], None] | None = None,
 ) -> ModuleType:
-    """Runs a model's text as a program.
+    """Runs a model's text as a program, until it and the threads it has started are over.
 
     Args:
         source: The program.
@@ -133,56 +81,138 @@ def run_text(
         The program's module, as it is in the end.
 
     Raises:
-        ModelFileError: If it is no Python 3.
+        ModelFileError: If it, or a helper module, is no Python 3.
         Exception: Whatever the program raises.
     """
-    code = compile_source(source, filename)
-    module = _module("__main__", source, filename)
-    module.__dict__.update({"__builtins__": __builtins__, **(names or {})})
+    program = Program((folder or Path.cwd()).resolve())
+    module = _module("__main__", filename, program)
+    code = program.prepare(source, filename, module)
+    module.__dict__.update(names or {})
     if prepare is not None:
         prepare(module)
-    limits = limits or RunLimits()
+    _execute(code, module, program, limits or RunLimits())
+    return module
+
+
+def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLimits) -> None:
+    """Runs a program's code under its limits, and puts everything back afterwards."""
+    outer = RunLimits.current()
     with ExitStack() as stack:
         stack.callback(random.setstate, random.getstate())
         stack.callback(logs.begin())
         stack.enter_context(limits)
-        stack.enter_context(aliases())
-        stack.enter_context(_as_main(module, (folder or Path.cwd()).resolve()))
+        stack.enter_context(aliases(program.old))
+        stack.enter_context(_as_main(module, program))
         random.seed(limits.program_seed)
-        logs.LOG.source = filename
-        stack.callback(logs.finished)  # also where the program fails: what it logged until then is kept
-        with suppress(EndOfRun):
+        logs.LOG.source = module.__file__
+        stack.callback(_finish)  # also where the program fails: what it logged until then is kept
+        try:
             exec(code, module.__dict__)
+        except EndOfRun:
+            if outer is not None and outer.ended:
+                raise  # the program that runs this one has no time left either
+        finally:
+            limits.wait_for_threads()
         module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = logs.LOG.announce
-    return module
+
+
+def _finish() -> None:
+    """Ends the program's log; one that has closed its output gets no last line."""
+    out = sys.stdout
+    if getattr(out, "closed", False):
+        sys.stdout = None
+    try:
+        logs.finished()
+    finally:
+        sys.stdout = out
 
 
 def run_file(path: Path | str, *, limits: RunLimits | None = None) -> ModuleType:
     """Runs a model file as a program; see `run_text`.
 
     Raises:
-        ModelFileError: If there is no such file, or it is no Python 3.
+        ModelFileError: If there is no such file, or it or a helper module is no Python 3.
         Exception: Whatever the program raises.
     """
     path = Path(path)
     return run_text(read_source(path), str(path), limits=limits, folder=path.parent)
 
 
-def load_text(source: str, filename: str = "<model>") -> ModuleType:
-    """Loads a model's text as a module; its classes can be used afterwards.
+def load_text(source: str, filename: str = "<model>", *, folder: Path | str | None = None) -> ModuleType:
+    """Loads a model's text as a module; its classes can be used afterwards, for as long as one likes.
+
+    What it has put into `sys.modules`, and its lines for tracebacks, go when nothing of the module is in use any more:
+    neither the module itself nor a function, class or instance of it. A text whose top level fails leaves nothing in
+    `sys.modules`.
+
+    Args:
+        source: The text.
+        filename: How tracebacks call it; several texts may have one name.
+        folder: Where it finds its own helper modules, now and later; None for none. Each text loads them for itself.
 
     Raises:
-        ModelFileError: If it is no Python 3.
+        ModelFileError: If it, or a helper module, is no Python 3.
         Exception: Whatever its top level raises.
     """
-    code = compile_source(source, filename)
-    module = _module(f"actr3d_model_{crc32(filename.encode(errors='replace')):08x}", source, filename)
-    sys.modules[module.__name__] = module  # dataclasses and pickling look a class's module up
-    before, logs.LOG.announce = logs.LOG.announce, False
+    importlib.invalidate_caches()
+    program = Program(None if folder is None else Path(folder).resolve())
+    with _LOADING:
+        # Two runs of one process load one text under one name; a second module of the same text gets a number.
+        name = stem = f"actr3d_model_{crc32(f'{filename}:{source}'.encode(errors='replace')):08x}"
+        number = 1
+        while name in sys.modules:
+            number += 1
+            name = f"{stem}_{number}"
+        module = _module(name, filename, program)
+        # dataclasses and pickling look a class's module up; `sys.modules` is not to keep it alive.
+        known: dict[str, Any] = {name: _Loaded(module), **program.as_package(f"{name}_files")}
+        sys.modules.update(known)
+    weakref.finalize(module, _forget, known).atexit = False
     try:
-        with aliases():
-            exec(code, module.__dict__)
-        module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = logs.LOG.announce
-    finally:
-        logs.LOG.announce = before
+        exec(program.prepare(source, filename, module), module.__dict__)
+    except BaseException:
+        _forget(known)
+        raise
+    if program.used_old_names:
+        module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = True
+    for value in list(vars(module).values()):
+        if isinstance(value, type) and value.__module__ == name:
+            # A function holds the names of its module; a class without functions holds nothing of it.
+            type.__setattr__(value, "__actr3d_module__", module)
     return module
+
+
+class _Loaded(ModuleType):
+    """Stands for a loaded text in `sys.modules` without keeping it alive; it is empty when the text's module is gone."""
+
+    def __init__(self, module: ModuleType) -> None:
+        super().__init__(module.__name__)
+        _MODULES[self] = weakref.ref(module)
+
+    @property
+    def __dict__(self) -> dict[str, Any]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        module = _MODULES[self]()
+        return {} if module is None else module.__dict__
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self.__dict__[name]
+        except KeyError:
+            raise AttributeError(f"module '{self.__name__}' has no attribute '{name}'", name=name, obj=self) from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self.__dict__[name] = value
+
+
+_MODULES: weakref.WeakKeyDictionary[_Loaded, weakref.ref[ModuleType]] = weakref.WeakKeyDictionary()
+
+
+def _forget(known: dict[str, Any]) -> None:
+    """Takes a loaded text, and its helper modules, out of `sys.modules`, unless another has come there since."""
+    for name, entry in known.items():
+        if sys.modules.get(name) is entry:
+            for inner in [inner for inner in list(sys.modules) if inner == name or inner.startswith(f"{name}.")]:
+                del sys.modules[inner]
+
+
+__all__ = ["compile_source", "load_text", "read_source", "run_file", "run_text"]

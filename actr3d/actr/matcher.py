@@ -7,26 +7,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from actr3d.actr.attempts import attempt_for, has_slots, reader_of
-from actr3d.actr.chunk import LASTING_TYPES
-from actr3d.actr.model import Model
-from actr3d.actr.pattern import MISSING, Bindings
+from actr3d.actr.attempts import attempt_for, reader_of
+from actr3d.actr.observed import Asked, Observed, is_recorded
+from actr3d.actr.pattern import MISSING, Bindings, Condition
 from actr3d.actr.production import Production
-from actr3d.actr.traced import UNWATCHED
 
 Reading = tuple[str, Any]
 """What is read: the name of an object, and a slot; a slot of None asks whether the object is empty."""
-
-
-def is_recorded(target: Any, key: Any) -> bool:
-    """Tells whether every change of what a reading reads goes through the trace by itself."""
-    if isinstance(key, str) and "." in key:
-        return False
-    if key is None or has_slots(target, key):
-        return hasattr(target, "chunk")
-    if not isinstance(target, Model) or type(target).__getitem__ is not Model.__getitem__ or key in UNWATCHED or key[:1] == "_":
-        return False
-    return type(vars(target).get(key, MISSING)) in LASTING_TYPES
 
 
 class Matcher:
@@ -42,18 +29,16 @@ class Matcher:
         self._order: dict[Production, int] = {}
         self._always: list[Production] = []
         self._by_value: list[tuple[Callable[[], Any], dict[Any, list[Production]]]] = []
-        self.looked: dict[str, Any] = {}
-        """What productions saw when they last looked, where no model's change records it; None for what was not there."""
+        self.observed = Observed()
+        """What productions saw that no model's change records."""
         self.last: list[Production] = []
         """The productions that matched when they were last tried."""
-        self._told: dict[str, Any] = {}
-        self._listener: object = None
 
     def build(self, productions: Sequence[Production]) -> None:
         """Takes in all productions of the system, in their order."""
         for production in productions:
             if production not in self._attempts:
-                self._attempts[production] = attempt_for(production.conditions, self._context, self._reader)
+                self._attempts[production] = attempt_for(self._remembering(production), self._context, self._reader)
         self._order = {production: number for number, production in enumerate(productions)}
         wanted = {
             p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions
@@ -80,9 +65,10 @@ class Matcher:
         """
         target = self._context[name]
         read = reader_of(target, key)
+        label = self.observed.watch(name, key, target)
         if is_recorded(target, key):
             return read
-        label, looked = f"{name}.{key}", self.looked
+        looked = self.observed.looked
 
         def remember() -> Any:
             value = read()
@@ -91,15 +77,30 @@ class Matcher:
 
         return remember
 
-    def observed(self, listener: object) -> dict[str, Any]:
-        """Returns what has changed, since the same listener last asked, of what productions saw beyond buffers and modules:
-        attributes of plain objects, dotted paths, and properties. None stands for what is not there.
-        """
-        if listener is not self._listener:
-            self._listener, self._told = listener, {}
-        changed = {label: value for label, value in self.looked.items() if self._told.get(label, _UNREAD) != value}
-        self._told.update(changed)
-        return changed
+    def _remembering(self, production: Production) -> list[Condition]:
+        """Returns a production's conditions, in which the modeller's functions leave word of what they said."""
+        found: list[Condition] = []
+        for number, condition in enumerate(production.conditions):
+            if condition.op == "call":
+                condition = condition._replace(value=self._asking(production, number, condition.value))
+            elif condition.op == "empty":
+                name = condition.name or "self"
+                self.observed.watch(name, None, self._context[name])
+            found.append(condition)
+        return found
+
+    def _asking(self, production: Production, number: int, function: Callable[[Any, Bindings], Any]) -> Callable[[Any, Bindings], Any]:
+        self.observed.used = True
+        asked, label, sch = self.observed.asked, (production.name, number), production.system.sch
+
+        def ask(target: Any, bound: Bindings) -> Any:
+            given = dict(bound)
+            asked[label] = Asked(given, False, bound, sch.now_us)
+            agrees = function(target, bound) != False  # noqa: E712 - None means yes
+            asked[label] = Asked(given, bool(agrees), bound, sch.now_us)
+            return agrees
+
+        return ask
 
     def matching(self) -> list[Production]:
         """Returns the productions that match now, in order; each keeps what it bound."""
@@ -115,13 +116,14 @@ class Matcher:
             elif candidates or len(self._by_value) > 1:
                 found = sorted(candidates + found, key=self._order.__getitem__)
             candidates = found
-        self.last = result = list[Production]()
+        result: list[Production] = []
         attempts = self._attempts
         for production in candidates:
             bound = attempts[production]()
             if bound is not None:
                 production.bound = bound
                 result.append(production)
+        self.last = result
         return result
 
     def matches(self, production: Production) -> bool:
@@ -131,9 +133,6 @@ class Matcher:
             return False
         production.bound = bound
         return True
-
-
-_UNREAD: Any = object()
 
 
 def _by_variable(key: Any) -> bool:

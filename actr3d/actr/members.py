@@ -21,6 +21,18 @@ def has_setter(member: object) -> bool:
     return hasattr(type(member), "__set__")
 
 
+def minding_properties(inherited: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
+    """Returns a `__setattr__` that leaves to a class's properties what they take care of, and the rest to the inherited one."""
+
+    def set_with_properties(model: Any, key: str, value: Any) -> None:
+        if key in model._setters:
+            object.__setattr__(model, key, value)
+        else:
+            inherited(model, key, value)
+
+    return set_with_properties
+
+
 def class_members(kind: type, root: type) -> tuple[dict[str, Method], dict[str, Any]]:
     """Returns what a class and its ancestors below `root` bring, in alphabetical order: methods, and other objects.
 

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, cast
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from actr3d.actr.activation import MemorySubModule
 from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.keywords import check_keywords
+from actr3d.actr.logger import dummy
+from actr3d.actr.memory_trace import TracedMemory
 from actr3d.actr.model import Model, pick
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters, warn_of_slip
 from actr3d.actr.partial import Partial
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
-from actr3d.actr.requests import Candidate, Retrieval
-from actr3d.actr.saying import warn_modeller
+from actr3d.actr.requests import Retrieval, total
 from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
+from actr3d.actr.traced import chunk_text
 from actr3d.errors import ChunkError
 
 
-class Memory(Model):
+class Memory(WithParameters, TracedMemory):
     """Declarative memory: keeps chunks, and brings the most active one that matches a request to a buffer.
 
     Args:
@@ -74,6 +76,7 @@ class Memory(Model):
     def _follow(self, profile: Profile | None) -> None:
         """Takes over the agent's profile, where none was given, and tells buffers to hand over what leaves them."""
         super()._follow(profile)
+        self._own_chunks(self.dm)
         if not self._latency_given:
             self.__dict__["latency"] = self.rules.latency
         if self.rules.harvest and self.parent is not None:
@@ -83,11 +86,15 @@ class Memory(Model):
                 harvesters.append(self)
 
     def __setattr__(self, key: str, value: Any) -> None:
-        if key == "dm" and not isinstance(value, ChunkStore):
-            value = ChunkStore(value)  # a modeller's own list of chunks
+        if key == "dm":
+            if not isinstance(value, ChunkStore):
+                value = ChunkStore(value)  # a modeller's own list of chunks
+            self._own_chunks(value)
         elif key == "latency":
             self.__dict__["_latency_given"] = True
-        super().__setattr__(key, value)
+        elif key not in self.__dict__:
+            warn_of_slip(self, key)
+        Model.__setattr__(self, key, value)
 
     # -- what is known
 
@@ -126,6 +133,7 @@ class Memory(Model):
             for adaptor in self.adaptors:
                 adaptor.create(new, **keys)
             self.dm.keep(new)
+        self._trace_add(new, known is not None, keys)
 
     def _collect(self, chunk: Chunk) -> None:
         """Takes in a chunk that left a buffer (ACT-R 7); unlike `add`, this does not take back that a request failed."""
@@ -164,65 +172,63 @@ class Memory(Model):
         """
         if partial is None and self.partials:
             partial = self.partials[0]
-        self.busy = True
-        if self.error:
-            self.error = False
-        own = self.__dict__
-        own["_request_count"] = number = self._request_count + 1
-        if self.rules.clear_at_request:
-            self._buffer.clear()
+        number = self._begin_request()
         sch = self.sch
         search = search_for(pattern, sch.bound, partial)
         matches = search.among(self.dm)
         marked = self.finst.obj
-        record = own["_last"] = Retrieval(sch.now_us, pattern, search, tuple(self.adaptors), self.threshold, require_new, list(marked))
+        record = Retrieval(sch.now_us, pattern, search, tuple(self.adaptors), self.threshold, require_new, list(marked), [])
+        self.__dict__["_last"] = record
         if require_new and marked:
             record.excluded = [chunk for chunk in matches if chunk in marked]
             matches = [chunk for chunk in matches if chunk not in marked]
         for adaptor in self.adaptors:
             adaptor.matched(matches)
-        best = self._weigh(matches, record, partial)
-        choice: Any = pick(self.random, best) if best else None
-        record.chosen = choice
-        record.latency = self._time(self._strength(record, choice.activation)) if best else self._time_of_failure()
+        best = self._weigh(matches, record)
+        chosen: Any = pick(self.random, best) if best else None
+        record.chosen = chosen
+        record.latency = self._time(self._strength(record, chosen.activation)) if best else self._time_of_failure()
         trace = sch.trace
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "request", record.snapshot())
-        if not best:
-            self.fail(number)
-        elif type(self).recall is not Memory.recall:
-            self.recall(choice, matches=matches, request_number=number)
-        elif sch.idle_now():
-            # The same as below, but for an event that would do nothing else at this very moment.
-            self.finst.add_after(choice)
-            sch.call_after(record.latency, self._arrive, (choice, number))
-        else:
-            sch.call_after(0, self._begin_recall, (choice, record.latency, number))
+        self._answer(number, chosen, record.latency, matches)
 
-    def _weigh(self, matches: list[Chunk], record: Retrieval, partial: Partial | None) -> list[Chunk]:
+    def _begin_request(self) -> int:
+        """Numbers a new request; what earlier ones are still to bring will not arrive."""
+        self.busy = True
+        if self.error:
+            self.error = False
+        number = self.__dict__["_request_count"] = self._request_count + 1
+        profile = self._profile
+        if profile is not None and profile.clear_at_request:
+            self._buffer.clear()
+        return number
+
+    def _weigh(self, matches: list[Chunk], record: Retrieval) -> list[Chunk]:
         """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
         own = self._own_activation()
-        add = record.candidates.append
-        best = -math.inf
-        winners: list[Chunk] = []
-        for chunk in cast("list[Any]", matches):
-            parts = self._parts(chunk) if own is None else (own(chunk),)
-            activation = total(parts) if parts else 0
-            cost: float = 0.0
-            if partial is not None:
-                cost = chunk._partial
-                activation += cost
-            chunk.activation = activation
-            add(Candidate(chunk, parts, cost, activation))
-            if activation > best:
-                best, winners = activation, [chunk]
-            elif activation == best:
-                winners.append(chunk)
-            elif activation != activation:
-                warn_modeller(f"memory '{self.name}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
-        if not winners or (self.threshold is not None and self._strength(record, best) < self.threshold):
+        if own is not None:
+            record.modules = ()
+            winners = record.weigh(matches, lambda chunk: (own(chunk),), self.name)
+        else:
+            winners = record.weigh(matches, self._parts if self.adaptors or self.log is not dummy else None, self.name)
+        if not winners or (self.threshold is not None and self._strength(record, record.best) < self.threshold):
             return []
         return winners
+
+    def _answer(self, number: int, chosen: Any, latency: float, matches: list[Chunk]) -> None:
+        """Schedules what comes of a request."""
+        sch = self.sch
+        if chosen is None:
+            self.fail(number)
+        elif type(self).recall is not Memory.recall:
+            self.recall(chosen, matches=matches, request_number=number)
+        elif sch.idle_now():
+            # The same as below, but for an event that would do nothing else at this very moment.
+            self.finst.add_after(chosen)
+            sch.call_after(latency, self._arrive, (chosen, number))
+        else:
+            sch.call_at(sch.now_us, self._begin_recall, (chosen, latency, number))
 
     def _own_activation(self) -> Callable[[Any], float] | None:
         """Returns a modeller's own `get_activation`, where there is one."""
@@ -266,7 +272,7 @@ class Memory(Model):
         self.busy = False
         trace = self.sch.trace
         if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": False, "chunk": str(chunk)})
+            trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": False, "chunk": chunk_text(chunk)})
 
     def _time(self, activation: float) -> float:
         """Returns F exp(-A), at most the maximum time [s]."""
@@ -274,7 +280,8 @@ class Memory(Model):
             time = min(self.latency * math.exp(-activation), self.maximum_time) if self.latency else 0.0
         except OverflowError:
             time = self.maximum_time
-        return round(time * 1000) / 1000 if self.rules.whole_milliseconds else time
+        profile = self._profile
+        return round(time * 1000) / 1000 if profile is not None and profile.whole_milliseconds else time
 
     def _time_of_failure(self) -> float:
         """Returns how long it takes until a request fails [s]."""
@@ -306,11 +313,3 @@ class Memory(Model):
     def add_adaptor(self, a: MemorySubModule) -> None:
         """Takes in an activation module; done by the module itself."""
         self.adaptors.append(a)
-
-
-def total(parts: Iterable[float]) -> float:
-    """Adds numbers up one by one; `sum` rounds otherwise from Python 3.12 on, and the same model is to give the same numbers."""
-    result: float = 0
-    for part in parts:
-        result += part
-    return result

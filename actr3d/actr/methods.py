@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from types import MethodType
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.events import Event, Trigger
 from actr3d.actr.profile import Profile
+from actr3d.clock import seconds
+from actr3d.errors import hint_for
 
 if TYPE_CHECKING:
     from actr3d.actr.model import Model
+    from actr3d.actr.production import Production
 
 Method = Callable[..., Any]
 
@@ -20,6 +24,7 @@ class MethodWrapper:
     def __init__(self, obj: Model, func: Method, name: str) -> None:
         self.obj = obj
         self.func = func
+        self._method = MethodType(func, obj)
         self.__name__ = name
         self.begins = Trigger(f"{name} begin")
         self.ends = Trigger(f"{name} end")
@@ -36,7 +41,7 @@ class MethodWrapper:
     def __call__(self, *args: Any, **keys: Any) -> Any:
         if self.begins.waiting:
             self.obj.sch.trigger(self.begins)
-        value = self.func(self.obj, *args, **keys)
+        value = self._method(*args, **keys)
         if self.ends.waiting:
             self.obj.sch.trigger(self.ends)
         return value
@@ -49,12 +54,21 @@ class GeneratorWrapper(MethodWrapper):
     """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
 
     def __call__(self, *args: Any, **keys: Any) -> Event:
-        return self.obj.sch.begin(self._steps(args, keys), self)
+        sch = self.obj.sch
+        return sch.begin(self._steps(args, keys, sch.firing, sch.now_us), self)
 
-    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any]) -> Generator[Any, Any, None]:
-        """Runs the method, waking whoever waits for its begin or end."""
+    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any], caller: Production | None, called_us: int) -> Generator[Any, Any, None]:
+        """Runs the method, waking whoever waits for its begin or end; an error in it names its caller and when that was [us]."""
         if self.begins.waiting:
             self.obj.sch.trigger(self.begins)
-        yield from self.func(self.obj, *args, **keys)
+        try:
+            yield from self.func(self.obj, *args, **keys)
+        except Exception as error:
+            if caller is not None:
+                error.add_note(
+                    f"in '{self.__name__}' at {self.obj.now():g} s, called by production '{caller.name}' ({caller.place}) "
+                    f"at {seconds(called_us):g} s{hint_for(error, self.func.__globals__)}"
+                )
+            raise
         if self.ends.waiting:
             self.obj.sch.trigger(self.ends)

@@ -11,15 +11,15 @@ from typing import Any, TypeVar
 from actr3d.actr import logger as logs
 from actr3d.actr.chunk import PLAIN_TYPES, PlaceName
 from actr3d.actr.events import Trigger
+from actr3d.actr.joining import Joining
 from actr3d.actr.limits import RunLimits, fresh_seed
-from actr3d.actr.members import check_names, class_members, copy_objects, has_setter
+from actr3d.actr.members import check_names, class_members, copy_objects, has_setter, minding_properties
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import PROFILES, Profile
 from actr3d.actr.saying import warn_modeller
 from actr3d.actr.scheduler import Scheduler
 from actr3d.actr.sources import for_python_actr
-from actr3d.actr.traced import UNWATCHED, TracedPart, traceable
-from actr3d.errors import SchedulerError
+from actr3d.actr.traced import UNWATCHED, traceable
 from actr3d.trace import Trace
 
 Option = TypeVar("Option")
@@ -34,7 +34,7 @@ def pick(numbers: random.Random, options: list[Option]) -> Option:
     return options[0]
 
 
-class Model(TracedPart):
+class Model(Joining):
     """A part of a simulation: an agent, one of its modules, an object of its environment, or the environment.
 
     What a class names among its attributes becomes each instance's own: models there become children, and their
@@ -172,6 +172,10 @@ class Model(TracedPart):
         slot = name if shown or self._converted else None if type(self) is Model else "top"
         self.__dict__["name"] = PlaceName(name, slot)
 
+    def _call_joined(self, name: str) -> None:
+        """Names a model that joins a tree by being set as an attribute."""
+        self._call(name, shown=type(self) is Model)
+
     # -- changes
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -179,8 +183,8 @@ class Model(TracedPart):
         setters = {name for name, member in vars(cls).items() if has_setter(member)}
         if setters:
             cls._setters = cls._setters | setters
-            if "__setattr__" not in vars(cls):
-                type.__setattr__(cls, "__setattr__", set_with_properties)
+            if "__setattr__" not in vars(cls) and cls.__setattr__.__name__ != "set_with_properties":
+                type.__setattr__(cls, "__setattr__", minding_properties(cls.__setattr__))
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
@@ -191,18 +195,10 @@ class Model(TracedPart):
         else:
             own[key] = value
             if "_converted" in own:
-                # Wakes whoever waits for a change here or further up.
-                part = own
-                while True:
-                    changes: Trigger = part["changes"]
+                for changes in own.get("_known_line_changes") or self._line_changes():
                     if changes.waiting:
-                        own["sch"].trigger(changes, -1)
-                    above: Model | None = part["parent"]
-                    if above is None or above is self:
-                        break
-                    part = above.__dict__
-                trace = own["sch"].trace
-                if own["log"] is not logs.dummy or (trace is not None and trace.buffer):
+                        own["sch"].wake(changes, -1)
+                if own["sch"].trace is not None or own["log"] is not logs.dummy:
                     self._record(key, value)
 
     def _record(self, key: str, value: Any) -> None:
@@ -219,67 +215,46 @@ class Model(TracedPart):
         """Sets an attribute that is a model, or one that holds the tree together."""
         own = self.__dict__
         if key == "parent" and value is None and own.get("parent") is not None:
-            siblings = own["parent"].__dict__.get("_children", {})
-            for known in [name for name, part in siblings.items() if part is self]:
-                del siblings[known]
-            self._forget_path()
+            self._leave(own["parent"])
         own[key] = value
+        joins = False
+        if key == "parent":
+            if isinstance(value, Model) and "sch" in value.__dict__:
+                self._note_move(value.sch)
+            self._forget_place(keep_path=value is None)
         if isinstance(value, Model) and key != "parent":
             self._ensure_converted()
-            self._take_in(key, value)
+            joins = self._take_in(key, value)
         if self._converted and key not in UNWATCHED:
-            for part in self._line():
-                if part.changes.waiting:
-                    self.sch.trigger(part.changes, priority=-1)
+            for changes in own.get("_known_line_changes") or self._line_changes():
+                if changes.waiting:
+                    self.sch.wake(changes, -1)
+            trace = self.sch.trace
+            if joins and trace is not None and isinstance(value, Model):
+                value._trace_states(trace)
             self._record(key, value)
         if key == "log" and value is not None:
             for name, known in list(own.items()):
                 if name[0] != "_" and name not in UNWATCHED and isinstance(known, (int, str, float, type(None))):
                     setattr(value, name, known)
 
-    def _take_in(self, key: str, value: Model) -> None:
-        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor."""
-        above: Model | None = self
-        while above is not None:
-            if above is value:
-                return
-            above = above.__dict__.get("parent")
-        if value.__dict__.get("parent") is not None:
-            return
-        value.parent = self
-        value._call(key, shown=type(value) is Model)
-        self._adopted(key, value)
-        value._forget_path()
-        if not value._converted:
-            value._convert(self)
-        else:
-            if value.sch is not self.sch:
-                value._join(self.sch, self.random)
-            for part in value._tree():
-                part._follow(part.parent._profile if part.parent is not None else None)
-
-    def _join(self, sch: Scheduler, numbers: random.Random) -> None:
-        """Moves a tree that came to life by itself (a model that builds its parts in `__init__`) to another clock."""
-        if self.sch.now_us != 0:
-            raise SchedulerError(f"'{self.name}' has run by itself until {self.sch.time:g} s; put it into its environment before that")
-        sch.take_over(self.sch)
-        for part in self._tree():
-            part.__dict__["sch"], part.__dict__["random"] = sch, numbers
-
     # -- running
 
-    def traced(self, level: str = "all") -> Trace:
+    def traced(self, level: str = "all", *, keep: bool = True) -> Trace:
         """Starts a trace of the whole run this model belongs to, and returns it.
+
+        It begins with what everything is like at present; what was before, it cannot tell.
 
         Args:
             level: How much to record; see `actr3d.trace.LEVELS`.
+            keep: Whether it keeps its events; otherwise it only hands them to its listeners.
 
         Raises:
             ParameterError: If the level is unknown.
         """
         self._ensure_converted()
         *_, top = self._line()
-        trace = Trace(level)
+        trace = Trace(level, keep)
         top._attach_trace(trace)
         return trace
 
@@ -290,18 +265,29 @@ class Model(TracedPart):
         """Runs the whole tree until nothing is left to do, `stop` is called, or `limit` seconds more have passed.
 
         Args:
-            limit: How long [s from now], to the nearest microsecond; calls with whole microseconds, such as 0.01, can
-                follow one another for ever without drift.
+            limit: How long [s from now]. The clock knows whole microseconds, so a run ends at the one nearest to its
+                exact end, and the next run goes on from there: `run(1/3)` ends at 0.333333, 0.666667 and 1 s. So calls
+                can follow one another for ever without drift.
             func: Called first.
 
         Raises:
             SchedulerError: If time stands still, or something cannot be waited for.
+            Exception: What a listener of the trace has raised.
         """
         if not self._converted:
+            from actr3d.actr.checks import check_classes
+
             self._convert()
+            check_classes(self)
+        sch = self.sch
         if func is not None:
-            self.sch.add(func)
-        self.sch.run(limit)
+            sch.add(func)
+        if sch.trace is None:
+            sch.run(limit)
+            if sch.trace is not None and not sch._running:  # it began in the midst of the run
+                sch.trace.raise_failures()
+        else:
+            self._trace_run(limit)
 
     def stop(self) -> None:
         """Ends the run once the present event is over."""
@@ -312,14 +298,6 @@ class Model(TracedPart):
         """Returns the present [s]."""
         self._ensure_converted()
         return self.sch.now_us / 1_000_000
-
-
-def set_with_properties(model: Model, key: str, value: Any) -> None:
-    """Sets an attribute of a model whose class has properties that can be set."""
-    if key in model._setters:
-        object.__setattr__(model, key, value)
-    else:
-        Model.__setattr__(model, key, value)
 
 
 def written_for_python_actr(kind: type) -> bool:

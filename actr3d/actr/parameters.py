@@ -1,4 +1,4 @@
-"""Checks the parameters that a module is made with: their names, and that numbers are numbers."""
+"""Checks the parameters that a module is made with, and given later: their names, and that numbers are numbers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Callable
 from functools import wraps
 from numbers import Real
 from typing import Any, Concatenate, ParamSpec, TypeVar
+from weakref import WeakKeyDictionary
 
+from actr3d.actr.saying import warn_modeller
 from actr3d.errors import ParameterError, did_you_mean
 
 P = ParamSpec("P")
@@ -43,3 +45,46 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
         init(self, *args, **keys)
 
     return checked
+
+
+NEAR = 0.8
+"""How near a name must be to that of a parameter (0 to 1) to be taken for a slip."""
+
+
+class WithParameters:
+    """Something made with parameters, which may be set later: says so where one is set under a name that is only similar."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self.__dict__:
+            warn_of_slip(self, name)
+        super().__setattr__(name, value)
+
+    def _settable(self) -> set[str]:
+        """Returns what may be meant by a slip: parameters and attributes; nothing for a modeller's own class, which may
+        have whatever attributes it likes.
+        """
+        kind = type(self)
+        if not kind.__module__.startswith("actr3d."):
+            return set()
+        return {*inspect.signature(kind.__init__).parameters, *(name for name in vars(self) if name[0] != "_")} - {"self"}
+
+
+def warn_of_slip(part: WithParameters, name: str) -> None:
+    """Warns of a new attribute that is named nearly like a parameter; it has no effect under that name."""
+    if name[0] == "_":
+        return
+    hints = _HINTS.setdefault(type(part), {})
+    if name not in hints:
+        hints[name] = "" if hasattr(type(part), name) else slip_hint(name, part._settable())
+    if hints[name]:
+        warn_modeller(f"{type(part).__name__} has no parameter '{name}'{hints[name]}")
+
+
+_HINTS: WeakKeyDictionary[type, dict[str, str]] = WeakKeyDictionary()
+
+
+def slip_hint(name: str, known: set[str]) -> str:
+    """Returns which parameter a name may mean, or an empty text where it is no slip: `times` beside `time` is none."""
+    if any(name.startswith(other) or other.startswith(f"{name}_") for other in known):
+        return ""
+    return did_you_mean(name, known, NEAR)

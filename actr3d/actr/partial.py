@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.chunk import Slot, as_text
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.profile import PYTHON_ACTR
 from actr3d.actr.saying import warn_modeller
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from actr3d.actr.memory import Memory
 
 
-class Partial:
+class Partial(WithParameters):
     """Lets a memory retrieve chunks whose values are only similar to those asked for.
 
     Args:

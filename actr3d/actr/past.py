@@ -2,105 +2,212 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
+from actr3d.actr.attempts import has_slots
 from actr3d.actr.buffer import Buffer
-from actr3d.actr.chunk import Slot, as_text
+from actr3d.actr.choice import Choice
+from actr3d.actr.chunk import LASTING_TYPES, Slot, as_text
+from actr3d.actr.known import NOT_KNOWN, OPAQUE, Answer, Fact, is_unknown
 from actr3d.actr.model import Model
-from actr3d.actr.pattern import MISSING, Bindings, Condition, Missing
+from actr3d.actr.observed import answer_label, tells_changes
+from actr3d.actr.pattern import MISSING
+from actr3d.actr.plain import plain_empty
+from actr3d.actr.retrievals import RetrievalReason, past_retrieval
 from actr3d.clock import seconds
-from actr3d.trace import TraceEvent
+from actr3d.trace import Trace, TraceEvent
 
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
     from actr3d.actr.production import Production
 
 
+class Record(NamedTuple):
+    """A value as an event tells it."""
+
+    value: Any
+    event: int
+    """The number of the event in the trace."""
+    time: int
+    """When it happened [us]."""
+
+
+class _Part:
+    """What a trace says of one part of the tree up to a time."""
+
+    def __init__(self) -> None:
+        self.attributes: dict[str, Record] = {}
+        self.seen: dict[str, Record] = {}
+        self.parts: dict[str, dict[str, float | None]] = {}
+        self.conflict: dict[str, Any] | None = None
+        self.chosen: str | None = None
+        self.matched: Collection[str] = ()
+        self.latest_match = -1
+        """The number of the event that told of it; what was seen until then is told before that, where it changed."""
+        self.unborn: set[str] = set()
+        self.request: TraceEvent | None = None
+        self.outcome = "pending"
+
+    def take(self, number: int, event: TraceEvent) -> None:
+        """Takes in an event of this part."""
+        kind, data = event.kind, event.data
+        if kind in ("state", "buffer"):
+            self._note(self.attributes, number, event)
+        elif kind == "observe":
+            self._note(self.seen, number, event)
+        elif kind == "conflict":
+            self.conflict, self.chosen = data, None
+            self.matched, self.latest_match = data["utilities"], number
+        elif kind == "productions":
+            self.matched, self.chosen = data["matched"], data["chosen"]
+            self.conflict = data if "utilities" in data else None
+        elif kind == "utility":
+            self.parts.setdefault(data["production"], {})[data["part"]] = data["value"]
+        elif kind == "select":
+            self.chosen = data["production"]
+        elif kind in ("fire", "changed"):
+            self.conflict = self.chosen = None
+        elif kind == "request" and "candidates" in data:
+            self.request, self.outcome = event, data.get("outcome", "pending")
+        elif kind == "retrieval":
+            self.outcome = "failed" if data["failed"] else "retrieved"
+
+    def _note(self, records: dict[str, Record], number: int, event: TraceEvent) -> None:
+        records.update({key: Record(value, number, event.time_us) for key, value in event.data.items()})
+
+
 class Past:
-    """What everything was at a time, after all that happened at that time.
+    """What everything was at a time, after all that happened at that time; see `State` for what each method tells.
 
     Args:
-        events: Its run's trace.
+        trace: The run's trace.
         time: The time [us].
+        parts: What is asked about.
     """
 
-    def __init__(self, events: Sequence[TraceEvent], time: int) -> None:
+    def __init__(self, trace: Trace, time: int, parts: Collection[Model]) -> None:
         self.time = seconds(time)
-        self._attributes: dict[str, dict[str, Any]] = {}
-        self._seen: dict[str, dict[str, Any]] = {}
-        self._matched: dict[str, dict[str, Any]] = {}
-        self._parts: dict[tuple[str, str], dict[str, float | None]] = {}
-        self._chosen: dict[str, str | None] = {}
-        self._drawn: dict[str, list[str]] = {}
-        self._unborn: set[tuple[str, str]] = set()
-        for event in events:
-            if event.time_us <= time:
-                self._take(event)
-            elif event.kind == "compile":
-                self._unborn.add((event.source, event.data["production"]))
+        self._parts: dict[int, _Part] = {}
+        self._paths: dict[int, str | None] = {}
+        self._named: dict[int, list[tuple[Model, str]]] = {}
+        places: dict[str, list[tuple[int, int, _Part]]] = {}
+        for part in parts:
+            known = self._parts[id(part)] = _Part()
+            for place in part._places_in(trace):
+                if place.time <= time:
+                    self._paths[id(part)] = place.path
+                if place.path is not None:
+                    places.setdefault(place.path, []).append((place.begin, place.end, known))
+        for part in parts:
+            for name, target in part.__dict__.get("_context", {}).items():
+                self._named.setdefault(id(target), []).append((part, name))
+        for number, event in enumerate(trace):
+            for begin, end, known in places.get(event.source, ()):
+                if not begin <= number < end:
+                    continue
+                if event.time_us <= time:
+                    known.take(number, event)
+                elif event.kind == "compile":
+                    known.unborn.add(event.data["production"])
 
-    def _take(self, event: TraceEvent) -> None:
-        source, data = event.source, event.data
-        if event.kind in ("state", "buffer"):
-            self._attributes.setdefault(source, {}).update(data)
-        elif event.kind == "observe":
-            self._seen.setdefault(source, {}).update(data)
-        elif event.kind == "conflict":
-            self._matched[source] = data["utilities"]
-            self._drawn[source] = data.get("drawn", [])
-            for name, parts in data.get("parts", {}).items():
-                self._parts.setdefault((source, name), {}).update(parts)
-        elif event.kind == "utility":
-            self._parts.setdefault((source, data["production"]), {})[data["part"]] = data["value"]
-        elif event.kind == "select":
-            self._chosen[source] = data["production"]
-        elif event.kind in ("fire", "changed"):
-            self._chosen[source] = None
-            # Noise was drawn for one choice, and is not that of the next.
-            for (system, _), parts in self._parts.items():
-                if system == source:
-                    parts.update(dict.fromkeys(self._drawn.get(source, ()), None))
+    def path(self, part: Model) -> str:
+        return self._paths.get(id(part)) or part._path
 
-    def slot(self, system: ProductionSystem, name: str, key: Slot) -> str | Missing:
+    def exists(self, part: Model) -> bool:
+        return self._paths.get(id(part)) is not None
+
+    def learned(self, production: Production) -> bool:
+        return production.name not in self._of(production.system).unborn
+
+    def _of(self, part: Model) -> _Part:
+        return self._parts[id(part)]
+
+    def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
         target = system._context[name]
-        seen = self._seen.get(system._path, {})
-        if f"{name}.{key}" in seen:
-            return MISSING if seen[f"{name}.{key}"] is None else seen[f"{name}.{key}"]
-        values = self._values(target)
-        if str(key) in values:
-            return as_text(values[str(key)])
-        return MISSING
+        if has_slots(target, key):
+            return self._slot_of_chunk(target, key)
+        seen = self._seen(target, key)
+        told = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and tells_changes(target, key) else None
+        certain = told is not None and type(told.value) in LASTING_TYPES
+        latest = max((record.event if certain else held for record, held in seen), default=-1)
+        if seen and (told is None or told.event < latest):
+            record, _ = max(seen, key=lambda pair: pair[0].event)
+            return Fact(MISSING if record.value is None else record.value, _since(record))
+        return Fact(as_text(told.value)) if told is not None and certain else NOT_KNOWN
 
-    def _values(self, target: Any) -> Mapping[str, Any]:
-        """Returns the slots of a buffer's chunk, or the attributes of another model, as they were."""
-        if not isinstance(target, Model):
-            return {}
-        attributes = self._attributes.get(target._path, {})
+    def _seen(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
+        """Returns what production systems, whatever they call the object, have seen, and until which event it held for them."""
+        found: list[tuple[Record, int]] = []
+        for system, name in self._named.get(id(target), ()):
+            known = self._of(system)
+            record = known.seen.get(f"{name}.{key}")
+            if record is not None:
+                found.append((record, max(record.event, known.latest_match)))
+        return found
+
+    def _slot_of_chunk(self, buffer: Buffer, key: Slot) -> Fact:
+        told = self._of(buffer).attributes.get("chunk")
+        if told is None:
+            return NOT_KNOWN
+        chunk: dict[str, Any] = told.value or {}
+        value = chunk.get(str(key), MISSING)
+        if value is MISSING or type(value) in LASTING_TYPES:
+            return Fact(value if value is MISSING else as_text(value))
+        texts = self._of(buffer).attributes.get("texts")
+        if texts is None or texts.event != told.event or str(key) not in texts.value:
+            return OPAQUE
+        return Fact(texts.value[str(key)], _since(told))
+
+    def empty(self, system: ProductionSystem, name: str) -> Fact:
+        target = system._context[name]
         if isinstance(target, Buffer):
-            return attributes.get("chunk") or {}
-        return attributes
-
-    def empty(self, system: ProductionSystem, name: str) -> bool:
-        return not self._values(system._context[name])
+            told = self._of(target).attributes.get("chunk")
+            return NOT_KNOWN if told is None else Fact(not told.value)
+        seen = self._seen(target, None)
+        if seen:
+            record, _ = max(seen, key=lambda pair: pair[0].event)
+            return Fact(record.value, _since(record))
+        empty = plain_empty(target)
+        return NOT_KNOWN if is_unknown(empty) or hasattr(cast("Any", type(target)), "__len__") else Fact(empty)
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
         target = system._context[name]
-        if isinstance(target, Model):
-            return list(self._values(target))
+        if isinstance(target, Buffer):
+            told = self._of(target).attributes.get("chunk")
+            return list(told.value or ()) if told is not None else []
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def call(self, production: Production, condition: Condition, bindings: Bindings) -> bool:
-        # The function is not asked again: things have changed. Where all else holds, it decided whether the production
-        # was among those that matched.
-        return production.name in self._matched.get(production.system._path, {})
+    def answer(self, production: Production, number: int) -> Answer | None:
+        seen = self._of(production.system).seen.get(answer_label(production.name, number))
+        if seen is None:
+            return None
+        given, agrees, bound = seen.value
+        return Answer(given, agrees, bound, _since(seen))
+
+    def matched(self, production: Production) -> bool:
+        return production.name in self._of(production.system).matched
 
     def parts(self, production: Production) -> dict[str, float | None]:
-        known = self._parts.get((production.system._path, production.name), {})
-        return {name: known.get(name) for name in production.system._adaptor_names()}
+        known = self._of(production.system).parts.get(production.name, {})
+        return {name: known.get(name) for name in production.system._part_names()}
 
-    def selected(self, system: ProductionSystem) -> str | None:
-        return self._chosen.get(system._path)
+    def choice(self, system: ProductionSystem) -> Choice | None:
+        known = self._of(system)
+        data = known.conflict or {}
+        choice = Choice(
+            utilities=data.get("utilities", {}),
+            parts=data.get("parts", {}),
+            threshold=data.get("threshold"),
+            weighed=system._weighs,
+            chosen=known.chosen,
+        )
+        return choice if choice.chosen is not None or choice.held_back else None
 
-    def exists(self, production: Production) -> bool:
-        return (production.system._path, production.name) not in self._unborn
+    def retrieval(self, memory: Model) -> RetrievalReason | None:
+        known = self._of(memory)
+        return None if known.request is None else past_retrieval(self.path(memory), known.request, known.outcome)
+
+
+def _since(record: Record) -> str:
+    return f"as seen since {seconds(record.time):.3f} s"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from types import MappingProxyType
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
+from actr3d.actr.choice import Choice
 from actr3d.actr.events import AGAIN
 from actr3d.actr.model import Method, pick
 from actr3d.actr.production import Production
@@ -15,6 +15,22 @@ from actr3d.trace import Trace
 
 LAST = -1000
 """The priority of matching again after firing: everything else that happens at that moment comes first."""
+
+
+class Weighed(NamedTuple):
+    """The latest comparison of utilities."""
+
+    matching: list[Production]
+    utilities: list[float]
+    parts: list[list[float]]
+    """What each module added, for each production; empty without modules."""
+    threshold: float | None
+
+
+def _added(utility: float, parts: list[float]) -> float:
+    for part in parts:  # `sum` rounds otherwise from Python 3.12 on
+        utility += part
+    return utility
 
 
 class ACTR(ProductionSystem):
@@ -29,10 +45,9 @@ class ACTR(ProductionSystem):
     @property
     def _indifferent(self) -> bool:
         """Whether utilities are only what productions say of themselves."""
-        return not self._adaptors and type(self).get_activation is ACTR.get_activation
+        return not self._adaptors and not self._own_utility
 
-    _weighed: Mapping[Production, list[float]] = MappingProxyType({})
-    """What each module added to the utilities at the latest choice."""
+    _weighed: Weighed | None = None
 
     def __init__(self, log: Any = None, **attrs: Any) -> None:
         self._adaptors: list[ProceduralSubModule] = []
@@ -80,67 +95,89 @@ class ACTR(ProductionSystem):
                 only = matching[0]
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": {only.name: only.base_utility}})
             return pick(self.random, matching)
-        if type(self).get_activation is not ACTR.get_activation:
+        parts: list[list[float]] = []
+        if self._own_utility:
             utilities: list[float] = [self.get_activation(p) for p in matching]
+            parts = [[utility] for utility in utilities]
         elif self._adaptors:
-            utilities = self._weigh(matching)
+            parts = [[adaptor.utility(p) for adaptor in self._adaptors] for p in matching]
+            utilities = [_added(p.base_utility, of) for p, of in zip(matching, parts, strict=True)]
         else:
             utilities = [p.base_utility for p in matching]
-        if trace is not None and trace.all:
-            self._trace_utilities(matching, utilities)
         best = max(utilities)
         threshold = self.production_threshold
         if callable(threshold):
             threshold = threshold()
+        weighed = self.__dict__["_weighed"] = Weighed(matching, utilities, parts, threshold)
+        if trace is not None and trace.all:
+            self._trace_utilities(weighed, trace)
         if threshold is not None and best < threshold:
             for adaptor in self._adaptors:
                 adaptor.below_threshold()
             return None
         return pick(self.random, [p for p, u in zip(matching, utilities, strict=True) if u == best])
 
-    def _weigh(self, matching: list[Production]) -> list[float]:
-        """Returns the utilities of productions, and keeps their parts: noise is drawn only here."""
-        weighed = {p: [adaptor.utility(p) for adaptor in self._adaptors] for p in matching}
-        self.__dict__["_weighed"] = weighed
-        utilities: list[float] = []
-        for production, parts in weighed.items():
-            utility = production.base_utility
-            for part in parts:
-                utility += part
-            utilities.append(utility)
-        return utilities
+    # -- what is told of utilities
 
-    def _trace_utilities(self, matching: list[Production], utilities: list[float]) -> None:
-        trace = self.sch.trace
-        assert trace is not None
+    @property
+    def _own_utility(self) -> bool:
+        """Whether the modeller says himself what a production is worth."""
+        return type(self).get_activation is not ACTR.get_activation
+
+    def _trace_utilities(self, weighed: Weighed, trace: Trace) -> None:
+        matching, utilities, parts, threshold = weighed
         data: dict[str, Any] = {"utilities": {p.name: u for p, u in zip(matching, utilities, strict=True)}}
-        if self._weighed:
-            names = self._adaptor_names()
-            data["parts"] = {p.name: dict(zip(names, parts, strict=True)) for p, parts in self._weighed.items()}
-            data["drawn"] = [adaptor.name for adaptor in self._adaptors if adaptor.draws]
+        if parts:
+            names = self._part_names()
+            data["parts"] = {p.name: dict(zip(names, of, strict=True)) for p, of in zip(matching, parts, strict=True)}
+            data["drawn"] = self._drawn_names()
+        if threshold is not None:
+            data["threshold"] = threshold
         trace.emit(self.sch.now_us, self._path, "conflict", data)
 
     def _trace_state(self, trace: Trace) -> None:
         super()._trace_state(trace)
         if trace.all:
             for production in self._productions:
-                for name, value in self._utility_parts(production).items():
-                    if value is not None:
-                        data = {"production": production.name, "part": name, "value": value}
-                        trace.emit(self.sch.now_us, self._path, "utility", data)
+                self._trace_parts(production, trace)
 
-    def _adaptor_names(self) -> list[str]:
-        return [adaptor.name for adaptor in self._adaptors]
+    def _trace_parts(self, production: Production, trace: Trace) -> None:
+        for name, value in self._utility_parts(production).items():
+            if value is not None:
+                data = {"production": production.name, "part": name, "value": value}
+                trace.emit(self.sch.now_us, self._path, "utility", data)
+
+    def _add_production(self, production: Production) -> None:
+        super()._add_production(production)
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            self._trace_parts(production, trace)
+
+    def _drawn_names(self) -> list[str]:
+        any_one = self._productions[0] if self._productions else None
+        return [] if any_one is None else [name for name, value in self._utility_parts(any_one).items() if value is None]
+
+    def _part_names(self) -> list[str]:
+        return ["get_activation"] if self._own_utility else [adaptor.name for adaptor in self._adaptors]
 
     def _utility_parts(self, production: Production) -> dict[str, float | None]:
-        drawn = self._weighed.get(production) if self._chosen is not None else None
-        parts: dict[str, float | None] = {}
-        for number, adaptor in enumerate(self._adaptors):
-            if adaptor.draws:
-                parts[adaptor.name] = None if drawn is None else drawn[number]
-            else:
-                parts[adaptor.name] = adaptor.utility(production)
-        return parts
+        if self._own_utility:
+            return {"get_activation": None}
+        return {adaptor.name: adaptor._standing(production) for adaptor in self._adaptors}
+
+    def _latest_choice(self) -> Choice | None:
+        weighed, matcher = self._weighed, self._matcher
+        if weighed is None or matcher is None or weighed.matching is not matcher.last:
+            return super()._latest_choice()
+        matching, utilities, parts, threshold = weighed
+        names = self._part_names()
+        return Choice(
+            utilities={p.name: u for p, u in zip(matching, utilities, strict=True)},
+            parts={p.name: dict(zip(names, of, strict=True)) for p, of in zip(matching, parts, strict=True)} if parts else {},
+            threshold=threshold,
+            weighed=True,
+            chosen=self._chosen.name if self._chosen is not None else None,
+        )
 
     def _duration(self) -> float:
         time = self.production_time
@@ -155,6 +192,8 @@ class ACTR(ProductionSystem):
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "changed", {"production": choice.name})
+            if trace.all:
+                self._observe(trace)
         self.log.production = "(changed before firing)"
 
     # -- utility

@@ -12,7 +12,7 @@ from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, conditions
 from actr3d.actr.rebinding import stored_names
 from actr3d.actr.sources import assigned_globals, function_node, has_file, place
-from actr3d.errors import PatternException, ProductionException, did_you_mean
+from actr3d.errors import PatternException, ProductionException, hint_for
 
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
@@ -31,6 +31,8 @@ class Production:
     """
 
     base_utility: float = 0
+    parents: tuple[str, ...] = ()
+    """The names of the two productions that a compiled one was made of."""
 
     def __init__(self, system: ProductionSystem, name: str, func: Callable[..., Any]) -> None:
         self.system = system
@@ -56,7 +58,11 @@ class Production:
 
     @cached_property
     def node(self) -> ast.FunctionDef:
-        """The syntax tree of the modeller's method."""
+        """The syntax tree of the modeller's method.
+
+        Raises:
+            ProductionException: If its source is not to be had.
+        """
         node = function_node(self.original_func)
         if node is None:
             if self.original_func.__name__ == "<lambda>":
@@ -122,21 +128,18 @@ class Production:
         """Carries out the body, with what the last match bound."""
         sch = self.system.sch
         bound = sch.bound = self.scope(self.bound or {})
-        sch.fired = self
+        sch.fired = sch.firing = self
         try:
             self._body(bound)
         except Exception as error:
             self.note(error)
             raise
+        finally:
+            sch.firing = None
 
     def note(self, error: Exception) -> None:
         """Adds to an error which production it happened in, and what a misspelt name may have meant."""
-        hint = ""
-        if isinstance(error, NameError) and error.name:
-            bound = self.system.sch.bound or {}
-            hint = did_you_mean(error.name, [*bound, *self.context, *self.original_func.__globals__])
-        elif isinstance(error, AttributeError) and error.name and error.obj is not None:
-            hint = did_you_mean(error.name, [name for name in (*dir(error.obj), *vars(type(error.obj))) if name[0] != "_"])
+        hint = hint_for(error, [*(self.system.sch.bound or {}), *self.context, *self.original_func.__globals__])
         error.add_note(f"in production '{self.name}' ({self.place}) at {self.system.now():g} s{hint}")
 
     def __repr__(self) -> str:

@@ -6,13 +6,17 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.checks import check_names, check_rules
+from actr3d.actr.choice import Choice
 from actr3d.actr.logger import dummy
 from actr3d.actr.matcher import Matcher
 from actr3d.actr.model import Method, MethodWrapper, Model, pick
+from actr3d.actr.parameters import WithParameters
 from actr3d.actr.production import Production, defaults_of
 from actr3d.actr.profile import find_profile
 from actr3d.actr.scheduler import Event
+from actr3d.actr.traced import traceable
 from actr3d.errors import ProductionException, did_you_mean
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.explain import Explanation
@@ -22,7 +26,7 @@ FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
 """Parameters that may be functions without arguments, which are no productions then."""
 
 
-class ProductionSystem(Model):
+class ProductionSystem(WithParameters, Model):
     """A model whose methods with patterns are productions; it chooses at random among those that match.
 
     It may be an agent, or stand inside one as a parallel system with a cycle time of its own; it sees its ancestors'
@@ -64,6 +68,11 @@ class ProductionSystem(Model):
                 own["_productions" if patterns else "_initializers"].append(Production(self, name, func))
         own["_process"] = self.sch.add(self._process_productions)
 
+    def _settable(self) -> set[str]:
+        """Returns the parameters of an agent; all other attributes of agents are the modeller's own."""
+        library = [vars(klass) for klass in type(self).__mro__ if klass.__module__.startswith("actr3d.")]
+        return {name for names in library for name in names if name.startswith("production_")} | {"profile"}
+
     # -- the cycle
 
     def _process_productions(self) -> Iterator[Any]:
@@ -87,6 +96,9 @@ class ProductionSystem(Model):
         unchecked = check_rules(self)
         for production in self._initializers:
             production.bound = {}
+            trace = self.sch.trace
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "initialize", {"method": production.name})
             production.fire()
             if self.sch.bound:  # what an initializer assigns, every production can see
                 self._context.update(self.sch.bound)
@@ -129,22 +141,64 @@ class ProductionSystem(Model):
         matching = matcher.matching()
         trace = self.sch.trace
         if trace is not None and trace.all:
-            if matcher.looked:
-                seen = matcher.observed(trace)
-                if seen:
-                    trace.emit(self.sch.now_us, self._path, "observe", seen)
+            if matcher.observed.used:
+                self._observe(trace)
             if not matching or not self._weighs:
                 utilities = {production.name: production.base_utility for production in matching}
                 trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
         return matching
 
-    def _adaptor_names(self) -> list[str]:
-        """Returns the names of the modules that add to utilities."""
+    def _observe(self, trace: Trace) -> None:
+        """Tells the run's trace what has changed of what productions see, beyond what it knows by itself."""
+        seen = self._matcher.observed.news(trace) if self._matcher is not None else {}
+        if seen:
+            trace.emit(self.sch.now_us, self._path, "observe", seen)
+
+    def _trace_state(self, trace: Trace) -> None:
+        super()._trace_state(trace)
+        if trace.all:
+            matcher, chosen = self._matcher, self._chosen
+            data = {
+                "productions": [production.name for production in self._productions],
+                "initializers": [production.name for production in self._initializers],
+                "chosen": None if chosen is None else chosen.name,
+                "matched": [] if matcher is None else [production.name for production in matcher.last],
+                "drawn": self._drawn_names(),
+            }
+            choice = self._standing_choice()
+            if choice is not None:
+                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold}
+            trace.emit(self.sch.now_us, self._path, "productions", data)
+            if trace is self.sch.trace:
+                self._observe(trace)
+            elif matcher is not None and (seen := matcher.observed.everything()):
+                # Who only listens hears everything, and takes no news from the run's own trace.
+                trace.emit(self.sch.now_us, self._path, "observe", seen)
+
+    def _drawn_names(self) -> list[str]:
+        """Returns the names of the modules whose part of a utility is told only at choices."""
+        return []
+
+    def _part_names(self) -> list[str]:
+        """Returns the names of what utilities are made of, beyond what productions say of themselves."""
         return []
 
     def _utility_parts(self, production: Production) -> dict[str, float | None]:
-        """Returns what each of these adds now; None for what is drawn only at a choice."""
+        """Returns what each of these adds now; None for what is told only at a choice."""
         return {}
+
+    def _standing_choice(self) -> Choice | None:
+        """Returns the latest choice, until the production fires; one that held all back, until the next."""
+        choice = self._latest_choice()
+        return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
+
+    def _latest_choice(self) -> Choice | None:
+        """Returns the choice that was made at the latest match; None before that."""
+        if self._matcher is None:
+            return None
+        utilities = {production.name: production.base_utility for production in self._matcher.last}
+        chosen = self._chosen.name if self._chosen is not None else None
+        return Choice(utilities=utilities, parts={}, threshold=None, weighed=self._weighs, chosen=chosen)
 
     def _select(self, choice: Production) -> None:
         """Notes which production will fire."""
@@ -163,7 +217,8 @@ class ProductionSystem(Model):
         self.__dict__["_chosen"] = None
         trace = self.sch.trace
         if trace is not None and trace.production:
-            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": choice.bound or {}})
+            bound = traceable(choice.bound) if choice.more_bound else dict(choice.bound or {})
+            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": bound})
         if self.log is not dummy:
             self.log.production = None
         choice.fire()
@@ -176,13 +231,14 @@ class ProductionSystem(Model):
             self._matcher.build(self._productions)
 
     def explain(self, at: float | None = None) -> Explanation:
-        """Says why: for each production whether it matches or what fails first, and its utility; for each memory its last request.
+        """Says why: for each production whether it matches or what fails first, its utility, and why it was chosen or lost;
+        for each memory its last request. Asking runs no code of the model's and draws no random number.
 
         Args:
             at: A past time of a traced run [s]; None for now.
 
         Raises:
-            ParameterError: If the run was not traced (level «all») at that time, or it lies in the future.
+            ParameterError: If it is no time, lies ahead, or the run was not traced (level «all») or the agent not there then.
         """
         from actr3d.actr.explain import explain
 

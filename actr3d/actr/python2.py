@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 
 PYTHON_2_NAMES = frozenset(
@@ -52,6 +53,10 @@ _SIGNS: tuple[tuple[re.Pattern[str], str], ...] = (
 )
 
 
+LONGEST = 1000
+"""So much of a line is looked at [characters]: no statement of Python 2 needs more, and nested brackets make the search slow."""
+
+
 def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
     """Returns the line at which a file is seen to be Python 2, and the sign; None where nothing tells.
 
@@ -59,7 +64,7 @@ def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
         source: The file's text.
         error: What Python 3 says of it.
     """
-    lines = _without_texts(source).split("\n")
+    lines = [line[:LONGEST] for line in _without_texts(source).split("\n")]
     number = error.lineno or 0
     # The line Python 3 stopped at, or the one before, where a statement's end was missed.
     for line in (number, number - 1):
@@ -70,6 +75,40 @@ def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
     if isinstance(error, TabError):
         return number, "tabs and spaces mixed in its indentation"
     return None
+
+
+def print_to(tree: ast.Module) -> int | None:
+    """Returns the line of the first `print >> file, ...`, which Python 3 compiles though it cannot run it; None for no such line.
+
+    Lines that ask for Python's version first are left alone, and so are files with a `print` of their own.
+    """
+    found: list[int] = []
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        if _gives_name(node, "print"):
+            return None
+        if isinstance(node, ast.If) and "version" in ast.unparse(node.test).lower():
+            continue
+        if isinstance(node, ast.Expr):
+            first = node.value.elts[0] if isinstance(node.value, ast.Tuple) and node.value.elts else node.value
+            if (
+                isinstance(first, ast.BinOp)
+                and isinstance(first.op, ast.RShift)
+                and isinstance(first.left, ast.Name)
+                and first.left.id == "print"
+            ):
+                found.append(node.lineno)
+        waiting.extend(ast.iter_child_nodes(node))
+    return min(found, default=None)
+
+
+def _gives_name(node: ast.AST, name: str) -> bool:
+    """Tells whether a node gives something a name."""
+    if isinstance(node, ast.Name):
+        return node.id == name and not isinstance(node.ctx, ast.Load)
+    own = (getattr(node, "name", None), getattr(node, "arg", None), getattr(node, "asname", None))
+    return name in own
 
 
 _QUIET = re.compile(r"#[^\n]*|(\"\"\"|\'\'\')[\s\S]*?\1|([\"\'])(?:\\.|(?!\2)[^\n\\])*\2")

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import isnan
 from typing import Any
 
 from actr3d.actr.memory import Memory
 from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
+
+MOST_SHOWN = 12
+"""How many candidates are printed; all are in the reason."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,10 +62,14 @@ class RetrievalReason:
         lines = [f"  {self.memory}: {asked}, {limit}: {self.outcome}{takes}"]
         if self.finsts:
             lines.append(f"      retrieved lately: {'; '.join(self.finsts)}")
+        shown = self.candidates if len(self.candidates) <= MOST_SHOWN + 1 else self.candidates[:MOST_SHOWN]
         lines += [f"      {chunk}: left out, for it was retrieved lately" for chunk in self.excluded]
         if not self.candidates:
             lines.append("      no chunk matches" + (" that is new" if self.excluded else ""))
-        return "\n".join([*lines, *map(str, self.candidates)])
+        lines += map(str, shown)
+        if len(shown) < len(self.candidates):
+            lines.append(f"      and {len(self.candidates) - len(shown):,} more, none of them more active")
+        return "\n".join(lines)
 
 
 def _reason(memory: str, time: float, data: Mapping[str, Any], outcome: str) -> RetrievalReason:
@@ -69,12 +77,14 @@ def _reason(memory: str, time: float, data: Mapping[str, Any], outcome: str) -> 
     threshold: float | None = data["threshold"]
     chosen: int | None = data["chosen"]
     rows: Sequence[Sequence[Any]] = data["candidates"]
-    best = max((row[3] for row in rows), default=0.0)
-    order = sorted(range(len(rows)), key=lambda i: (i != chosen, -rows[i][3]))
+    best = max((row[3] for row in rows if not isnan(row[3])), default=0.0)
+    order = sorted(range(len(rows)), key=lambda i: (i != chosen, isnan(rows[i][3]), -rows[i][3]))
     candidates: list[CandidateReason] = []
     for i in order:
         chunk, parts, partial, activation = rows[i]
-        if i == chosen:
+        if isnan(activation):
+            verdict = "cannot be retrieved: its activation is not a number"
+        elif i == chosen:
             verdict = "won" if sum(row[3] == best for row in rows) == 1 else "won a draw by lot"
         elif chosen is None:
             verdict = f"below the threshold by {threshold - activation:.4g}" if threshold is not None else "lost"
@@ -116,15 +126,6 @@ def live_retrieval(memory: Memory) -> RetrievalReason | None:
     return _reason(memory._path, seconds(record.time), record.to_data(), outcome)
 
 
-def past_retrieval(memory: str, events: Sequence[TraceEvent], time: int) -> RetrievalReason | None:
-    """Returns the reason of the last request made up to a time [us]; None where there was none."""
-    request: TraceEvent | None = None
-    outcome = "pending"
-    for event in events:
-        if event.time_us > time:
-            break
-        if event.source == memory and event.kind == "request":
-            request, outcome = event, "pending"
-        elif event.source == memory and event.kind == "retrieval":
-            outcome = "failed" if event.data["failed"] else "retrieved"
-    return None if request is None else _reason(memory, request.time, request.data, outcome)
+def past_retrieval(memory: str, request: TraceEvent, outcome: str) -> RetrievalReason:
+    """Returns the reason of a memory's request, as a trace has it, with what had come of it by then."""
+    return _reason(memory, request.data.get("made", request.time), request.data, outcome)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Mapping, Sequence
+from heapq import heappop
 from inspect import CO_GENERATOR
 from typing import Any
 
-from actr3d.actr.events import AGAIN, Event, Trigger
+from actr3d.actr.events import AGAIN, Call, Event, Trigger
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
 from actr3d.actr.waiting import wait, warn_of_none
-from actr3d.clock import MICROSECONDS, EventQueue, microseconds, seconds
+from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
 from actr3d.errors import ModelWarning, SchedulerError
 from actr3d.trace import Trace
 
@@ -38,12 +39,14 @@ class Scheduler:
     """
 
     def __init__(self, first_come: bool = True) -> None:
-        self.queue: EventQueue[Event] = EventQueue(first_come)
+        self.queue: EventQueue[Call] = EventQueue(first_come)
         self.now_us = 0
         self.bound: dict[str, Any] | None = None
         """What the production that fired last had bound; `?name` in a chunk's text means these."""
         self.fired: Any = None
         """The production that fired last; errors name it."""
+        self.firing: Any = None
+        """The production whose body is being carried out; errors in what it sets going name it."""
         self.trace: Trace | None = None
         self.seed: int | str | None = None
         """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
@@ -58,6 +61,9 @@ class Scheduler:
         self.limits: RunLimits | None = RunLimits.current()
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
+        self._spent_us = 0
+        """How much of its time the limits know of [us]."""
+        self._ends = Ends()
         self._running = False
         self._named: dict[str, Trigger] = {}
         self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
@@ -99,8 +105,12 @@ class Scheduler:
 
     def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
         """Schedules a plain call of the library's own, which returns None."""
-        event = Event(call, args)
+        event = Call(call, args)
         self.queue.push(self.after(delay, event), event)
+
+    def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
+        """Schedules such a call at a time [us] that `after` gave."""
+        self.queue.push(time, Call(call, args))
 
     def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
@@ -108,7 +118,7 @@ class Scheduler:
         self.queue.push(self.now_us, event)
         return event
 
-    def after(self, delay: float, event: Event | None = None) -> int:
+    def after(self, delay: float, event: Call | None = None) -> int:
         """Returns the time `delay` seconds from now [us].
 
         Raises:
@@ -128,9 +138,10 @@ class Scheduler:
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:
         """Wakes everything that waits for a trigger or for a name."""
-        trigger = self.named(key) if isinstance(key, str) else key
-        if not trigger.waiting:
-            return
+        self.wake(self.named(key) if isinstance(key, str) else key, priority)
+
+    def wake(self, trigger: Trigger, priority: float | None) -> None:
+        """Lets what waits for a trigger go on at this moment, with this priority from now on unless it is None."""
         waiting, trigger.waiting = trigger.waiting, []
         for event in waiting:
             if priority is not None:
@@ -167,24 +178,25 @@ class Scheduler:
         Raises:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
-        until = None
-        if duration is not None:
-            until = self.now_us + microseconds(duration, "the limit of a run")
-            if until < self.now_us:
-                raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
-        bound = self.limits.clip(self.now_us) if self.limits is not None else None
-        if bound is not None:
-            until = bound if until is None else min(until, bound)
+        end = until = None if duration is None else self._ends.after(self.now_us, duration)
+        bound = None
+        if self.limits is not None:
+            self._spend()
+            bound = self.limits.clip(self.now_us)
+            if bound is not None:
+                until = bound if until is None else min(until, bound)
         self.stop_flag = False
         heap = self.queue.heap
         idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
-        if duration is not None and not self.queue.first_come:
+        if end is not None and not self.queue.first_come:
             self._run_number += 1
-            self.queue.push(self.now_us + round(duration * MICROSECONDS), Event(self._end, (self._run_number,)), END)
+            self.queue.push(end, Call(self._end, (self._run_number,)), END)
             if idle:
                 self.queue.pop()
         if until is not None and idle:
             self._advance(until)
+            if self.limits is not None:
+                self._spend(bound, end)
             return
         if self._running:
             warnings.warn(
@@ -196,10 +208,20 @@ class Scheduler:
         before, self._running = self._running, True
         try:
             self._run_events(until)
+            if until is not None and not self.stop_flag and until > self.now_us:
+                self._advance(until)
         finally:
             self._running = before
-        if until is not None and not self.stop_flag and until > self.now_us:
-            self._advance(until)
+            if self.limits is not None:
+                self._spend(bound, end)
+
+    def _spend(self, bound: int | None = None, end: int | None = None) -> None:
+        """Lets the limits know how much time has passed, and whether their bound came before the run's own end [us]."""
+        if self.limits is not None:
+            self.limits.spend(self.now_us - self._spent_us)
+            self._spent_us = self.now_us
+            if bound is not None and self.now_us >= bound and (end is None or end > bound):
+                self.limits.cut(self.now_us)
 
     def _end(self, run_number: int) -> None:
         """Ends the run that asked for it; one that was stopped before leaves this without effect."""
@@ -207,8 +229,8 @@ class Scheduler:
             self.stop_flag = True
 
     def _run_events(self, until: int | None) -> None:
-        queue = self.queue
-        heap = queue.heap
+        """Lets what is queued happen, until nothing is left up to then, or the run is stopped."""
+        heap = self.queue.heap
         end = NEVER if until is None else until
         still = 0
         while not self.stop_flag:
@@ -217,47 +239,56 @@ class Scheduler:
             if not heap or (time := heap[0][0]) > end:
                 break
             if time > self.now_us:
-                self._advance(time)
+                self.now_us = LOG.time_us = time
                 still = 0
             else:
                 still += 1
                 if still > STANDSTILL:
                     raise self._standstill(heap[0][3])
             self.step += 1
-            event = queue.pop()
-            if event.cancelled:
-                continue
-            if event.group:
-                event.cancel_others()
-            generator = event.generator
-            if generator is None:
-                result = event.call(*event.args, **event.keys)
-                if result is None:
-                    self.finish(event)
-                else:
-                    wait(self, event, result)
-                continue
-            try:
-                result = next(generator)
-            except StopIteration:
-                self.finish(event)
-                continue
-            if type(result) is float:
-                queue.push(self.after(result, event), event, event.priority)
-            elif type(result) is Trigger:
-                result.waiting.append(event)
-            elif result is AGAIN:
-                queue.push(self.now_us, event, event.priority)
+            event = heappop(heap)[3]
+            if isinstance(event, Event):
+                self._happen(event)
             else:
-                if result is None:
-                    warn_of_none(event)
-                wait(self, event, result)
+                event.call(*event.args)
 
-    def _standstill(self, event: Event) -> SchedulerError:
+    def _happen(self, event: Event) -> None:
+        """Makes an event's call, or lets its generator go on to what it waits for next."""
+        if event.group:
+            if event.cancelled:
+                return
+            event.cancel_others()
+        generator = event.generator
+        if generator is None:
+            result = event.call(*event.args, **event.keys)
+            if result is None:
+                self.finish(event)
+            else:
+                wait(self, event, result)
+            return
+        try:
+            result = next(generator)
+        except StopIteration:
+            self.finish(event)
+            return
+        if type(result) is float:
+            self.queue.push(self.after(result, event), event, event.priority)
+        elif type(result) is Trigger:
+            result.waiting.append(event)
+        elif result is AGAIN:
+            self.queue.push(self.now_us, event, event.priority)
+        else:
+            if result is None:
+                warn_of_none(event)
+            wait(self, event, result)
+
+    def _standstill(self, event: Call) -> SchedulerError:
         """Makes the error that tells of an endless loop in which no time passes, and what was in it."""
         last = self.fired
+        whose = getattr(getattr(event.call, "__self__", None), "_path", None)
         return SchedulerError(
             f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            + (f" of '{whose}'" if whose else "")
             + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
         )
 

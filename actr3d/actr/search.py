@@ -6,7 +6,7 @@ pattern may say (functions, dotted paths, similar values) is left to `Pattern`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
@@ -16,16 +16,6 @@ from actr3d.actr.store import ChunkStore
 
 if TYPE_CHECKING:
     from actr3d.actr.partial import Partial
-
-
-@lru_cache(maxsize=4096)
-def _plan(text: str) -> tuple[tuple[Slot, str, str], ...] | None:
-    """Reads a request's text; None where it names slots that only `Pattern` can find."""
-    tests = parse(text)
-    for slot, _, _ in tests:
-        if isinstance(slot, str) and (slot[0] == "?" or "." in slot):
-            return None
-    return tests
 
 
 class Search(Protocol):
@@ -41,47 +31,78 @@ class Search(Protocol):
         ...
 
 
+@lru_cache(maxsize=4096)
+def _variables(text: str) -> tuple[str, ...] | None:
+    """Returns the variables that a request's text names; None where it names slots that only `Pattern` can find."""
+    tests = parse(text)
+    for slot, _, _ in tests:
+        if isinstance(slot, str) and (slot[0] == "?" or "." in slot):
+            return None
+    return tuple(dict.fromkeys(word for _, sign, word in tests if sign in ("?", "!?")))
+
+
+class _Plan:
+    """What a request asks for, as far as its text and the names of the variables that have a value tell.
+
+    Args:
+        tests: What is asked, as (slot, sign, word); see `pattern.parse`.
+        known: The variables that have a value.
+    """
+
+    __slots__ = ("differ", "equal", "more", "present", "same", "unequal", "unknown")
+
+    def __init__(self, tests: Sequence[tuple[Slot, str, str]], known: Collection[str]) -> None:
+        self.equal: list[tuple[Slot, str, bool]] = []
+        """Slots and the texts they must have; True where it is the value of the variable of that name."""
+        self.unequal: list[tuple[Slot, str, bool]] = []
+        self.unknown: dict[str, Slot] = {}
+        """Where each variable without a value stands first."""
+        self.same: list[tuple[Slot, str]] = []
+        self.differ: list[tuple[Slot, str]] = []
+        for slot, sign, word in tests:
+            if sign in ("is", "not"):
+                (self.equal if sign == "is" else self.unequal).append((slot, word, False))
+            elif word in known:
+                (self.equal if sign == "?" else self.unequal).append((slot, word, True))
+            elif sign == "!?":
+                self.differ.append((slot, word))
+            elif word in self.unknown:
+                self.same.append((slot, word))
+            else:
+                self.unknown[word] = slot
+        self.present = tuple(self.unknown.values())
+        self.more = bool(self.unequal or self.same or self.differ)
+        """Whether there are tests beyond equal texts and slots that must be there."""
+
+
+@lru_cache(maxsize=4096)
+def _plan(text: str, known: tuple[str, ...]) -> _Plan:
+    return _Plan(parse(text), known)
+
+
 class PlainSearch:
     """A search that names plain slots only.
 
     Args:
-        tests: What is asked, as (slot, sign, word); see `pattern.parse`.
+        plan: What is asked.
         bound: The variables that have a value.
     """
 
-    __slots__ = ("differ", "equal", "partial", "present", "same", "unequal")
+    __slots__ = ("_plan", "equal", "partial", "unequal")
 
-    def __init__(self, tests: Sequence[tuple[Slot, str, str]], bound: Mapping[str, Any] | None) -> None:
+    def __init__(self, plan: _Plan, bound: Mapping[str, Any]) -> None:
         self.partial = None
-        self.equal: list[tuple[Slot, str]] = []
-        self.unequal: list[tuple[Slot, str]] = []
-        self.present: dict[str, Slot] = {}
-        self.same: list[tuple[Slot, str]] = []
-        self.differ: list[tuple[Slot, str]] = []
-        for slot, sign, word in tests:
-            if sign == "is":
-                self.equal.append((slot, word))
-            elif sign == "not":
-                self.unequal.append((slot, word))
-            elif bound is not None and word in bound:
-                value = bound[word]
-                text = value if type(value) is str else as_text(value)
-                (self.equal if sign == "?" else self.unequal).append((slot, text))
-            elif sign == "!?":
-                self.differ.append((slot, word))
-            elif word in self.present:
-                self.same.append((slot, word))
-            else:
-                self.present[word] = slot
+        self._plan = plan
+        self.equal = _with_values(plan.equal, bound)
+        self.unequal = _with_values(plan.unequal, bound) if plan.more else ()
 
     def __str__(self) -> str:
+        plan = self._plan
         words = [f"{slot}:{text}" for slot, text in self.equal]
-        for name, slot in self.present.items():
-            words.append(f"{slot}:?{name}")
-        if self.unequal or self.same or self.differ:
-            words += [f"{slot}:!{text}" for slot, text in self.unequal]
-            words += [f"{slot}:?{name}" for slot, name in self.same]
-            words += [f"{slot}:!?{name}" for slot, name in self.differ]
+        words += [f"{slot}:?{name}" for name, slot in plan.unknown.items()]
+        words += [f"{slot}:!{text}" for slot, text in self.unequal]
+        words += [f"{slot}:?{name}" for slot, name in plan.same]
+        words += [f"{slot}:!?{name}" for slot, name in plan.differ]
         return " ".join(words)
 
     def among(self, store: ChunkStore) -> list[Chunk]:
@@ -95,32 +116,46 @@ class PlainSearch:
                     return []
         if found is None:
             found = store
-            for slot in [*self.present.values(), *(slot for slot, _ in self.unequal)]:
+            for slot in [*self._plan.present, *(slot for slot, _ in self.unequal)]:
                 holders = store.with_slot(slot)
                 if len(holders) < len(found):
                     found = holders
-        return [chunk for chunk in found if self._fits(chunk)]
+        fits = self._fits
+        return [chunk for chunk in found if fits(chunk)]
 
     def _fits(self, chunk: Chunk) -> bool:
         for slot, text in self.equal:
             value = chunk.get(slot, _NOTHING)
             if value != text and (type(value) is str or value is _NOTHING or as_text(value) != text):
                 return False
-        for slot in self.present.values():
+        plan = self._plan
+        for slot in plan.present:
             if slot not in chunk:
                 return False
-        return not (self.unequal or self.same or self.differ) or self._fits_rest(chunk)
+        return not plan.more or self._fits_rest(chunk)
 
     def _fits_rest(self, chunk: Chunk) -> bool:
         for slot, text in self.unequal:
             if slot not in chunk or as_text(chunk[slot]) == text:
                 return False
-        for slot, name in (*self.same, *self.differ):
-            if slot not in chunk or name not in self.present:
+        plan = self._plan
+        for slot, name in (*plan.same, *plan.differ):
+            if slot not in chunk or name not in plan.unknown:
                 return False
-        if any(as_text(chunk[slot]) != as_text(chunk[self.present[name]]) for slot, name in self.same):
+        if any(as_text(chunk[slot]) != as_text(chunk[plan.unknown[name]]) for slot, name in plan.same):
             return False
-        return all(as_text(chunk[slot]) != as_text(chunk[self.present[name]]) for slot, name in self.differ)
+        return all(as_text(chunk[slot]) != as_text(chunk[plan.unknown[name]]) for slot, name in plan.differ)
+
+
+def _with_values(tests: Sequence[tuple[Slot, str, bool]], bound: Mapping[str, Any]) -> list[tuple[Slot, str]]:
+    """Returns slots and texts, with values in the place of variables."""
+    found: list[tuple[Slot, str]] = []
+    for slot, word, is_variable in tests:
+        if is_variable:
+            value = bound[word]
+            word = value if type(value) is str else as_text(value)
+        found.append((slot, word))
+    return found
 
 
 _NOTHING = object()
@@ -165,7 +200,8 @@ def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partia
         PatternException: If a text is no pattern.
     """
     if partial is None and type(pattern) is str:
-        tests = _plan(pattern)
-        if tests is not None:
-            return PlainSearch(tests, bound)
+        variables = _variables(pattern)
+        if variables is not None:
+            known = tuple([name for name in variables if name in bound]) if bound else ()
+            return PlainSearch(_plan(pattern, known), bound or {})
     return PatternSearch(pattern, bound, partial)

@@ -6,7 +6,7 @@ import ast
 import dis
 import linecache
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,35 @@ SOURCE = "__actr3d_source__"
 """The global under which a module that was loaded from text keeps that text: another may come under the same name later."""
 
 
+class FileName(str):
+    """The name of one text, as it was when it was loaded: reads and compares as the name does, but no two are equal.
+
+    Tracebacks look their lines up by a file's name, and the code of two texts may go by one name: each has lines of its own.
+    """
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        return self is other if isinstance(other, FileName) else str.__eq__(self, other)
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    __hash__ = str.__hash__
+
+
+def keep_lines(source: str, filename: FileName) -> None:
+    """Makes a text's lines known to tracebacks, until `drop_lines`."""
+    linecache.cache.pop(filename, None)  # what was on disk under this plain name, which would stand in for every text
+    linecache.cache[filename] = (len(source), None, [f"{line}\n" for line in source.split("\n")], str(filename))
+
+
+def drop_lines(filenames: Iterable[FileName]) -> None:
+    """Forgets the lines of texts."""
+    for filename in filenames:
+        linecache.cache.pop(filename, None)
+
+
 @lru_cache(maxsize=64)
 def syntax_tree(text: str) -> ast.Module:
     """Parses a file's text; an empty tree where it is no Python now (the file has changed since it was loaded)."""
@@ -24,7 +53,7 @@ def syntax_tree(text: str) -> ast.Module:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
             return ast.parse(text)
-    except (SyntaxError, ValueError):
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ast.Module([], [])
 
 

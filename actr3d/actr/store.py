@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterable
-from typing import Any, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 from actr3d.actr.chunk import LASTING_TYPES, Chunk, Slot, as_text
+
+if TYPE_CHECKING:
+    from actr3d.actr.memory_trace import TracedMemory
 
 Postings = dict[str, list[Chunk]]
 
@@ -16,10 +19,14 @@ def _mutator(name: str) -> Callable[..., Any]:
     original = getattr(list, name)
 
     def method(self: ChunkStore, *args: Any, **keys: Any) -> Any:
+        owner = self.owner
+        before = list(self) if owner is not None and owner._listening() is not None else None
         try:
             return original(self, *args, **keys)
         finally:
             self.forget_order()
+            if owner is not None and before is not None:
+                owner._trace_chunks(name.strip("_"), before, self)
 
     method.__name__ = name
     method.__doc__ = f"Does what `list.{name}` does, and throws the indexes away."
@@ -32,6 +39,9 @@ class ChunkStore(list[Chunk]):
     It may be read and changed like any list; a change other than `keep` throws the indexes away, and they are made
     anew when next needed.
     """
+
+    owner: TracedMemory | None = None
+    """The memory whose trace is told of what is done to the list by hand."""
 
     def __init__(self, chunks: Iterable[Chunk] = ()) -> None:
         super().__init__(chunks)

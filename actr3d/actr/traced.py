@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
+from weakref import ref
 
-from actr3d.actr.chunk import PLAIN_TYPES, Chunk
+from actr3d.actr.chunk import LASTING_TYPES, Chunk
+from actr3d.actr.limits import EndOfRun
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.tree import Part
-from actr3d.trace import Trace
+from actr3d.clock import microseconds
+from actr3d.trace import Trace, top_path
+from actr3d.values import COLLECTIONS, plain
 
 if TYPE_CHECKING:
     from actr3d.actr.scheduler import Scheduler
@@ -17,26 +21,60 @@ UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
 """Attributes that hold the tree together; setting them is not a change that productions could see."""
 
 
-DEEPEST = 8
-"""How many levels of lists in lists a trace keeps; one may contain itself."""
+def _known_part(value: object) -> str | None:
+    return f"<{value._path}>" if issubclass(type(value), Part) else None  # type: ignore[attr-defined]
 
 
-def traceable(value: Any, depth: int = 0) -> Any:
-    """Returns what a trace keeps of a value: plain values as they are, chunks as a copy, others as text without addresses."""
-    if value is None or type(value) in PLAIN_TYPES:
+def traceable(value: Any) -> Any:
+    """Returns what a trace keeps of a value: plain values as they are, chunks, lists and dicts as a copy, parts by their path."""
+    if type(value) in LASTING_TYPES:
         return value
-    if depth > DEEPEST:
-        return "..."
-    if isinstance(value, Chunk):
-        return {str(key): item if item is None or type(item) in PLAIN_TYPES else traceable(item, depth + 1) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [traceable(item, depth + 1) for item in cast("list[Any]", value)]
-    if isinstance(value, Part):
-        return f"<{value._path}>"
-    if callable(value):
-        return f"<{getattr(value, '__qualname__', type(value).__name__)}>"
-    text = repr(value)
-    return f"<{type(value).__name__}>" if " at 0x" in text else text
+    if type(value) is Chunk and LASTING_TYPES.issuperset(map(type, value.values())):
+        return lasting_slots(value)
+    return plain(value, _known_part)
+
+
+def lasting_slots(chunk: dict[Any, Any]) -> dict[str, Any]:
+    """Returns what a trace keeps of a chunk whose values never change by themselves."""
+    return {key if type(key) is str else str(plain(key)): item for key, item in chunk.items()}
+
+
+def chunk_text(chunk: Chunk) -> str:
+    """Returns a chunk as text, without asking the objects in its slots for theirs."""
+    text = chunk._text
+    if text is not None:
+        return text
+    if LASTING_TYPES.issuperset(map(type, chunk.values())):
+        return str(chunk)
+    return str(Chunk({key: traceable(value) for key, value in chunk.items()}))
+
+
+class TracedRun:
+    """A run as its trace knows it; the trace does not keep its model alive.
+
+    Args:
+        top: Its top model.
+    """
+
+    def __init__(self, top: TracedPart) -> None:
+        self._top = ref(top)
+
+    def now_us(self) -> int | None:
+        """Returns its present [us]; None where the model is gone, or part of another now."""
+        top = self._top()
+        return None if top is None or top.parent is not None else top.sch.now_us
+
+    def tell(self, trace: Trace) -> None:
+        """Tells a trace what everything is like at present."""
+        top = self._top()
+        if top is not None:
+            top._trace_opening(trace)
+
+    def stop(self) -> None:
+        """Ends it once the present event is over."""
+        top = self._top()
+        if top is not None:
+            top.sch.stop()
 
 
 class TracedPart(Part):
@@ -46,20 +84,57 @@ class TracedPart(Part):
     _profile: Profile | None
 
     def _attach_trace(self, trace: Trace) -> None:
+        """Begins to tell a trace of the run of which this is the top model."""
+        self._forget_place()
+        self.__dict__["_top_path"] = top_path(trace.begin(TracedRun(self)))
         self.sch.trace = trace
+        self._trace_opening(trace)
+
+    def _trace_opening(self, trace: Trace) -> None:
         if trace.production:
             data = {"model": type(self).__name__, "seed": self.sch.seed, "profile": (self._profile or PYTHON_ACTR).name}
-            trace.emit(self.sch.now_us, "top", "start", data)
-        if trace.buffer:
-            for part in self._tree():
-                part._trace_state(trace)
+            trace.emit(self.sch.now_us, self._path, "start", data)
+        self._trace_states(trace)
+
+    def _trace_states(self, trace: Trace) -> None:
+        """Tells a trace what this part and all below it are like."""
+        for part in self._tree():
+            part._trace_state(trace)
 
     def _trace_state(self, trace: Trace) -> None:
         """Records the present value of every attribute, so that a trace which starts late can be read from its start."""
         if trace.all:
-            state = {key: value for key, value in self.__dict__.items() if key[0] != "_" and key not in UNWATCHED}
-            plain = {key: value for key, value in state.items() if value is None or type(value) in PLAIN_TYPES}
-            trace.emit(self.sch.now_us, self._path, "state", plain)
+            trace.emit(self.sch.now_us, self._path, "state", self._state())
+
+    def _state(self) -> dict[str, Any]:
+        """Returns the attributes that say what the part is like; the library's own modules keep their workings in lists and dicts."""
+        own = {key: value for key, value in self.__dict__.items() if key[0] != "_" and key not in UNWATCHED}
+        lists = () if type(self).__module__.startswith("actr3d.actr.") else COLLECTIONS
+        return {k: traceable(v) for k, v in own.items() if type(v) in LASTING_TYPES or issubclass(type(v), lists)}
+
+    def _trace_run(self, limit: float | None) -> None:
+        """Runs the tree, and records when and why that begins and ends; raises what a listener has raised meanwhile."""
+        sch, begin = self.sch, self.sch.now_us
+        outermost, failed = not sch._running, None
+        self._trace_top("run", {"limit": traceable(limit)})
+        try:
+            if outermost and sch.trace is not None:
+                sch.trace.raise_failures()
+            sch.run(limit)
+        except BaseException as error:
+            failed = error
+            raise
+        finally:
+            self._trace_top("stop", _end_of_run(sch, begin, limit, failed))
+        if outermost and sch.trace is not None:
+            sch.trace.raise_failures()
+
+    def _trace_top(self, kind: str, data: dict[str, Any]) -> None:
+        """Records what concerns the whole run."""
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            *_, top = self._line()
+            trace.emit(self.sch.now_us, top._path, kind, data)
 
     def _trace_request(self, call: str, **particulars: Any) -> None:
         """Records that a module was asked for something."""
@@ -72,10 +147,25 @@ class TracedPart(Part):
         """Records one attribute's new value."""
         if not trace.all:
             return
-        if type(value) in PLAIN_TYPES:
+        if type(value) in LASTING_TYPES:
             trace.emit(self.sch.now_us, self._path, "state", {key: value})
-        elif isinstance(value, Part) and value.__dict__.get("parent") is self:
-            for part in value._tree():
-                part._trace_state(trace)
-        else:
+        elif self.__dict__.get("_children", {}).get(key) is not value:  # that a part has joined is told by «added»
             trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
+
+    def _trace_member(self, kind: str, name: str, part: Part, **particulars: Any) -> None:
+        """Records that a part joins this one under a name, or leaves it."""
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, kind, {"part": name, "model": type(part).__name__, **particulars})
+
+
+def _end_of_run(sch: Scheduler, begin: int, limit: float | None, failed: BaseException | None) -> dict[str, Any]:
+    """Returns why a run that began at a time [us] has ended."""
+    if failed is not None and not isinstance(failed, EndOfRun):
+        return {"by": "error", "error": type(failed).__name__}
+    until = None if sch.limits is None else sch.limits.until
+    if failed is None and limit is not None and sch.now_us >= begin + microseconds(limit):
+        return {"by": "limit"}
+    if until is not None and sch.now_us >= microseconds(until):
+        return {"by": "until"}
+    return {"by": "stop" if sch.stop_flag else "done"}

@@ -3,10 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from sys import maxsize
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
+    from actr3d.actr.events import Trigger
     from actr3d.actr.model import Model
+    from actr3d.actr.scheduler import Scheduler
+
+
+class Move(NamedTuple):
+    """A part came into a tree that was being traced, or to another place in it."""
+
+    trace: Trace
+    number: int
+    """How many events the trace held then."""
+    time: int
+    """When [us]."""
+    path: str | None
+    """What its path was before; None where it was not there yet."""
+
+
+class Place(NamedTuple):
+    """Where a part was, while a trace was kept."""
+
+    path: str | None
+    """Its path; None where it was not there yet."""
+    time: int
+    """Since when [us]; -1 for since the trace began."""
+    begin: int
+    """The number of the first event from there."""
+    end: int
+    """The number of the first event after that."""
 
 
 class Part:
@@ -38,22 +69,67 @@ class Part:
         for child in self.get_children():
             yield from child._tree()
 
-    @property
+    @cached_property
     def _path(self) -> str:
-        """The dotted names from below the top model down to this one; «top» for that model itself."""
-        known = self.__dict__.get("_known_path")
-        if known is None:
-            known = self.__dict__["_known_path"] = self._make_path()
-        return known
+        """The dotted names from below the top model down to this one; «top» for that model itself.
 
-    def _forget_path(self) -> None:
-        for part in self._tree():
-            part.__dict__.pop("_known_path", None)
-
-    def _make_path(self) -> str:
+        Below the top model of a trace's second run they begin with `top#2`. A part that has left the tree keeps its path.
+        """
         names: list[str] = []
         part: Any = self
         while (above := part.__dict__.get("parent")) is not None and len(names) < 64:
             names.append(part.name)
             part = above
-        return ".".join(reversed(names)) or "top"
+        top = part.__dict__.get("_top_path", "top")
+        if top != "top" or not names:
+            names.append(top)
+        return ".".join(reversed(names))
+
+    def _path_of(self, name: str) -> str:
+        """Returns the path of something below this part that is no part itself."""
+        return name if self._path == "top" else f"{self._path}.{name}"
+
+    def _line_changes(self) -> tuple[Trigger, ...]:
+        """Returns what wakes those who wait for a change of this model or of an ancestor, whose part it is."""
+        known = self.__dict__.get("_known_line_changes")
+        if known is None:
+            known = self.__dict__["_known_line_changes"] = tuple([part.changes for part in self._line()])
+        return known
+
+    def _keep_path(self) -> None:
+        """Lets this part, and all below it, keep their paths when they leave the tree."""
+        for part in self._tree():
+            part.__dict__["_path"] = part._path
+
+    def _forget_place(self, *, keep_path: bool = False) -> None:
+        """Forgets what was made of the model's place in the tree, and so of that of everything below it."""
+        for part in self._tree():
+            part.__dict__.pop("_known_line_changes", None)
+            if not keep_path:
+                part.__dict__.pop("_path", None)
+
+    # -- where it was before
+
+    def _note_move(self, sch: Scheduler) -> None:
+        """Keeps what paths are, before the part gets another place in a traced run, so that its past can be told."""
+        trace = sch.trace
+        if trace is not None and trace.keep:
+            for part in self._tree():
+                part.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), sch.now_us, part.__dict__.get("_path")))
+
+    def _places_in(self, trace: Trace) -> list[Place]:
+        """Returns where a part has been while a trace was kept, in order."""
+        places: list[Place] = []
+        time, begin = -1, 0
+        for move in self._moves_in(trace):
+            places.append(Place(move.path, time, begin, move.number))
+            time, begin = move.time, move.number
+        return [*places, Place(self._path, time, begin, maxsize)]
+
+    def _moves_in(self, trace: Trace) -> list[Move]:
+        for part in self._line():
+            moves = [move for move in part.__dict__.get("_moves", ()) if move.trace is trace]
+            if moves:
+                # What has no moves of its own came with its parent, and had no place before.
+                return moves if part is self else moves[:1] if moves[0].path is None else []
+        return []

@@ -6,10 +6,11 @@ Each is an attribute of an agent: `pm = PMNew(alpha=0.1)`. An agent's utilities 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.actr.production import Production
@@ -26,7 +27,7 @@ def logistic_noise(numbers: Any, scale: float) -> float:
     return scale * math.log(1.0 / x - 1.0)
 
 
-class ProceduralSubModule(Model):
+class ProceduralSubModule(WithParameters, Model):
     """The base of all utility modules; each method may be overridden."""
 
     def start(self) -> None:
@@ -49,24 +50,52 @@ class ProceduralSubModule(Model):
         """Returns this module's part of a production's utility."""
         return 0
 
-    @property
-    def draws(self) -> bool:
-        """Whether its part is drawn anew at each choice, so that it cannot be told at other times."""
-        return False
+    def _standing(self, prod: Any) -> float | None:
+        """Returns its part without using up a random number; None where only a choice tells it.
+
+        A modeller's own module is asked at choices only.
+        """
+        if type(self).utility.__module__ != __name__:
+            return None
+        try:
+            return self.utility(prod)
+        except ZeroDivisionError:  # a history without tries has no utility yet
+            return None
 
     def below_threshold(self) -> None:
         """Is told that no production's utility reached the threshold."""
 
-    def _learned(self, prod: Any, part: float) -> None:
+    _decisive: ClassVar[frozenset[str]] = frozenset()
+    """The attributes of the module that say what all productions are worth."""
+
+    def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
+        super()._trace_change(trace, key, value)
+        if key in self._decisive and trace.all and self.parent is not None:
+            for production in cast("Any", self.parent)._productions:
+                self._trace_part(trace, production, self._standing(production))
+
+    def _learned(self, prod: Any) -> None:
         """Records what a production's utility has become by learning."""
         trace = self.sch.trace
         if trace is not None and trace.all and self.parent is not None:
-            data = {"production": prod.name, "part": self.name, "value": part}
-            trace.emit(self.sch.now_us, self.parent._path, "utility", data)
+            part = self._standing(prod)
+            if part is not None:
+                self._trace_part(trace, prod, part)
+
+    def _trace_part(self, trace: Trace, prod: Any, part: float | None) -> None:
+        data = {"production": prod.name, "part": self.name, "value": part}
+        trace.emit(self.sch.now_us, cast("Any", self.parent)._path, "utility", data)
 
 
 class PMNoise(ProceduralSubModule):
-    """Adds logistic noise: `noise` drawn anew at each choice, `baseNoise` once for each production."""
+    """Adds logistic noise to utilities.
+
+    Args:
+        noise: s of what is drawn anew at each choice.
+        baseNoise: s of what is drawn once for each production.
+    """
+
+    _decisive = frozenset({"noise"})
 
     @named_parameters
     def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
@@ -79,9 +108,9 @@ class PMNoise(ProceduralSubModule):
     def utility(self, prod: Any) -> float:
         return prod.baseNoise + self.logisticNoise(self.noise)
 
-    @property
-    def draws(self) -> bool:
-        return self.noise != 0
+    def _standing(self, prod: Any) -> float | None:
+        own = type(self).utility is not PMNoise.utility
+        return None if own or self.noise != 0 else prod.baseNoise
 
     def logisticNoise(self, s: float) -> float:  # noqa: N802 - Python ACT-R's name
         """Draws logistic noise of scale `s`."""
@@ -96,6 +125,8 @@ class PMPGC(ProceduralSubModule):
 
     Source: Anderson & Lebiere (1998), chapter 3.
     """
+
+    _decisive = frozenset({"goal"})
 
     @named_parameters
     def __init__(self, goal: float = 20) -> None:
@@ -127,8 +158,14 @@ class PMPGC(ProceduralSubModule):
                     prod.successes += value
                 else:
                     prod.failures -= value
-                self._learned(prod, self.utility(prod))
+                self._learned(prod)
         self._rewarded = True
+
+    def _learned(self, prod: Any) -> None:
+        # All such modules of one agent count in the same history of a production.
+        for module in cast("Any", self.parent)._adaptors:
+            if isinstance(module, PMPGC):
+                ProceduralSubModule._learned(module, prod)
 
     def utility(self, prod: Any) -> float:
         tries = prod.successes + prod.failures
@@ -157,6 +194,7 @@ class PMPGC(ProceduralSubModule):
             prod.time = time
         if lock is not None:
             prod.lock_pgc = lock
+        self._learned(prod)
 
 
 class PMPGCSuccessWeighted(PMPGC):
@@ -200,22 +238,24 @@ class PMNew(ProceduralSubModule):
         prod.util = 0
 
     def reward(self, value: float) -> None:
+        """Moves the utility of each production since the latest reward towards the reward less the time since its choice."""
         now = self.now()
         whole = self._profile is not None and self._profile.total_utility
         for prod, chosen in self.history:
             present = prod.util + prod.base_utility if whole else prod.util
             prod.util += self.alpha * (value - (now - chosen) - present)
-            self._learned(prod, prod.util)
+            self._learned(prod)
         self.clearFlag = True
 
     def utility(self, prod: Any) -> float:
+        """Returns what has been learned of a production; 0 as long as no reward has reached it."""
         return prod.util
 
     def recreated(self, prod: Any, first: Any) -> None:
         """Moves a compiled rule's utility to its first parent's, U += alpha (U_parent - U) (ACT-R 7)."""
         whole = prod.base_utility + prod.util
         prod.util += self.alpha * (first.base_utility + first.util - whole)
-        self._learned(prod, prod.util)
+        self._learned(prod)
 
 
 class PMTD(ProceduralSubModule):
@@ -248,7 +288,7 @@ class PMTD(ProceduralSubModule):
             passed = self.now() - self.last_time
             worth = self.this_reward - last.cost + prod.td_u / (1 + self.discount * passed)
             last.td_u += self.alpha * (worth - last.td_u)
-            self._learned(last, last.td_u)
+            self._learned(last)
         self.last_prod = prod
         self.last_time = self.now()
         self.this_reward = 0

@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import copy
-import warnings
 from collections.abc import Iterator, Sequence
 from numbers import Real
 from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.events import Event, Trigger
-from actr3d.errors import ModelWarning, SchedulerError, did_you_mean
+from actr3d.actr.saying import warn_at_frame
+from actr3d.errors import SchedulerError, did_you_mean
 
 if TYPE_CHECKING:
     from actr3d.actr.scheduler import Scheduler
 
 
 def wait(sch: Scheduler, event: Event, result: Any) -> None:
-    """Puts an event where what it yielded says: later, on a trigger, behind another event, or on the first of several."""
+    """Puts an event where what it yielded says: later, on a trigger, behind another event, or on the first of several.
+
+    Args:
+        sch: The scheduler whose event it is.
+        event: What waits.
+        result: What it yielded.
+
+    Raises:
+        SchedulerError: If it cannot be waited for: it is of no such kind, nothing is in it, or its delay is no time.
+    """
     if isinstance(result, (int, float)):
         sch.queue.push(sch.after(result, event), event, event.priority)
     elif isinstance(result, dict):
@@ -28,14 +37,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         else:
             trigger.waiting.append(event)
     elif isinstance(result, (list, tuple)):
-        choices = list(_each(cast("Sequence[Any]", result)))
-        if not choices:
-            raise SchedulerError(f"{event.describe()}: cannot wait for {result!r}; nothing is in it")
-        events = [copy.copy(event) for _ in choices]
-        for alternative in events:
-            alternative.group = events
-        for choice, alternative in zip(choices, events, strict=True):
-            wait(sch, alternative, choice)
+        _wait_for_first(sch, event, cast("Sequence[Any]", result))
     elif result is None:
         sch.finish(event)
     elif isinstance(result, Event):
@@ -54,6 +56,20 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         )
 
 
+def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> None:
+    """Puts an event where each of several things says; the first that comes about counts."""
+    choices = list(_each(several))
+    if any(choice is None for choice in choices):
+        warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
+    if not choices:
+        raise SchedulerError(f"{event.describe()}: cannot wait for {several!r}; nothing is in it")
+    events = [copy.copy(event) for _ in choices]
+    for alternative in events:
+        alternative.group = events
+    for choice, alternative in zip(choices, events, strict=True):
+        wait(sch, alternative, choice)
+
+
 def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
     """Puts an event where a dict says: after its `delay`, with its `priority` from now on."""
     for word in how:
@@ -67,17 +83,19 @@ def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
     sch.queue.push(sch.after(how.get("delay", 0), event), event, priority)
 
 
-def warn_of_none(event: Event) -> None:
-    """Warns, at the line that did so, of a generator that yielded None."""
+def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:
+    """Warns, at the line that did so, of a generator that yielded None.
+
+    Args:
+        event: The generator's.
+        what: What it yielded, and what follows from it.
+    """
     generator = event.innermost
     frame = generator.gi_frame if generator is not None else None
     if frame is not None:
-        warnings.warn_explicit(
-            f"{frame.f_code.co_qualname} yields None, which ends it here: what it calls may not be a generator, "
-            "or a number of seconds is missing",
-            ModelWarning,
-            frame.f_code.co_filename,
-            frame.f_lineno,
+        warn_at_frame(
+            f"{frame.f_code.co_qualname} yields {what}: what it calls may not be a generator, or a number of seconds is missing",
+            frame,
         )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Mapping
 from dataclasses import asdict, fields, is_dataclass
+from pathlib import Path
 from typing import Any, get_type_hints
 
 from actr3d.actr.loading import load_text
@@ -12,13 +13,14 @@ from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
 from actr3d.simulation import Simulation
 
 
-def build(source: str, filename: str, settings: Mapping[str, Any]) -> tuple[Simulation, dict[str, Any]]:
+def build(source: str, filename: str, settings: Mapping[str, Any], folder: Path | None = None) -> tuple[Simulation, dict[str, Any]]:
     """Loads a model's text and builds its simulation.
 
     Args:
         source: The text.
         filename: How tracebacks call it.
         settings: Values of its parameters, by name; the others have their defaults.
+        folder: Where it finds its own helper modules; None for none.
 
     Returns:
         The simulation, and the values of all parameters by name.
@@ -28,7 +30,7 @@ def build(source: str, filename: str, settings: Mapping[str, Any]) -> tuple[Simu
         ConfigurationError: If there is no such parameter, or it does not take such a value.
         Exception: Whatever it raises itself.
     """
-    function: Any = load_text(source, filename).build
+    function: Any = load_text(source, filename, folder=folder).build
     names = list(inspect.signature(function).parameters)
     if len(names) > 1:
         raise ModelFileError(f"{filename}: build takes one argument, its parameters (it takes {', '.join(names)})")

@@ -121,7 +121,7 @@ def _check_versions(then: dict[str, str]) -> None:
 
 def _built(facts: dict[str, Any]) -> Simulation:
     file = facts["file"]
-    simulation, _ = build(facts["sources"][file], file, facts["parameters"])
+    simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent)
     return simulation
 
 

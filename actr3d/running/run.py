@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
-from actr3d.actr.loading import read_source, run_text
+from actr3d.actr.loading import run_text
+from actr3d.actr.reading import read_source
 from actr3d.actr.sources import syntax_tree
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ConfigurationError, ParameterError
@@ -83,7 +84,7 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str
 
     with limits, suppress(EndOfRun):
         random.seed(limits.program_seed)
-        simulation, parameters = build(source, str(path), settings)
+        simulation, parameters = build(source, str(path), settings, path.parent)
         end = None
         if limits.until is not None:  # down to the end of a tick
             period = microseconds(simulation.period)

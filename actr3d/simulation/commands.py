@@ -29,13 +29,14 @@ class Command:
 
     def to_data(self) -> dict[str, Any]:
         """Returns the command as plain values."""
-        return {"command": self.word, "values": list(self.values), "named": dict(self.named), "body": self.body}
+        return {"command": self.word, "data": {"values": list(self.values), "named": dict(self.named), "body": self.body}}
 
     @classmethod
     def from_data(cls, tick: int, data: Mapping[str, Any]) -> Command:
         """Returns the command that `to_data` described."""
-        named = {name: _fixed(value) for name, value in data["named"].items()}
-        return cls(tick, data["command"], tuple(map(_fixed, data["values"])), named, data["body"])
+        given = data["data"]
+        named = {name: _fixed(value) for name, value in given["named"].items()}
+        return cls(tick, data["command"], tuple(map(_fixed, given["values"])), named, given["body"])
 
     def carry_out(self, world: World, minds: Minds, *, only_minds: bool = False) -> None:
         """Does it.

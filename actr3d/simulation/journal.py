@@ -8,9 +8,10 @@ from typing import Any
 
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
+from actr3d.kinds import KINDS, LEVELS
 from actr3d.recording import Recording
 from actr3d.simulation.commands import Command
-from actr3d.trace import LEVELS, Trace, TraceEvent
+from actr3d.trace import Trace, TraceEvent
 from actr3d.world import World
 
 Listener = Callable[[TraceEvent], object]
@@ -61,6 +62,18 @@ class Journal:
         if self.trace is not None and not self._listeners and self._recording is None:
             self.trace.listen(self._hear)
         self._listeners.append(listener)
+
+    def tell_program(self, trace: Trace) -> None:
+        """Hands on to the trace of the whole program as much as that one records."""
+        self.raise_level(trace.level)
+        rank = LEVELS.index(trace.level)
+
+        def hand_on(event: TraceEvent) -> None:
+            if LEVELS.index(KINDS[event.kind].level) <= rank:
+                trace.emit(*event)
+
+        if rank:
+            self.listen(hand_on)
 
     def record(self, recording: Recording) -> None:
         """Lets everything be recorded."""

@@ -71,9 +71,7 @@ class Simulation:
         self._period = self._steps * self.world.scene.timestep_us
         self._journal = Journal(trace)
         if limits is not None and limits.trace is not None:
-            program = limits.trace
-            self._journal.raise_level(program.level)
-            self._journal.listen(lambda event: program.emit(*event))
+            self._journal.tell_program(limits.trace)
         self._course = Course(self.world, self._begin, self._journal)
         self._observers: list[Observer] = []
         self._observing = False

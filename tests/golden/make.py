@@ -15,8 +15,8 @@ from pathlib import Path
 GOLDEN = Path(__file__).resolve().parent
 ROOT = GOLDEN.parent.parent
 MODELS = ROOT / "models"
-OPTIONS = ("--seed", "1", "--trace", "buffer", "--json")
-"""How every golden trace is made."""
+IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tutorial/parallel_system", "tutorial/two_agents"}
+"""The models whose golden traces hold every event; those of the others, which are long, hold productions and buffers."""
 
 
 def model_names() -> list[str]:
@@ -29,24 +29,29 @@ def golden_names() -> list[str]:
     return sorted(path.relative_to(GOLDEN).with_suffix("").as_posix() for path in GOLDEN.rglob("*.jsonl"))
 
 
+def options(name: str, seed: int = 1) -> tuple[str, ...]:
+    """Returns how a model's golden trace is made."""
+    return ("--seed", str(seed), "--trace", "all" if name in IN_FULL else "buffer", "--json")
+
+
 def golden_file(name: str) -> Path:
     """Returns where a model's golden trace is kept."""
     return GOLDEN / f"{name}.jsonl"
 
 
-def command(name: str, *options: str) -> list[str]:
+def command(name: str, *words: str) -> list[str]:
     """Returns the arguments of `actr3d` that run a model, from the project's folder."""
-    return ["run", f"models/{name}.py", *(options or OPTIONS)]
+    return ["run", f"models/{name}.py", *(words or options(name))]
 
 
-def record(name: str, *options: str) -> bytes:
+def record(name: str, *words: str) -> bytes:
     """Runs a model in a process of its own, and returns what that printed.
 
     Raises:
         RuntimeError: If it fails, or complains of anything.
     """
     environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8"}
-    arguments = [sys.executable, "-m", "actr3d.cli", *command(name, *options)]
+    arguments = [sys.executable, "-m", "actr3d.cli", *command(name, *words)]
     done = subprocess.run(arguments, capture_output=True, cwd=ROOT, env=environment, timeout=60, check=False)
     if done.returncode != 0 or done.stderr:
         raise RuntimeError(f"models/{name}.py ended with {done.returncode}:\n{done.stderr.decode()}")

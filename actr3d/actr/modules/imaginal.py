@@ -7,10 +7,10 @@ from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 
 
-class ImaginalModule(Model):
+class ImaginalModule(WithParameters, Model):
     """Sets, changes and clears a buffer, each after a delay; while it is busy, further calls are left undone.
 
     Args:

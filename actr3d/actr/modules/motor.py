@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 
 
-class Motor(Model):
+class Motor(WithParameters, Model):
     """Presses keys; the environment's `key_pressed(key)` is called when the finger comes down. One press at a time.
 
     Source: ACT-R's times: 0.25 s preparation, 0.05 s initiation, 0.1 s until the key is struck, 0.15 s to finish.

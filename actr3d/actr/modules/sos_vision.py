@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.pattern import Pattern
 
 
-class SOSVision(Model):
+class SOSVision(WithParameters, Model):
     """Looks for an object that matches a pattern, and brings one of those it notices to a buffer.
 
     Each object of the environment (the agent's parent) that has a `salience` is noticed with that probability; one that
@@ -40,7 +40,7 @@ class SOSVision(Model):
         matcher = Pattern(pattern)
         self.error = False
         noticed = [obj for obj in self._objects() if matcher.match(obj) is not None and self._notices(obj)]
-        self._trace_request("request", pattern=str(pattern), noticed=noticed)
+        self._trace_request("request", pattern=pattern, noticed=noticed)
         self.busy = True
         time = self.delay
         if self.delay_sd is not None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.scheduler import Trigger
 
 
-class Timer(Model):
+class Timer(WithParameters, Model):
     """Counts pulses; pulse n + 1 lasts a t_n plus noise with standard deviation a b t_n.
 
     Args:

@@ -8,11 +8,11 @@ from typing import Any
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.finst import Finst
 from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.pattern import Pattern
 
 
-class Vision(Model):
+class Vision(WithParameters, Model):
     """Sees the objects of the environment that have `x` and `y`, unless their `visible` is False.
 
     A new object's place goes to the location buffer by itself while that is empty.
@@ -94,7 +94,7 @@ class Vision(Model):
         """Puts the place of a matching object into the location buffer; where there is none, nothing happens."""
         # Like all attributes of models, what was asked last is a change that wakes whoever waits for one.
         matcher = self.lastLocationPattern = self._pattern(pattern)
-        self._trace_request("attendTo", pattern=str(pattern), unattended=unattended, new=new)
+        self._trace_request("attendTo", pattern=pattern, unattended=unattended, new=new)
         found: list[Any] = []
         for obj in self._visible():
             if new and not self.isNew(obj):
@@ -111,7 +111,7 @@ class Vision(Model):
     def examine(self, pat: Any) -> Iterator[float]:
         """Brings the first matching object to the visual buffer, after 0.085 s; `'x y'` names a place."""
         matcher = self.lastExamine = self._pattern(pat)
-        self._trace_request("examine", pattern=str(pat))
+        self._trace_request("examine", pattern=pat)
         for obj in self._visible():
             if matcher.match(obj) is None:
                 continue

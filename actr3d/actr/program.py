@@ -1,0 +1,188 @@
+"""What the files of one program share: what `import` means in them, and where the text of each is kept.
+
+Every file that is loaded here, helper modules too, has builtins of its own, whose `__import__` is the program's: so the old
+names mean this library in it whenever and in whatever thread it imports them, and in nobody else's files. Of helper
+modules, those beside the program count, and those that lie where the program itself has extended `sys.path` to.
+"""
+
+from __future__ import annotations
+
+import builtins
+import importlib
+import importlib.abc
+import importlib.util
+import sys
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any
+from weakref import WeakValueDictionary
+
+from actr3d.actr import logger as logs
+from actr3d.actr.aliases import OldNames, aliases, is_old_name
+from actr3d.actr.reading import compile_source, read_source
+from actr3d.actr.sources import SOURCE, WRITTEN_FOR_PYTHON_ACTR, FileName, keep_lines
+
+
+class Program:
+    """The files of one program.
+
+    It does not hold the program's main module, which holds it: helper modules, which `sys.modules` keeps alive, must not
+    keep the main module alive.
+
+    Args:
+        folder: Where its helper modules lie; None for none.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+        self.files: list[FileName] = []
+        """The names of its texts, under which tracebacks find their lines."""
+        self.used_old_names = False
+        """Whether it has imported python_actr or ccm."""
+        self.old = OldNames(self._note_old_names)
+        self._package: str | None = None
+        self._path: list[str] = []
+        self._builtins = ModuleType("builtins")
+        vars(self._builtins).update(vars(builtins))
+        vars(self._builtins)["__import__"] = self.imported
+
+    def prepare(self, source: str, filename: str, module: ModuleType) -> CodeType:
+        """Compiles a text, and lets a module be the one it can be run in.
+
+        Raises:
+            ModelFileError: If it is no Python 3.
+        """
+        name = FileName(filename)
+        code = compile_source(source, name)
+        keep_lines(source, name)
+        self.files.append(name)
+        module.__dict__.update({SOURCE: source, "__builtins__": vars(self._builtins)})
+        return code
+
+    def as_package(self, name: str) -> dict[str, ModuleType]:
+        """Lets the helper modules stand in a package of this name, so that those of two programs can be there at once.
+
+        Returns:
+            What is to be known to `sys.modules`: the package; nothing where the program has no folder.
+        """
+        if self.folder is None:
+            return {}
+        package = ModuleType(name)
+        package.__path__ = [str(self.folder)]
+        self._package = name
+        _PACKAGES[name] = self
+        return {name: package}
+
+    @contextmanager
+    def running(self) -> Generator[None]:
+        """Lets the helper modules stand in `sys.modules` by their own names inside the block."""
+        self._path = list(sys.path)
+        _RUNNING.append(self)
+        try:
+            yield
+        finally:
+            _RUNNING.remove(self)
+
+    def owns(self, place: str) -> bool:
+        """Tells whether a file or folder belongs to the program."""
+        if not place or self.folder is None:
+            return False
+        path = Path(place).resolve()
+        added = [] if self._package else [Path(entry).resolve() for entry in sys.path if entry not in self._path]
+        return any(path.is_relative_to(root) for root in (self.folder, *added)) and not _is_installed(path)
+
+    def owns_module(self, module: ModuleType) -> bool:
+        """Tells whether a module is one of the program's helper modules."""
+        return any(self.owns(place) for place in (getattr(module, "__file__", None) or "", *getattr(module, "__path__", ())))
+
+    def _note_old_names(self) -> None:
+        self.used_old_names = True
+        if self in _RUNNING:
+            logs.LOG.announce = True
+
+    # -- what `import` means
+
+    def imported(
+        self,
+        name: str,
+        globals: Mapping[str, Any] | None = None,
+        locals: Mapping[str, Any] | None = None,
+        fromlist: Sequence[str] | None = (),
+        level: int = 0,
+    ) -> ModuleType:
+        """Does what an import statement in one of the program's files asks for; the parameters are those of `__import__`.
+
+        Raises:
+            ImportError: If it cannot be had.
+        """
+        if level == 0:
+            if is_old_name(name):
+                if isinstance(globals, dict):
+                    globals[WRITTEN_FOR_PYTHON_ACTR] = True
+                return self.old.imported(name, fromlist)
+            if name == "builtins":
+                return self._builtins
+            if self._is_helper(name.partition(".")[0]):
+                return self._helper(name, fromlist)
+        if level or name in sys.modules:
+            return builtins.__import__(name, globals, locals, fromlist or (), level)
+        with aliases(self.old):  # an installed package may be written for the old names too
+            return builtins.__import__(name, globals, locals, fromlist or (), level)
+
+    def _is_helper(self, root: str) -> bool:
+        """Tells whether a name is that of a helper module in the program's own package."""
+        if self._package is None or (root in sys.modules and root in sys.stdlib_module_names):
+            return False
+        full = f"{self._package}.{root}"
+        if full in sys.modules:
+            return True
+        spec = PathFinder.find_spec(full, [str(self.folder)])
+        # A folder without `__init__.py` stands behind everything else of its name.
+        return spec is not None and (spec.loader is not None or importlib.util.find_spec(root) is None)
+
+    def _helper(self, name: str, fromlist: Sequence[str] | None) -> ModuleType:
+        full = f"{self._package}.{name}"
+        if fromlist:
+            return builtins.__import__(full, None, None, fromlist)
+        importlib.import_module(full)
+        return sys.modules[f"{self._package}.{name.partition('.')[0]}"]
+
+
+class _HelperLoader(SourceFileLoader):
+    """Loads a helper module as the program itself is loaded."""
+
+    def __init__(self, name: str, path: str, program: Program) -> None:
+        super().__init__(name, path)
+        self.program = program
+
+    def exec_module(self, module: ModuleType) -> None:
+        exec(self.program.prepare(read_source(Path(self.path)), str(self.path), module), module.__dict__)
+
+
+class _HelperFinder(importlib.abc.MetaPathFinder):
+    """Finds the helper modules of programs that are loaded, and of the one that is being run."""
+
+    def find_spec(self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
+        program = _PACKAGES.get(fullname.partition(".")[0]) or (_RUNNING[-1] if _RUNNING else None)
+        if program is None or fullname in sys.builtin_module_names:
+            return None
+        spec = PathFinder.find_spec(fullname, path)
+        loader = spec.loader if spec is not None else None
+        if type(loader) is not SourceFileLoader or not program.owns(str(loader.path)):
+            return None
+        assert spec is not None
+        spec.loader = _HelperLoader(loader.name, str(loader.path), program)
+        return spec
+
+
+_PACKAGES: WeakValueDictionary[str, Program] = WeakValueDictionary()
+_RUNNING: list[Program] = []
+sys.meta_path.insert(0, _HelperFinder())  # it stays, as the finder of the old names does
+
+
+def _is_installed(path: Path) -> bool:
+    """Tells whether a file is one of an installed package or of Python itself."""
+    return "site-packages" in path.parts or path.is_relative_to(Path(sys.prefix).resolve())
