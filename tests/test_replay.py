@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from carts import driving
+from walkers import driving
 
 from actr3d.actr.limits import RunLimits
 from actr3d.cli import main
@@ -214,7 +214,7 @@ def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Pat
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.3)
-        simulation.command("stop", body="cart")
+        simulation.command("stop", body="walker")
         simulation.run(0.3)
         simulation.command("aperture", 0.5)
     with Recorded(tmp_path / "run") as recorded:

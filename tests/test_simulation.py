@@ -5,12 +5,14 @@ from __future__ import annotations
 import threading
 import time
 import tracemalloc
+from collections import Counter
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 import pytest
-from carts import Cart, Driver, Place, digest, driving, world_of
 from living import near
+from walkers import Driver, digest, driving, scene_of
 
 from actr3d.actr import ACTR, Model
 from actr3d.actr.limits import RunLimits
@@ -18,7 +20,7 @@ from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SimulationError, WorldError
 from actr3d.simulation import Glimpse, Simulation, history
 from actr3d.trace import Trace
-from actr3d.world import Floor, Scene
+from actr3d.world import Body, Floor, Scene
 
 MINDS: Any = load_text(
     """
@@ -36,21 +38,21 @@ class Asker(ACTR):
         self.story()
         goal.set("wait")
     def story(self):
-        reading = self.body.get("place")
+        reading = self.body.get("pose")
         self.times.append(("busy", self.body.busy))
         yield reading
         self.times.append(("answered", self.now(), reading.value, self.body.busy))
-        self.body.set("reach", 0.2, speed=1.0)
+        self.body.set("waypoint", 0.2, 0, speed=1.0)
         yield 0.3
-        first, second = self.body.get("place"), self.body.get("both")
+        first, second = self.body.get("pose"), self.body.get("pose", "head")
         yield first
         yield second
         self.times.append(("arrived", first.value, second.value))
-        self.body.request("place")
+        self.body.request("gyroscope")
 
-    def feel(goal="wait", felt="place x:?x", body="error:False"):
+    def feel(goal="wait", felt="gyroscope ?x ? ?z", body="error:False"):
         self.times.append(("felt", self.now(), x))
-        body.request("nothing")
+        body.request("rangefinder", reach=20)
         goal.set("fail")
     def nothing(goal="fail", felt=None, body="error:True"):
         self.times.append(("nothing", self.now()))
@@ -84,12 +86,12 @@ class Idle(ACTR):
 class Wrong(Model):
     def start(self):
         yield 0.02
-        self.body.set("slid", 1)
+        self.body.set("wlk", 1)
 
 class Early(Model):
     def start(self):
         yield 0.01
-        self.body.get("place").value
+        self.body.get("pose").value
 """,
     "minds.py",
 )
@@ -100,28 +102,43 @@ def with_port(kind: Any) -> Any:
     return type(kind.__name__, (kind,), {"body": BodyPort()})
 
 
+@pytest.fixture(name="asked")
+def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Counts what bodies are asked, by their names."""
+    counts: Counter[str] = Counter()
+    get = Body.get
+
+    def counting(self: Body, word: str, *values: Any, **options: Any) -> Any:
+        counts[self.name] += 1
+        return get(self, word, *values, **options)
+
+    monkeypatch.setattr(Body, "get", counting)
+    return counts
+
+
 def test_a_tick_thinks_and_a_tock_moves_and_answers() -> None:
-    simulation = Simulation(world_of("cart"), {"cart": MINDS.Asker}, seed=1, trace="all")
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
     simulation.run(1.0)
-    mind: Any = simulation.minds["cart"]
+    mind: Any = simulation.minds["walker"]
     asked, busy, answered, arrived, felt, nothing = mind.times
     assert (asked, busy) == (("asked", 0.05), ("busy", True))
     assert answered[:2] == ("answered", 0.05)  # asked at the very end of a tick, answered when the next begins
-    assert answered[2] == Place(x=0.0, y=0.0)
+    assert (answered[2].x, answered[2].y, answered[2].heading) == near((0, 0, 0), abs=1e-6)
     assert answered[3] is False
     assert arrived[1].x == near(0.2, abs=1e-3)
-    assert arrived[2] == (arrived[1].x, arrived[1].y)
-    assert float(felt[2]) == near(arrived[1].x, abs=1e-3)
+    assert arrived[2].z > arrived[1].z + 0.5
+    assert float(felt[2]) == near(0, abs=1e-2)
     assert nothing[0] == "nothing"
     assert simulation.trace is not None
-    kinds = [(event.kind, event.data.get("call"), event.data.get("word")) for event in simulation.trace.select("request", "cart.body")]
+    kinds = [(event.kind, event.data.get("call"), event.data.get("word")) for event in simulation.trace.select("request", "walker.body")]
     assert kinds == [("request", call, word) for call, word in REQUESTS]
-    answers = simulation.trace.select("answer", "cart.body")
-    assert [event.data["word"] for event in answers] == ["place", "place", "both", "place", "nothing"]
-    assert answers[0].data["value"] == {"x": 0.0, "y": 0.0}
+    answers = simulation.trace.select("answer", "walker.body")
+    assert [event.data["word"] for event in answers] == ["pose", "pose", "pose", "gyroscope", "rangefinder"]
+    assert answers[0].data["value"] == asdict(answered[2])
+    assert (answers[3].data["value"][2], answers[4].data["value"]) == (near(0, abs=1e-2), None)
 
 
-REQUESTS = [("get", "place"), ("set", "reach"), ("get", "place"), ("get", "both"), ("request", "place"), ("request", "nothing")]
+REQUESTS = [("get", "pose"), ("set", "waypoint"), ("get", "pose"), ("get", "pose"), ("request", "gyroscope"), ("request", "rangefinder")]
 
 
 def test_events_at_the_very_end_of_a_tick_belong_to_it() -> None:
@@ -136,10 +153,10 @@ def test_events_at_the_very_end_of_a_tick_belong_to_it() -> None:
 
 @pytest.mark.parametrize(("period", "timestep"), [(0.01, 0.002), (0.001, 0.001), (0.05, 0.0025)])
 def test_both_clocks_agree_exactly(period: float, timestep: float) -> None:
-    simulation = Simulation(world_of("cart", timestep=timestep), {"cart": Driver}, period=period, seed=3)
+    simulation = Simulation(scene_of("walker", timestep=timestep), {"walker": Driver}, period=period, seed=3)
     for _ in range(500):
         simulation.step()
-        assert simulation.minds["cart"].sch.now_us == simulation.world.time == round(simulation.ticks * period * 1e6)
+        assert simulation.minds["walker"].sch.now_us == simulation.world.time == round(simulation.ticks * period * 1e6)
     assert simulation.time == near(500 * period)
 
 
@@ -208,24 +225,24 @@ def test_an_observer_cannot_step_what_it_observes() -> None:
 
 
 def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
-    simulation = Simulation(world_of("cart"))
-    simulation.command("slide", 1.0)
+    simulation = Simulation(scene_of("walker"))
+    simulation.command("walk", 1.0)
     places: list[tuple[float, float]] = []
-    simulation.observe(lambda seen: places.append((float(seen.mj_data.body("cart").xpos[0]), float(seen.mj_data.qpos[0]))))
+    simulation.observe(lambda seen: places.append((float(seen.mj_data.body("walker").xpos[0]), float(seen.mj_data.qpos[0]))))
     simulation.step(3)
     assert all(shown == near(state, abs=1e-12) for shown, state in places)
     assert places[-1][0] > places[0][0] > 0
 
 
-def test_a_body_without_a_mind_and_a_mind_without_a_body() -> None:
-    simulation = Simulation(world_of("cart", "empty"), {"cart": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
+def test_a_body_without_a_mind_and_a_mind_without_a_body(asked: Counter[str]) -> None:
+    simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
     environment: Any = simulation.minds["watcher"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
     simulation.run(0.5)
-    bodies = simulation.world.bodies
-    assert bodies["cart"].answered > 0
-    assert bodies["empty"].answered == 0
+    assert asked["walker"] > 0
+    assert asked["empty"] == 0
+    assert simulation.world.bodies["empty"].get("pose").x == near(0, abs=1e-6)
     assert said == [("watcher", 0.01), ("watcher", 0.02), ("watcher", 0.03)]
 
 
@@ -239,19 +256,19 @@ def test_simultaneous_events_of_several_minds_have_one_order() -> None:
 
 
 def test_a_mind_that_says_stop_ends_the_run_with_its_tick() -> None:
-    simulation = Simulation(world_of("cart"), {"cart": MINDS.Stopper})
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
     report = simulation.run(1)
-    mind: Any = simulation.minds["cart"]
+    mind: Any = simulation.minds["walker"]
     assert (report.ended_by, report.ticks, simulation.time, mind.ticks) == ("stop", 3, 0.03, "to the end of its tick")
     assert mind.now() == simulation.time
     assert simulation.run(0.02).ended_by == "seconds"
 
 
 def test_a_run_without_limits_ends_when_no_mind_has_anything_left_to_do() -> None:
-    simulation = Simulation(world_of("cart"), {"cart": MINDS.Asker})
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
     report = simulation.run()
     assert report.ended_by == "done"
-    assert simulation.minds["cart"].times[-1][0] == "nothing"
+    assert simulation.minds["walker"].times[-1][0] == "nothing"
     assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
 
 
@@ -278,40 +295,40 @@ def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
     simulation = driving("all")
     simulation.step(3)
     simulation.command("aperture", width=0.4)
-    simulation.command("stop", body="cart")
-    simulation.command("parameter", "cart.looks", 100)
+    simulation.command("stop", body="walker")
+    simulation.command("parameter", "walker.looks", 100)
     simulation.command("parameter", "other.body.error", True)
     assert simulation.world.aperture_width() == near(0.4)
     simulation.run(0.5)
-    assert simulation.minds["cart"].looks > 100
+    assert simulation.minds["walker"].looks > 100
     assert simulation.trace is not None
     told = simulation.trace.select("command")
     assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "stop", "parameter", "parameter")]
 
 
 WRONG: list[tuple[Callable[[Any], object], str]] = [
-    (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\?; name its body: cart, other"),
-    (lambda s: s.command("stop", body="crt"), r"no body 'crt'; did you mean 'cart'\?"),
-    (lambda s: s.command("stp", body="cart"), r"cannot 'stp'; did you mean 'stop'"),
+    (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\?; name its body: walker, other"),
+    (lambda s: s.command("stop", body="walkr"), r"no body 'walkr'; did you mean 'walker'\?"),
+    (lambda s: s.command("stp", body="walker"), r"has no actuator 'stp'; did you mean 'stop'"),
     (lambda s: s.command("aperture", object()), "numbers, texts and tuples of these"),
     (lambda s: s.command("aperture", 1, colour=2), r"command 'aperture': .*unexpected keyword argument 'colour'"),
     (lambda s: s.command("aperture", -1), r"Aperture\.width: must be >= 0"),
-    (lambda s: s.command("parameter", "crt.looks", 1), r"has no part 'crt'; did you mean 'cart'"),
-    (lambda s: s.command("parameter", "cart.look", 1), r"'cart' has no 'look'; did you mean 'looks'"),
+    (lambda s: s.command("parameter", "walkr.looks", 1), r"has no part 'walkr'; did you mean 'walker'"),
+    (lambda s: s.command("parameter", "walker.look", 1), r"'walker' has no 'look'; did you mean 'looks'"),
     (lambda s: s.tock(), "there is a tick to be made first"),
     (lambda s: (s.tick(), s.tick()), "a tick waits for its tock"),
     (lambda s: (s.tick(), s.command("aperture", 1)), "a tick waits for its tock"),
     (lambda s: s.run(0.015), "must be a whole number of ticks of 0.01 s"),
     (lambda s: s.listen(print), "nothing is traced"),
-    (lambda s: Simulation(s.world, {"crt": Driver}), r"no body 'crt' in the scene; did you mean 'cart'"),
-    (lambda s: Simulation(s.world, bodiless={"cart": Driver}), "'cart' is the name of a body"),
+    (lambda s: Simulation(s.world, {"walkr": Driver}), r"no body 'walkr' in the scene; did you mean 'walker'"),
+    (lambda s: Simulation(s.world, bodiless={"walker": Driver}), "'walker' is the name of a body"),
     (lambda s: Simulation(Scene(), {"x": Driver}), "no body 'x' in the scene; there are: none"),
-    (lambda s: Simulation(s.world, dict[str, Any](cart=3)).step(), "must be what makes an agent"),
-    (lambda s: Simulation(s.world, {"cart": dict}).step(), r"must make an agent \(made \{\}\)"),
+    (lambda s: Simulation(s.world, dict[str, Any](walker=3)).step(), "must be what makes an agent"),
+    (lambda s: Simulation(s.world, {"walker": dict}).step(), r"must make an agent \(made \{\}\)"),
     (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
     (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "leads to no body"),
     (lambda s: Simulation(s.world, trace="some"), "no level 'some'"),
-    (lambda s: Simulation(s.world, {"cart": with_port(MINDS.Early)}).run(0.1), "has not answered 'place' yet"),
+    (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 
 
@@ -322,11 +339,11 @@ def test_what_is_wrong_is_said(wrong: Callable[[Simulation], object], message: s
 
 
 def test_an_unknown_word_names_the_modellers_line() -> None:
-    simulation = Simulation(world_of("cart"), {"cart": with_port(MINDS.Wrong)})
-    with pytest.raises(WorldError, match="cannot 'slid'; did you mean 'slide'") as caught:
+    simulation = Simulation(scene_of("walker"), {"walker": with_port(MINDS.Wrong)})
+    with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
         simulation.run(0.1)
-    line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("slid", 1)')
-    assert caught.value.__notes__ == [f"  asked for by 'cart.body' in minds.py:{line}"]
+    line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
+    assert caught.value.__notes__ == [f"  asked for by 'walker.body' in minds.py:{line}"]
     with pytest.raises(SimulationError, match=r"the run has failed at 0\.02 s and cannot go on"):
         simulation.step()
     simulation.seek(0.01)
@@ -341,7 +358,7 @@ def test_one_agent_cannot_be_two_minds() -> None:
 
 
 def test_other_threads_submit_commands_and_do_nothing_else() -> None:
-    simulation = Simulation(world_of("cart"))
+    simulation = Simulation(scene_of("walker"))
     said: list[str] = []
 
     def other() -> None:
@@ -355,7 +372,7 @@ def test_other_threads_submit_commands_and_do_nothing_else() -> None:
     thread.join()
     assert said == ["a simulation belongs to the thread that made it; another one may use submit"]
     futures: list[Any] = []
-    threads = [threading.Thread(target=lambda: futures.append(simulation.submit("slide", 0.5))) for _ in range(8)]
+    threads = [threading.Thread(target=lambda: futures.append(simulation.submit("walk", 0.5))) for _ in range(8)]
     threads.append(threading.Thread(target=lambda: futures.append(simulation.submit("apertur", 1.0))))
     for thread in threads:
         thread.start()
@@ -364,18 +381,18 @@ def test_other_threads_submit_commands_and_do_nothing_else() -> None:
     simulation.carry_out_submitted()
     assert sum(future.exception(timeout=0) is None for future in futures) == 8
     (failed,) = [error for future in futures if (error := future.exception()) is not None]
-    assert "cannot 'apertur'" in str(failed)
+    assert "no actuator 'apertur'" in str(failed)
 
 
 def test_a_program_gives_its_simulations_seed_trace_and_end() -> None:
     trace = Trace("all")
     with RunLimits(seed=5, until=0.05, trace=trace):
-        simulation = Simulation(world_of("cart"), {"cart": Driver}, trace="buffer")
+        simulation = Simulation(scene_of("walker"), {"walker": Driver}, trace="buffer")
         simulation.run(0.05)
     assert simulation.seed == 5
     assert simulation.trace is not None
     assert [event.to_json() for event in trace] == [event.to_json() for event in simulation.trace]
-    assert Simulation(world_of("cart")).seed != Simulation(world_of("cart")).seed
+    assert Simulation(scene_of("walker")).seed != Simulation(scene_of("walker")).seed
 
 
 def test_random_numbers_of_the_module_random_come_from_the_seed_too() -> None:
@@ -398,12 +415,11 @@ class Agent(Model):
     assert numbers[0] == numbers[1] != numbers[2]
 
 
-def test_nothing_is_asked_of_a_body_that_nobody_wants() -> None:
-    simulation = Simulation(world_of("cart"), {"cart": MINDS.Idle})
-    body: Cart = simulation.world.bodies["cart"]
+def test_nothing_is_asked_of_a_body_that_nobody_wants(asked: Counter[str]) -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
     simulation.run(0.1)
-    assert body.answered == 0
-    assert isinstance(simulation.minds["cart"], (ACTR, Model))
+    assert not asked
+    assert isinstance(simulation.minds["walker"], (ACTR, Model))
 
 
 def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -417,5 +433,5 @@ def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> N
         simulation.run(20)
         sizes.append(tracemalloc.get_traced_memory()[0])
     tracemalloc.stop()
-    assert simulation.world.time == simulation.minds["cart"].sch.now_us == 62_000_000
+    assert simulation.world.time == simulation.minds["walker"].sch.now_us == 62_000_000
     assert sizes[2] - sizes[1] < 200_000  # a state of the two bodies' noise alone is 40,000 bytes

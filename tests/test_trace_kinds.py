@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from carts import driving
+from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
 from actr3d.actr.limits import RunLimits

@@ -7,14 +7,13 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import mujoco
 
 from actr3d.actr.loading import load_text
 from actr3d.bench.figures import Figure, report, seconds_of
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Scene, World, WorldState
+from actr3d.world import Aperture, Floor, Mannequin, Scene, WorldState
 
 WARM = 200
 """Ticks before anything is measured."""
@@ -36,47 +35,22 @@ class Agent(ACTR):
         for number in range(20):
             memory.add(f"count {number} {(number + 1) % 20}")
         goal.set("count 0")
-        body.request("place")
+        body.request("pose")
     def remember(goal="count ?now", retrieval=None):
         memory.request("count ?now ?next")
-    def go_on(goal="count ?now", retrieval="count ?now ?next", felt="place ?x"):
+    def go_on(goal="count ?now", retrieval="count ?now ?next", felt="pose x:?x"):
         goal.set("count ?next")
         retrieval.clear()
-        body.set("speed", 1.0 if float(x) < 2 else -1.0)
-        body.request("place")
+        body.set("walk", 1.0 if float(x) < 2 else -1.0)
+        body.request("pose")
 """
 """A production each 50 ms, each second one with a word to the body and a question; a retrieval between them."""
 
 
-class Slider:
-    """The least of a body: a box whose speed can be set, and which tells where it is."""
-
-    def __init__(self, world: World, name: str) -> None:
-        self._joint: Any = world.mj_data.joint(name)
-
-    def set(self, word: str, value: float) -> None:
-        """Sets the speed [m/s]."""
-        self._joint.qvel[0] = value
-
-    def get(self, word: str) -> tuple[float]:
-        """Returns where it is [m]."""
-        return (float(self._joint.qpos[0]),)
-
-    def before_step(self, period: float) -> None:
-        """Has nothing to do."""
-
-    def state(self) -> None:
-        """Returns nothing: all is in the physics."""
-
-    def restore(self, state: None) -> None:
-        """Has nothing to bring back."""
-
-
 def typical() -> Simulation:
     """Returns a body without vision and its mind, in front of a doorway."""
-    world = World(Scene(parts=(Floor(), Aperture(), Loose(name="box", position=(0.0, 0.0, 0.16)))))
-    world.bodies = {"box": Slider(world, "box")}
-    return Simulation(world, {"box": load_text(AGENT, "agent.py").Agent}, seed=1)
+    scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker")))
+    return Simulation(scene, {"walker": load_text(AGENT, "agent.py").Agent}, seed=1)
 
 
 def _cost(make: Callable[[], Simulation]) -> float:

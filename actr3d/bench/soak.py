@@ -31,7 +31,7 @@ def measure(ticks: int = TICKS) -> list[Figure]:
     for _ in range(PARTS):
         spent += seconds_of(lambda: simulation.step(ticks // PARTS))
         memory.append(resident())
-    mind = simulation.minds["box"]
+    mind = simulation.minds["walker"]
     expected = ticks * 10_000
     drift = abs(mind.sch.now_us - expected) + abs(simulation.world.time - expected)
     # What is kept to go back to grows to its bounds in the first part.

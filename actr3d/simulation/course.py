@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from actr3d.simulation.commands import Command, command_of
-from actr3d.simulation.history import History, Moment
+from actr3d.simulation.history import History
 from actr3d.simulation.journal import Journal
 from actr3d.simulation.lockstep import Lockstep
 from actr3d.world import World
@@ -28,7 +28,7 @@ class Course:
         self._world = world
         self._begin = begin
         self._journal = journal
-        self._history = History(Moment.of(0, world))
+        self._history = History(world.state())
         self._lockstep: Lockstep | None = None
 
     @property
@@ -85,7 +85,7 @@ class Course:
         if ticks > history.ticks:
             history.add_tick(ticks, answers)
             if history.wants(ticks):
-                history.keep(Moment.of(ticks, self._world))
+                history.keep(ticks, self._world.state())
         self._journal.state(ticks, self._world)
 
     def command(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None) -> None:
@@ -133,7 +133,7 @@ class Course:
         """
         if self._lockstep is None or self._lockstep.broken or to <= self._lockstep.ticks:
             self._lockstep = None
-            self._history.before(0).bring_back(self._world)
+            self._world.restore(self._history.before(0)[1])
         self._journal.silent = True
         try:
             self._live_through(to)
@@ -142,12 +142,12 @@ class Course:
 
     def _live_through(self, to: int) -> None:
         history, lockstep = self._history, self.lockstep
-        moment = history.before(to)
-        if moment.tick > lockstep.ticks:
-            while lockstep.ticks < moment.tick:
+        kept, state = history.before(to)
+        if kept > lockstep.ticks:
+            while lockstep.ticks < kept:
                 lockstep.repeat_commands(history.commands, only_minds=True)
                 lockstep.remember(history.answers(lockstep.ticks + 1))
-            moment.bring_back(self._world)
+            self._world.restore(state)
         while lockstep.ticks < to:
             lockstep.repeat_commands(history.commands)
             lockstep.tick()

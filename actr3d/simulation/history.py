@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from actr3d.simulation.commands import Command
-from actr3d.world import World, WorldState
+from actr3d.world import WorldState
 
 SPACING = 50
 """How many ticks lie between two kept states at first."""
@@ -18,35 +16,14 @@ MOST_ANSWERS = 10_000
 simulated anew where a run goes back."""
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """The physical side at the end of a tick."""
-
-    tick: int
-    world: WorldState
-    bodies: Mapping[str, Any]
-    """What each body's `state()` is."""
-
-    @classmethod
-    def of(cls, tick: int, world: World) -> Moment:
-        """Returns the present moment."""
-        return cls(tick, world.state(), {name: body.state() for name, body in world.bodies.items()})
-
-    def bring_back(self, world: World) -> None:
-        """Makes this moment the present."""
-        world.restore(self.world)
-        for name, state in self.bodies.items():
-            world.bodies[name].restore(state)
-
-
 class History:
-    """Keeps every command, the first answers of the bodies, and now and then a moment.
+    """Keeps every command, the first answers of the bodies, and now and then a state.
 
     Args:
-        start: The first moment.
+        start: The state at the start.
     """
 
-    def __init__(self, start: Moment) -> None:
+    def __init__(self, start: WorldState) -> None:
         self.commands: list[Command] = []
         self.ticks = 0
         """How far the run has come."""
@@ -55,18 +32,18 @@ class History:
         self._answers: dict[int, tuple[Any, ...]] = {}
         self._kept = 0
         self._spacing = SPACING
-        self._moments: dict[int, Moment] = {0: start}
+        self._states: dict[int, WorldState] = {0: start}
 
     def wants(self, tick: int) -> bool:
-        """Tells whether the moment at the end of a tick is to be kept."""
+        """Tells whether the state at the end of a tick is to be kept."""
         return tick % self._spacing == 0
 
-    def keep(self, moment: Moment) -> None:
-        """Keeps a moment."""
-        self._moments[moment.tick] = moment
-        if len(self._moments) > MOST_STATES:
+    def keep(self, tick: int, state: WorldState) -> None:
+        """Keeps the state at the end of a tick."""
+        self._states[tick] = state
+        if len(self._states) > MOST_STATES:
             self._spacing *= 2
-            self._moments = {tick: kept for tick, kept in self._moments.items() if tick % self._spacing == 0}
+            self._states = {tick: kept for tick, kept in self._states.items() if tick % self._spacing == 0}
 
     def add_tick(self, tick: int, answers: tuple[Any, ...]) -> None:
         """Takes in one more tick, and what the bodies answered at its end."""
@@ -81,15 +58,16 @@ class History:
         """Returns what the bodies answered at the end of a tick up to `answered`."""
         return self._answers.get(tick, ())
 
-    def before(self, tick: int) -> Moment:
-        """Returns the last kept moment that a run can go to without its physics, up to a tick."""
-        return self._moments[max(known for known in self._moments if known <= min(tick, self.answered))]
+    def before(self, tick: int) -> tuple[int, WorldState]:
+        """Returns the last kept state that a run can go to without its physics, up to a tick, and its tick."""
+        last = max(known for known in self._states if known <= min(tick, self.answered))
+        return last, self._states[last]
 
     def cut(self, tick: int, commands: int) -> None:
         """Forgets what was after a tick, and all commands but the first few."""
         del self.commands[commands:]
         self.ticks = tick
         self.answered = min(self.answered, tick)
-        self._moments = {known: moment for known, moment in self._moments.items() if known <= tick}
+        self._states = {known: state for known, state in self._states.items() if known <= tick}
         for known in [known for known in self._answers if known > tick]:
             self._kept -= len(self._answers.pop(known))

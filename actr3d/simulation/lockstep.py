@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.modules.port import Request
@@ -45,7 +45,6 @@ class Lockstep:
         self._steps = steps
         self._period_us = period
         self._period = seconds(period)
-        self._moving = tuple(world.bodies.values())
         self.trace = journal.begin()
         """Its trace; None where nothing is traced."""
         self.minds = Minds(factories, bodies, seed, self.trace)
@@ -91,16 +90,13 @@ class Lockstep:
         if outbox:
             for request in outbox:
                 if request.reading is None:
-                    _ask(request, world.bodies[request.body].set, *request.values)
+                    _ask(request, world.bodies[request.body].set)
                 else:
                     questions.append(request)
             outbox.clear()
-        for body in self._moving:
-            body.before_step(self._period)
         world.step(self._steps)
         answers: tuple[Any, ...] = ()
         if questions:
-            world.refresh()
             answers = tuple(_ask(request, world.bodies[request.body].get) for request in questions)
             self._answer(questions, answers)
         self.ticks += 1
@@ -164,10 +160,10 @@ class Lockstep:
             self.tell(command)
 
 
-def _ask(request: Request, word: Any, *values: Any) -> Any:
+def _ask(request: Request, word: Callable[..., Any]) -> Any:
     """Hands a request to its body; an error is told with the line that asked."""
     try:
-        return word(request.word, *values, **request.named)
+        return word(request.word, *request.values, **request.named)
     except Actr3dError as error:
         error.add_note(f"  asked for by '{request.port._path}' in {request.place}")
         raise

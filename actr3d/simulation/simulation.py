@@ -9,6 +9,7 @@ from concurrent.futures import Future
 from functools import partial
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.clock import microseconds, seconds
@@ -38,7 +39,7 @@ class Simulation:
     A simulation belongs to the thread that makes it; others may `submit` commands.
 
     Args:
-        scene: What the world is made of, or a world already compiled.
+        scene: What the world is made of; or a world that is compiled already, at its start, with a seed of its own.
         minds: By a body's name, what makes its mind: an agent's class, or a function without arguments. It is called again
             where the run goes back to an earlier time. A body that is not named has no mind.
         bodiless: By a name, what makes a mind that has no body.
@@ -61,9 +62,9 @@ class Simulation:
         seed: int | None = None,
         trace: str = "none",
     ) -> None:
-        self.world = scene if isinstance(scene, World) else World(scene)
         limits = RunLimits.current()
         self.seed: int | str = seed if seed is not None else fresh_seed() if limits is None else limits.next_seed()
+        self.world = scene if isinstance(scene, World) else World(scene, crc32(str(self.seed).encode()))
         self._minds = dict(minds or {})
         self._bodiless = dict(bodiless or {})
         check_names(self._minds, self._bodiless, self.world.bodies)

@@ -1,7 +1,25 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
+from actr3d.world.bodies import Car, Load, Mannequin
+from actr3d.world.body import Body, BodyState
+from actr3d.world.bounding_box import BoundingBox
 from actr3d.world.parts import Aperture, Floor, Loose, Track, Wall
 from actr3d.world.scene import Scene
 from actr3d.world.world import World, WorldState
 
-__all__ = ["Aperture", "Floor", "Loose", "Scene", "Track", "Wall", "World", "WorldState"]
+__all__ = [
+    "Aperture",
+    "Body",
+    "BodyState",
+    "BoundingBox",
+    "Car",
+    "Floor",
+    "Load",
+    "Loose",
+    "Mannequin",
+    "Scene",
+    "Track",
+    "Wall",
+    "World",
+    "WorldState",
+]

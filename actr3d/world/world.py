@@ -12,8 +12,12 @@ from numpy.typing import NDArray
 
 from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.anatomy import Embodied
+from actr3d.world.body import Body, BodyState
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
+from actr3d.world.sensors.touch import step_and_feel
+from actr3d.world.servo import fit_servos
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
@@ -31,34 +35,43 @@ class WorldState:
     mj_state: NDArray[np.float64]
     """`mjSTATE_INTEGRATION` of the data; less than that drifts (platform-facts)."""
 
+    bodies: tuple[tuple[str, BodyState], ...] = ()
+    """Of each body, what the physics does not hold: commands on their way, noise, what hands hold."""
+
 
 class World:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and steps them.
 
     Args:
         scene: What is in it.
+        seed: Where the noise of sensors comes from.
 
     Raises:
         WorldError: If MuJoCo cannot compile the scene; says what MuJoCo said.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, seed: int = 0) -> None:
         self.scene = scene
+        self.seed = seed
         try:
             self.mj_model: MjModel = scene.specification().compile()
         except ValueError as error:
             raise WorldError(f"the scene cannot be compiled: {error}") from error
         self.mj_data = MjData(self.mj_model)
         self._steps = 0
-        self._refreshed = -1
-        self._mocap_moved = False
+        self._refreshed = False
+        self._solved = False
         self._state_size: int = mujoco.mj_stateSize(self.mj_model, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
         self._state_numbers = np.empty(self._state_size)
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
-        self.bodies: dict[str, Any] = {}
-        """The bodies by name."""
         mujoco.mj_forward(self.mj_model, self.mj_data)
+        described = [part for part in scene.parts if isinstance(part, Embodied)]
+        for part in described:
+            fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
+        self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
+        self.drawing: Any = None
+        """What draws pictures, once one has been asked for."""
 
     @property
     def time(self) -> int:
@@ -66,31 +79,56 @@ class World:
         return self._steps * self.scene.timestep_us
 
     def step(self, steps: int = 1) -> None:
-        """Advances the physics by a number of steps.
+        """Advances the physics by a number of steps: one tick. Commands that are on their way choose their speeds
+        once, before it.
 
         Raises:
             WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset).
         """
-        mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+        running = [body.running for body in self.bodies.values() if body.running]
+        for commands in running:
+            commands.before_step(steps * self.scene.timestep)
+        feeling = [body for body in self.bodies.values() if body.touched is not None]
+        if feeling:
+            step_and_feel(self, feeling, steps)
+        else:
+            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
         self._steps += steps
+        self.changed()
+        for commands in running:
+            commands.after_step()
+            self.changed()
         if self._warnings.any():
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
+
+    def changed(self) -> None:
+        """Notes that positions, speeds or commands are not those that were last computed with."""
+        self._refreshed = self._solved = False
 
     def refresh(self) -> None:
         """Brings positions, contacts and rays up to date with the state, once a state.
 
         After a step, MuJoCo's geometry (`xpos`, contacts) is that of the positions before it.
         """
-        if self._refreshed != self._steps or self._mocap_moved:
+        if not self._refreshed:
             mujoco.mj_fwdPosition(self.mj_model, self.mj_data)
-            self._refreshed = self._steps
-            self._mocap_moved = False
+            self._refreshed = True
+
+    def solve(self) -> None:
+        """Brings forces and accelerations up to date with the state too, once a state; what follows is not changed by it."""
+        self.refresh()
+        if not self._solved:
+            start = self.mj_data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
+            mujoco.mj_forwardSkip(self.mj_model, self.mj_data, mujoco.mjtStage.mjSTAGE_POS, 1)
+            self.mj_data.qacc_warmstart[:] = start
+            self._solved = True
 
     def state(self) -> WorldState:
         """Returns the present state, apart from the world: later steps do not change it."""
         mj_state = np.empty(self._state_size)
         mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
-        return WorldState(steps=self._steps, mj_state=mj_state)
+        bodies = tuple((name, body.state()) for name, body in self.bodies.items())
+        return WorldState(steps=self._steps, mj_state=mj_state, bodies=bodies)
 
     def state_bytes(self) -> bytes:
         """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
@@ -107,7 +145,9 @@ class World:
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._steps = state.steps
-        self._refreshed = -1
+        for name, body_state in state.bodies:
+            self.bodies[name].restore(body_state)
+        self.changed()
 
     def aperture_width(self, name: str = "aperture") -> float:
         """Returns the free width of an aperture [m].
@@ -128,7 +168,21 @@ class World:
         aperture = replace(self._aperture(name), width=width)
         for side, position in aperture.segment_positions(aperture.width).items():
             self.mj_data.mocap_pos[self._mocap(f"{name}_{side}")] = position
-        self._mocap_moved = True
+        self.changed()
+
+    def loose(self, name: str) -> int:
+        """Returns the MuJoCo body of an object that lies loose.
+
+        Raises:
+            WorldError: If there is no such object, or it is fixed.
+        """
+        model = self.mj_model
+        free = {
+            str(model.body(int(model.jnt_bodyid[n])).name): int(model.jnt_bodyid[n]) for n in range(model.njnt) if model.jnt_type[n] == 0
+        }
+        if name not in free:
+            raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(name, free)}")
+        return free[name]
 
     def _aperture(self, name: str) -> Aperture:
         if name not in self._apertures:

@@ -105,19 +105,19 @@ class BodyPort(Model):
         Raises:
             SimulationError: If the agent has no body.
         """
-        self._trace_request("set", word=word, values=values, **({"named": named} if named else {}))
+        self._trace_request("set", word=word, **_given(values, named))
         self._send(Request(self._joined().body, word, values, named, _place(), self))
 
-    def get(self, word: str, **options: Any) -> Reading:
+    def get(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
 
         Raises:
             SimulationError: If the agent has no body.
         """
-        self._trace_request("get", word=word, **({"options": options} if options else {}))
-        return self._ask(word, options, to_buffer=False)
+        self._trace_request("get", word=word, **_given(values, options))
+        return self._ask(word, values, options, to_buffer=False)
 
-    def request(self, word: str, **options: Any) -> Reading:
+    def request(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses; the answer comes as a chunk: the word, then what was sensed, by name or in order.
 
         Raises:
@@ -125,13 +125,13 @@ class BodyPort(Model):
         """
         if self._buffer is None:
             raise SimulationError(f"port '{self._path}' has no buffer to put the answer to '{word}' into; give it one: BodyPort(buffer)")
-        self._trace_request("request", word=word, **({"options": options} if options else {}))
+        self._trace_request("request", word=word, **_given(values, options))
         self.error = False
-        return self._ask(word, options, to_buffer=True)
+        return self._ask(word, values, options, to_buffer=True)
 
-    def _ask(self, word: str, options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
+    def _ask(self, word: str, values: tuple[Any, ...], options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
         reading = Reading(word)
-        self._send(Request(self._joined().body, word, (), options, _place(), self, reading, to_buffer))
+        self._send(Request(self._joined().body, word, values, options, _place(), self, reading, to_buffer))
         self._outstanding += 1
         self.busy = True
         return reading
@@ -164,6 +164,11 @@ class BodyPort(Model):
         if self._outstanding == 0:
             self.busy = False
         self.sch.finish(reading)
+
+
+def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns what the trace tells of the values that a word is given."""
+    return {**({"values": values} if values else {}), **({"named": named} if named else {})}
 
 
 def _place() -> str:

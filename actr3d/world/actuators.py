@@ -1,0 +1,180 @@
+"""What a body can be told to do, one word each: the name of the function that does it.
+
+A command holds until another one of its kind replaces it. What is told to start does so at once where the body touches
+nothing; while it touches something, only its bounded forces start it. What is told to stop stops dead.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.running import HEADING
+from actr3d.world.words import Word, adder, number
+
+if TYPE_CHECKING:
+    from actr3d.world.anatomy import Steering
+    from actr3d.world.body import Body
+    from actr3d.world.joints import Joint
+
+ACTUATORS: dict[str, Word] = {}
+"""All actuators by their words."""
+
+MODERATE = 2.0
+"""How fast joints turn unless told otherwise [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (human-data)."""
+
+_walks = adder(ACTUATORS, lambda body: body.anatomy.push is not None)
+_joints = adder(ACTUATORS, lambda body: any(joint.driven for joint in body.joints.values()))
+_driven = adder(ACTUATORS, lambda body: body.anatomy.steering is not None)
+_moves = adder(ACTUATORS, lambda body: body.base.planar or body.base.free)
+_holds = adder(ACTUATORS, lambda body: bool(body.hands))
+_foreign = adder(ACTUATORS, lambda body: bool(body.controls) and not body.anatomy.servos)
+
+
+@_walks
+def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) -> None:
+    """Walks at a speed [m/s], turning [rad/s, left is positive], in a direction against where it faces [rad, 0 forward]."""
+    speed, turn, direction = number(speed, "walk: speed"), number(turn, "walk: turn"), number(direction, "walk: direction")
+    _keep_walking(body)
+    left = speed * math.sin(direction) if direction else 0.0
+    body.base.drive((speed * math.cos(direction), left, turn), body.free)
+    body.world.changed()
+
+
+@_walks
+def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
+    """Turns the whole body to a heading [rad, in the world's frame] at a speed [rad/s], the shorter way round."""
+    body.running.waypoint = None
+    body.running.targets[HEADING] = (number(angle, "heading: angle"), number(speed, "heading: speed", 1e-6))
+
+
+@_walks
+def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = MODERATE) -> None:
+    """Turns to a point [m], walks to it at a speed [m/s], and stands there. Source of the speed: Warren & Whang (1987), normal walking."""
+    x, y = number(x, "waypoint: x"), number(y, "waypoint: y")
+    _keep_walking(body)
+    body.running.waypoint = (x, y, number(speed, "waypoint: speed", 1e-6), number(turn, "waypoint: turn", 1e-6))
+
+
+@_walks
+def stop(body: Body) -> None:
+    """Stops dead: legs and all joints, whatever they were doing."""
+    _keep_walking(body)
+    body.running.targets.clear()
+    body.base.drive((0.0, 0.0, 0.0), body.free)
+    for joint in body.joints.values():
+        joint.drive(0.0, body.free)
+    body.world.changed()
+
+
+@_joints
+def joint(body: Body, name: str, speed: float) -> None:
+    """Turns a joint at a constant speed [rad/s] until told otherwise or at its limit."""
+    turned = _servoed(body, name)
+    body.running.targets.pop(name, None)
+    turned.drive(number(speed, "joint: speed"), body.free)
+    body.world.changed()
+
+
+@_joints
+def position(body: Body, name: str, angle: float, speed: float = MODERATE) -> None:
+    """Turns a joint to an angle [rad], or to its limit where that is nearer, at a constant speed [rad/s], and holds it there."""
+    turned = _servoed(body, name)
+    angle = max(turned.lower, min(turned.upper, number(angle, "position: angle")))
+    body.running.targets[name] = (angle, number(speed, "position: speed", 1e-6))
+
+
+@_joints
+def posture(body: Body, angles: Mapping[str, float], speed: float = MODERATE) -> None:
+    """Turns several joints to angles [rad], as `position` does."""
+    for name in angles:
+        _servoed(body, name)
+    for name, angle in angles.items():
+        position(body, name, angle, speed)
+
+
+@_driven
+def steering(body: Body, angle: float) -> None:
+    """Turns the steering wheel to an angle [rad, left is positive], as fast as a driver can."""
+    car = _car(body)
+    position(body, "steer", number(angle, "steering: angle") / car.ratio, car.rate / car.ratio)
+
+
+@_driven
+def throttle(body: Body, pressed: float) -> None:
+    """Presses the throttle, 0 to 1."""
+    body.world.mj_data.ctrl[body.control("throttle")] = number(pressed, "throttle", 0, 1)
+    body.world.changed()
+
+
+@_driven
+def brake(body: Body, pressed: float) -> None:
+    """Presses the brake, 0 to 1."""
+    body.running.brake = number(pressed, "brake", 0, 1)
+    body.world.mj_data.ctrl[body.control("brake")] = 0
+    body.world.changed()
+
+
+@_moves
+def teleport(body: Body, x: float, y: float, heading: float | None = None) -> None:
+    """Puts the body elsewhere at once, (x, y) [m] and heading [rad]; posture and commands stay, what it holds comes with it."""
+    x, y = number(x, "teleport: x"), number(y, "teleport: y")
+    faces = None if heading is None else number(heading, "teleport: heading")
+    body.base.put(x, y, faces)
+    body.world.changed()
+    body.world.refresh()
+    for hand in body.hands.values():
+        hand.carry()
+    body.world.changed()
+
+
+@_holds
+def grasp(body: Body, object: str, hand: str = "right") -> None:
+    """Holds a loose object with a hand, if the hand is empty and reaches it; the sensor `grasp` says whether it does."""
+    holds = body.hands.get(hand)
+    if holds is None:
+        raise WorldError(f"{body.name} has no hand '{hand}'{did_you_mean(hand, body.hands)}; it has {', '.join(body.hands)}")
+    number = body.world.loose(object)
+    body.world.refresh()
+    if holds.held is None and holds.reaches(number):
+        holds.grasp(number)
+        body.world.changed()
+
+
+@_holds
+def release(body: Body, hand: str | None = None) -> None:
+    """Lets go of what a hand holds, or both hands."""
+    if hand is not None and hand not in body.hands:
+        raise WorldError(f"{body.name} has no hand '{hand}'{did_you_mean(hand, body.hands)}; it has {', '.join(body.hands)}")
+    for side, holds in body.hands.items():
+        if hand in (None, side):
+            holds.release()
+    body.world.changed()
+
+
+@_foreign
+def control(body: Body, name: str, value: float) -> None:
+    """Sets the control of an actuator that an imported description names, in that actuator's own unit."""
+    body.world.mj_data.ctrl[body.control(name)] = number(value, f"control {name}")
+    body.world.changed()
+
+
+def _keep_walking(body: Body) -> None:
+    """Forgets where the body was going, for another command moves it now."""
+    body.running.waypoint = None
+    body.running.targets.pop(HEADING, None)
+
+
+def _servoed(body: Body, name: str) -> Joint:
+    turned = body.joint(name)
+    if not turned.driven:
+        raise WorldError(f"{body.name}: joint '{name}' has no servo that could move it")
+    return turned
+
+
+def _car(body: Body) -> Steering:
+    car = body.anatomy.steering
+    assert car is not None
+    return car

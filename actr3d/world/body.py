@@ -1,0 +1,223 @@
+"""A body in a compiled world: what it consists of, what it senses, what it is told to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from mujoco import mjtJoint
+from numpy.typing import NDArray
+
+from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.actuators import ACTUATORS
+from actr3d.world.anatomy import Anatomy, Embodied
+from actr3d.world.bounding_box import BoundingBox, Extent
+from actr3d.world.frames import frame_of
+from actr3d.world.grasp import Hand, Held
+from actr3d.world.joints import Base, Joint
+from actr3d.world.noise import Noise, Sd
+from actr3d.world.running import Running
+from actr3d.world.sensors import SENSORS
+from actr3d.world.sensors.touch import Touch
+
+if TYPE_CHECKING:
+    from actr3d.world.world import World
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyState:
+    """What a body needs to go on exactly, besides the physics: plain values, equal when the states are."""
+
+    running: tuple[Any, ...]
+    """Commands on their way, as `Running.state` gives them."""
+
+    noise: tuple[tuple[str, int, int], ...]
+    """Sensors with noise: the word and where its random numbers are."""
+
+    held: tuple[tuple[str, Held], ...]
+    """What each hand holds and how."""
+
+    touched: tuple[Touch, ...] | None
+    """What the skin has felt in the last tick; None before anyone asks."""
+
+
+class Body:
+    """Senses and moves one body of a world. All is found in the compiled model; the description names the rest.
+
+    Commands are given between physics steps only. A reading is of the present state; nothing in it changes later.
+
+    Args:
+        world: Where it is.
+        description: What it was made from.
+
+    Raises:
+        WorldError: If its root is not in the compiled model.
+    """
+
+    def __init__(self, world: World, description: Embodied) -> None:
+        self.world = world
+        self.name = description.name
+        self.anatomy: Anatomy = description.anatomy()
+        self.root = self._id("body", self.anatomy.root)
+        model = world.mj_model
+        self.members = np.zeros(model.nbody, dtype=bool)
+        """By MuJoCo body: whether it is part of this one."""
+        for number in range(self.root, model.nbody):
+            self.members[number] = number == self.root or self.members[model.body_parentid[number]]
+        self.geoms: NDArray[np.intp] = np.flatnonzero(self.members[model.geom_bodyid])
+        self.parts: tuple[str, ...] = tuple(self.part_name(int(number)) for number in np.flatnonzero(self.members))
+        self.base = Base(world, self.root, self.anatomy)
+        self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints()}
+        self.controls: dict[str, int] = self._controls()
+        self.eye = self.anatomy.eye
+        self.feeling: NDArray[np.intp] = self._feeling()
+        """The geoms that feel contacts."""
+        self.feels = frozenset(self.feeling.tolist())
+        """The same, to look up."""
+        self.skin: tuple[str, ...] = tuple(self.geom_name(geom) for geom in self.feeling.tolist())
+        self.hands: dict[str, Hand] = {self.short(name).removesuffix("_hand"): Hand(world, name) for name in self.anatomy.hands}
+        self.running = Running(self)
+        self.touched: tuple[Touch, ...] | None = None
+        """What the skin has felt in the last tick; None before anyone asks."""
+        self.noise = Noise(world.seed, self.name)
+        self.extent = Extent(world, self.geoms)
+        self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
+        self.sensors: tuple[str, ...] = tuple(name for name, word in SENSORS.items() if word.fits(self))
+        self._noise: Mapping[str, float] = dict(self.anatomy.noise)
+        for word in self._noise:
+            self._known("sensor", word, self.sensors)
+
+    def bounding_box(self, frame: str = "world") -> BoundingBox:
+        """Returns the smallest box around all of the body and what it holds, exactly, in its present posture.
+
+        Args:
+            frame: `"world"`; `"body"`: at the base, along its heading, upright; or the name of one of its parts or
+                sites, or of any site or body in the world.
+
+        Raises:
+            WorldError: If there is no such frame.
+        """
+        self.world.refresh()
+        held = [geom for hand in self.hands.values() for geom in hand.geoms]
+        return self.extent.box(*frame_of(self, frame), held)
+
+    def set(self, word: str, *values: Any, **named: Any) -> None:
+        """Gives a command, which holds at once and until another one replaces it.
+
+        Args:
+            word: One of `actuators`; see the functions in `actuators.py`.
+            values: What it takes.
+            named: The same, by name.
+
+        Raises:
+            WorldError: If this body has no such actuator or joint, or a value is not what it takes.
+        """
+        self._known("actuator", word, self.actuators)
+        ACTUATORS[word](self, *values, **named)
+
+    def get(self, word: str, *values: Any, noise: Sd = None, **options: Any) -> Any:
+        """Reads a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
+
+        Args:
+            word: One of `sensors`; see the functions in the `sensors` package.
+            values: What the sensor takes.
+            noise: The standard deviation that is added to every number of the reading, in its unit, or by field; None is
+                what the body's description says, if anything.
+            options: The same, by name.
+
+        Raises:
+            WorldError: If there is no such sensor, or an option is not what it takes.
+        """
+        self._known("sensor", word, self.sensors)
+        reading = SENSORS[word](self, *values, **options)
+        sd = self._noise.get(word) if noise is None else noise
+        return reading if sd is None else self.noise.added(word, reading, sd)
+
+    def state(self) -> BodyState:
+        """Returns what is not in the physics state: commands on their way, noise, what hands hold."""
+        held = tuple((side, hand.held) for side, hand in self.hands.items() if hand.held is not None)
+        return BodyState(running=self.running.state(), noise=self.noise.state(), held=held, touched=self.touched)
+
+    def restore(self, state: BodyState) -> None:
+        """Brings back a state of its own, after the physics state."""
+        self.running.restore(state.running)
+        self.noise.restore(state.noise)
+        self.touched = state.touched
+        held = dict(state.held)
+        for side, hand in self.hands.items():
+            hand.restore(held.get(side))
+
+    def joint(self, name: str) -> Joint:
+        """Returns a joint by name.
+
+        Raises:
+            WorldError: If it has no such joint.
+        """
+        self._known("joint", name, self.joints)
+        return self.joints[name]
+
+    def control(self, name: str) -> int:
+        """Returns where the control of one of its actuators is in MuJoCo's `ctrl`.
+
+        Raises:
+            WorldError: If it has no such actuator.
+        """
+        self._known("control", name, self.controls)
+        return self.controls[name]
+
+    def free(self) -> bool:
+        """Returns whether nothing of it touches anything else, at the present positions."""
+        self.world.refresh()
+        data = self.world.mj_data
+        if data.ncon == 0:
+            return True
+        ours = self.members[self.world.mj_model.geom_bodyid[data.contact.geom]]
+        return not np.any(ours[:, 0] != ours[:, 1])
+
+    def short(self, name: str) -> str:
+        """Returns a MuJoCo element's name as this body calls it."""
+        return name.removeprefix(self.anatomy.prefix)
+
+    def part_name(self, body: int) -> str:
+        """Returns what one of its MuJoCo bodies is called."""
+        return self.anatomy.base if body == self.root else self.short(self.world.mj_model.body(body).name or f"part_{body - self.root}")
+
+    def part_number(self, part: str) -> int:
+        """Returns the MuJoCo body of one of its parts."""
+        return int(np.flatnonzero(self.members)[self.parts.index(part)])
+
+    def geom_name(self, geom: int) -> str:
+        """Returns what one of its geoms is called: its own name, else that of its part."""
+        model = self.world.mj_model
+        return self.short(model.geom(geom).name) or self.part_name(int(model.geom_bodyid[geom]))
+
+    def _feeling(self) -> NDArray[np.intp]:
+        model = self.world.mj_model
+        if self.anatomy.skin is not None:
+            return np.array([self._id("geom", name) for name in self.anatomy.skin], dtype=np.intp)
+        return self.geoms[(model.geom_contype[self.geoms] | model.geom_conaffinity[self.geoms]) != 0]
+
+    def _joints(self) -> list[Joint]:
+        model = self.world.mj_model
+        kinds = (int(mjtJoint.mjJNT_HINGE), int(mjtJoint.mjJNT_SLIDE))
+        numbers = [n for n in range(model.njnt) if self.members[model.jnt_bodyid[n]] and model.jnt_type[n] in kinds]
+        return [Joint(self.world, n, self.short(model.joint(n).name) or f"joint_{n}") for n in numbers if n not in self.base.joints]
+
+    def _controls(self) -> dict[str, int]:
+        """Returns where the controls are of the actuators that are named as its own."""
+        model: Any = self.world.mj_model
+        names = [str(model.actuator(n).name) for n in range(model.nactuator)]
+        return {self.short(name): int(model.actuator_ctrladr[n]) for n, name in enumerate(names) if name.startswith(self.anatomy.prefix)}
+
+    def _id(self, kind: str, name: str) -> int:
+        try:
+            return int(getattr(self.world.mj_model, kind)(name).id)
+        except KeyError as error:
+            raise WorldError(f"body '{self.name}': the compiled model has no {kind} '{name}'") from error
+
+    def _known(self, kind: str, word: str, words: Any) -> None:
+        if word not in words:
+            has = f"it has {', '.join(words)}" if words else f"it has no {kind}s"
+            raise WorldError(f"{self.name} has no {kind} '{word}'{did_you_mean(word, words)}; {has}")

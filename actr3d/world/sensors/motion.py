@@ -1,0 +1,154 @@
+"""Where a body is and how it moves: pose, velocity, accelerometer, gyroscope, joints, and what its hands hold.
+
+Of the present state: positions and speeds are those after the last physics step. Accelerations are those that the solver
+finds for this state, contacts included; MuJoCo's own accelerometer would still say those of the step before.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import mujoco
+import numpy as np
+from mujoco import mjtObj
+from numpy.typing import NDArray
+
+from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.sensors.registry import SENSORS, sensor
+from actr3d.world.words import adder
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """Where a part is and how it is turned, in the world's frame: first by heading, then pitch, then roll."""
+
+    x: float
+    """[m]"""
+    y: float
+    """[m]"""
+    z: float
+    """[m]"""
+    heading: float
+    """About the vertical [rad], 0 along x, left is positive."""
+    pitch: float
+    """[rad], forward and down is positive."""
+    roll: float
+    """[rad], to the right is positive."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Velocity:
+    """How fast a part moves."""
+
+    linear: Vector
+    """Along x, y, z [m/s]."""
+    angular: Vector
+    """About x, y, z [rad/s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointReading:
+    """Where a joint is."""
+
+    position: float
+    """[rad]"""
+    velocity: float
+    """[rad/s]"""
+    limit: Literal["lower", "upper"] | None
+    """The limit that it has reached."""
+
+
+AT_LIMIT = 2e-3
+"""How near its limit a joint has reached it [rad]: about a tenth of a degree, what a pressed limit gives way. Ours."""
+
+
+@sensor
+def pose(body: Body, part: str | None = None) -> Pose:
+    """Senses where a part is; the base unless one is named."""
+    body.world.refresh()
+    number = _part(body, part)
+    data: Any = body.world.mj_data
+    x, y, z = data.xpos[number].tolist()
+    turn = data.xmat[number].reshape(3, 3)
+    pitch = math.asin(max(-1.0, min(1.0, 0.0 - float(turn[2, 0]))))
+    heading, roll = math.atan2(turn[1, 0], turn[0, 0]), math.atan2(turn[2, 1], turn[2, 2])
+    return Pose(x=x, y=y, z=z, heading=heading, pitch=pitch, roll=roll)
+
+
+@sensor
+def velocity(body: Body, part: str | None = None, frame: Literal["part", "world"] = "part") -> Velocity:
+    """Senses how fast a part moves, the base unless one is named, along its own axes or the world's."""
+    if frame not in ("part", "world"):
+        raise WorldError(f"velocity: frame must be 'part' or 'world' (got {frame!r})")
+    body.world.refresh()
+    angular, linear = _velocity(body, _part(body, part), local=frame == "part")
+    return Velocity(linear=linear, angular=angular)
+
+
+@sensor
+def gyroscope(body: Body, part: str | None = None) -> Vector:
+    """Senses how fast a part turns about its own axes [rad/s]: the head unless one is named, else the base."""
+    body.world.refresh()
+    return _velocity(body, _head(body, part), local=True)[0]
+
+
+@sensor
+def accelerometer(body: Body, part: str | None = None) -> Vector:
+    """Senses the acceleration of a part's origin against free fall, along its own axes [m/s^2].
+
+    The part is the head unless one is named, or the base without a head. At rest it says about 9.81 upwards.
+    """
+    world = body.world
+    world.solve()
+    mujoco.mj_rnePostConstraint(world.mj_model, world.mj_data)
+    felt: NDArray[np.float64] = np.zeros(6)
+    mujoco.mj_objectAcceleration(world.mj_model, world.mj_data, mjtObj.mjOBJ_XBODY, _head(body, part), felt, 1)
+    x, y, z = felt[3:].tolist()
+    return (x, y, z)
+
+
+@sensor
+def joints(body: Body) -> dict[str, JointReading]:
+    """Senses all joints."""
+    readings: dict[str, JointReading] = {}
+    for name, joint in body.joints.items():
+        at = joint.position
+        limit = "lower" if at <= joint.lower + AT_LIMIT else "upper" if at >= joint.upper - AT_LIMIT else None
+        readings[name] = JointReading(position=at, velocity=joint.velocity, limit=limit)
+    return readings
+
+
+@adder(SENSORS, lambda body: bool(body.hands))
+def grasp(body: Body) -> dict[str, str | None]:
+    """Senses what each hand holds."""
+    model = body.world.mj_model
+    return {side: None if hand.held is None else str(model.body(hand.held.object).name) for side, hand in body.hands.items()}
+
+
+def _velocity(body: Body, number: int, local: bool) -> tuple[Vector, Vector]:
+    """Returns how fast a MuJoCo body turns and moves; positions must be up to date."""
+    model, data = body.world.mj_model, body.world.mj_data
+    mujoco.mj_comVel(model, data)
+    moves: NDArray[np.float64] = np.zeros(6)
+    mujoco.mj_objectVelocity(model, data, mjtObj.mjOBJ_XBODY, number, moves, int(local))
+    a, b, c, x, y, z = moves.tolist()
+    return (a, b, c), (x, y, z)
+
+
+def _head(body: Body, part: str | None) -> int:
+    return _part(body, "head" if part is None and "head" in body.parts else part)
+
+
+def _part(body: Body, part: str | None) -> int:
+    if part is None or part == body.anatomy.base:
+        return body.root
+    if part not in body.parts:
+        raise WorldError(f"{body.name} has no part '{part}'{did_you_mean(part, body.parts)}; it has {', '.join(body.parts)}")
+    return body.part_number(part)

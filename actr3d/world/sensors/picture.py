@@ -1,0 +1,137 @@
+"""Pictures, as a camera takes them: depth and colour, drawn off screen with EGL."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from actr3d.errors import WorldError
+from actr3d.world.sensors.registry import SENSORS
+from actr3d.world.words import adder, number
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+    from actr3d.world.world import World
+
+MOST = 4096
+"""The most rows or columns of a picture."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """Pixels in rows from the top, each row from the left."""
+
+    kind: Literal["image", "depth"]
+    """`image`: red, green, blue, one byte each. `depth`: the distance along the line of sight [m], four-byte floats."""
+    width: int
+    """Pixels in a row."""
+    height: int
+    """Rows."""
+    pixels: bytes
+    """All of them."""
+
+    def as_array(self) -> NDArray[Any]:
+        """Returns the pixels: (height, width, 3) of 0 to 255, or (height, width) [m]. Read-only."""
+        if self.kind == "image":
+            return np.frombuffer(self.pixels, dtype=np.uint8).reshape(self.height, self.width, 3)
+        return np.frombuffer(self.pixels, dtype=np.float32).reshape(self.height, self.width)
+
+    def with_noise(self, sd: Any, random: np.random.Generator) -> Picture:
+        """Returns the same picture with noise on every pixel: of `sd` steps of 255, or [m]."""
+        noisy = self.as_array() + float(sd) * random.standard_normal(self.as_array().shape)
+        noisy = np.clip(np.rint(noisy), 0, 255).astype(np.uint8) if self.kind == "image" else noisy.astype(np.float32)
+        return Picture(kind=self.kind, width=self.width, height=self.height, pixels=noisy.tobytes())
+
+
+_sees = adder(SENSORS, lambda body: body.eye is not None)
+
+
+@_sees
+def image(body: Body, width: int = 320, height: int = 240) -> Picture:
+    """Senses a colour picture from the eye."""
+    return _picture(body, "image", width, height)
+
+
+@_sees
+def depth(body: Body, width: int = 320, height: int = 240) -> Picture:
+    """Senses a picture of distances from the eye."""
+    return _picture(body, "depth", width, height)
+
+
+def _picture(body: Body, kind: Literal["image", "depth"], width: int, height: int) -> Picture:
+    width, height = (int(number(n, f"{kind}: {what}", 1, MOST)) for n, what in ((width, "width"), (height, "height")))
+    body.world.refresh()
+    pixels = _drawing(body.world).draw(body.eye, kind, width, height)
+    return Picture(kind=kind, width=width, height=height, pixels=pixels.tobytes())
+
+
+def _drawing(world: World) -> _Drawing:
+    """Returns what draws pictures of a world; made when the first one is asked for."""
+    if world.drawing is None:
+        world.drawing = _Drawing(world)
+    return world.drawing
+
+
+class _Drawing:
+    """A frame buffer and what MuJoCo draws in it.
+
+    Args:
+        world: What is drawn.
+
+    Raises:
+        WorldError: If EGL is not installed or has no device.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        try:
+            egl: Any = importlib.import_module("mujoco.egl")
+            gl_error: Any = importlib.import_module("OpenGL.error").Error
+        except (ImportError, AttributeError, OSError) as error:
+            raise WorldError(f"pictures need EGL, which is not installed here or cannot be used: {error}") from error
+        try:
+            self._context = egl.GLContext(MOST, MOST)
+            self._context.make_current()
+        except (gl_error, ImportError, RuntimeError, AttributeError, OSError) as error:
+            raise WorldError(f"pictures need EGL, which has no device here that could draw: {error}") from error
+        self._scene = mujoco.MjvScene(model=world.mj_model, maxgeom=world.mj_model.ngeom + 1000)
+        self._option = mujoco.MjvOption()
+        self._resources: Any = None
+        self._size = (0, 0)
+
+    def draw(self, camera: str | None, kind: str, width: int, height: int) -> NDArray[Any]:
+        """Returns a picture from a camera: (height, width, 3) bytes, or (height, width) depths [m]."""
+        model, data = self._world.mj_model, self._world.mj_data
+        self._context.make_current()
+        if self._size != (width, height):
+            if self._resources is not None:
+                self._resources.free()
+            model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+            self._resources = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._resources)
+            self._resources.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
+            self._size = (width, height)
+        mujoco.mj_camlight(model, data)
+        view = mujoco.MjvCamera()
+        view.type, view.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, model.camera(camera).id
+        mujoco.mjv_updateScene(model, data, self._option, None, view, mujoco.mjtCatBit.mjCAT_ALL.value, self._scene)
+        frame = mujoco.MjrRect(0, 0, width, height)
+        mujoco.mjr_render(frame, self._scene, self._resources)
+        if kind == "image":
+            colours = np.empty((height, width, 3), dtype=np.uint8)
+            mujoco.mjr_readPixels(colours, None, frame, self._resources)
+            return np.flipud(colours)
+        buffer = np.empty((height, width), dtype=np.float32)
+        mujoco.mjr_readPixels(None, buffer, frame, self._resources)
+        return np.flipud(self._metres(buffer.astype(np.float64))).astype(np.float32)
+
+    def _metres(self, buffer: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Returns distances along the line of sight [m] from a reversed depth buffer, 1 at the near plane and 0 at the far one."""
+        model: Any = self._world.mj_model
+        near, far = (plane * model.stat.extent for plane in (model.vis.map.znear, model.vis.map.zfar))
+        return near * far / (near + buffer * (far - near))

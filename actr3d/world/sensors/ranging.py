@@ -1,0 +1,134 @@
+"""Distances: rangefinder, laser scan, proximity. A body's own parts, and what it holds, are never in the way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+from mujoco import mjtGeom
+from numpy.typing import NDArray
+
+from actr3d.world.frames import frame_of
+from actr3d.world.sensors.registry import sensor
+from actr3d.world.sensors.touch import object_name
+from actr3d.world.words import number
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+
+BEYOND = 1e-6
+"""How far behind a hit on the body itself a ray goes on [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proximity:
+    """The nearest thing."""
+
+    distance: float
+    """Between the two surfaces [m]; negative where they press into each other."""
+    part: str
+    """The part of the body that is nearest to it."""
+    other: str
+    """What it is."""
+
+
+@sensor
+def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: float = 10.0, at: str | None = None) -> float | None:
+    """Senses the distance to the first surface in one direction [m], or None within reach.
+
+    Args:
+        body: Whose.
+        angle: Of the direction, to the left of straight ahead [rad].
+        elevation: Of the direction, above straight ahead [rad].
+        reach: How far it reaches [m].
+        at: The part, site or frame where it sits and whose x points ahead; the eye unless one is named, else the base.
+    """
+    angle, elevation = number(angle, "rangefinder: angle"), number(elevation, "rangefinder: elevation")
+    return _cast(body, at, np.array([angle]), elevation, number(reach, "rangefinder: reach", 0))[0]
+
+
+@sensor
+def laser(
+    body: Body, rays: int = 181, width: float = math.pi, elevation: float = 0.0, reach: float = 10.0, at: str | None = None
+) -> tuple[float | None, ...]:
+    """Senses distances [m] in a fan of rays from left to right, `width` [rad] wide; None where nothing is within reach.
+
+    The other arguments are those of the rangefinder.
+    """
+    count = int(number(rays, "laser: rays", 1, 100_000))
+    half = number(width, "laser: width", 0, 2 * math.pi) / 2
+    angles = np.linspace(half, -half, count) if count > 1 else np.zeros(1)
+    return _cast(body, at, angles, number(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
+
+
+@sensor
+def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
+    """Senses what is nearest to the skin, on any side within reach [m]; the ground does not count."""
+    reach = number(reach, "proximity: reach", 0)
+    body.world.refresh()
+    model, data = body.world.mj_model, body.world.mj_data
+    nearest, found = reach, None
+    for bound, mine, other in _candidates(body, reach):
+        if bound > nearest:
+            break
+        distance = float(mujoco.mj_geomDistance(model, data, mine, other, reach, None))
+        if distance < nearest:
+            nearest, found = distance, (mine, other)
+    if found is None:
+        return None
+    return Proximity(distance=nearest, part=body.geom_name(found[0]), other=object_name(model, found[1]))
+
+
+def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
+    """Returns pairs of own and other geoms, the nearest first: (a distance that theirs is not below, own, other)."""
+    model, data = body.world.mj_model, body.world.mj_data
+    mine = body.feeling
+    solid = (model.geom_contype | model.geom_conaffinity) != 0
+    ground = (model.geom_type == int(mjtGeom.mjGEOM_PLANE)) | (model.geom_type == int(mjtGeom.mjGEOM_HFIELD))
+    solid &= ~ground & ~_own(body)
+    others = np.flatnonzero(solid)
+    between = np.linalg.norm(data.geom_xpos[mine][:, None] - data.geom_xpos[others][None], axis=2)
+    bounds = between - model.geom_rbound[mine][:, None] - model.geom_rbound[others][None]
+    near = np.argwhere(bounds < reach)
+    return sorted((float(bounds[i, j]), int(mine[i]), int(others[j])) for i, j in near.tolist())
+
+
+def _own(body: Body) -> NDArray[np.bool_]:
+    """Returns for each geom of the world whether it is the body's or held by it."""
+    own = np.array(body.members[body.world.mj_model.geom_bodyid])
+    for hand in body.hands.values():
+        own[list(hand.geoms)] = True
+    return own
+
+
+def _cast(body: Body, at: str | None, angles: NDArray[np.float64], elevation: float, reach: float) -> tuple[float | None, ...]:
+    """Returns how far rays go, None beyond reach."""
+    body.world.refresh()
+    name = at if at is not None else body.eye if body.eye is not None else body.anatomy.base
+    origin, axes = frame_of(body, name)
+    flat, up = math.cos(elevation), np.full(len(angles), math.sin(elevation))
+    ways = np.stack([flat * np.cos(angles), flat * np.sin(angles), up], axis=1) @ axes.T
+    model, data = body.world.mj_model, body.world.mj_data
+    hit: NDArray[np.int32] = np.full(len(ways), -1, dtype=np.int32)
+    far: NDArray[np.float64] = np.zeros(len(ways))
+    mujoco.mj_multiRay(model, data, origin, ways.ravel(), None, 1, -1, hit, far, None, len(ways), reach)
+    own = _own(body)
+    for ray in np.flatnonzero((hit >= 0) & own[hit]).tolist():
+        far[ray] = _past(model, data, origin, ways[ray], own, float(far[ray]))
+    return tuple(distance if 0 <= distance <= reach else None for distance in far.tolist())
+
+
+def _past(model: Any, data: Any, origin: NDArray[np.float64], way: NDArray[np.float64], own: NDArray[np.bool_], gone: float) -> float:
+    """Returns how far a ray goes that has hit the body itself after `gone` [m]; -1 without end."""
+    hit: NDArray[np.int32] = np.zeros(1, dtype=np.int32)
+    while True:
+        gone += BEYOND
+        more = mujoco.mj_ray(model, data, origin + gone * way, way, None, 1, -1, hit)
+        if more < 0:
+            return -1.0
+        gone += float(more)
+        if not own[hit[0]]:
+            return gone

@@ -1,0 +1,88 @@
+"""The skin: what touches which part of a body, and how hard.
+
+From the first time that its contacts are asked for, a body's skin watches every physics step and keeps the hardest moment
+of each touch within a tick, so that a blow that is over before the tick is felt too. The first reading is of the present
+state alone.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from actr3d.world.sensors.registry import sensor
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+    from actr3d.world.world import World
+
+
+@dataclass(frozen=True, kw_only=True)
+class Touch:
+    """One part of the skin that something touches."""
+
+    part: str
+    """Which: the name of a geom of the body."""
+    other: str
+    """With what: the object's name in the scene."""
+    force: float
+    """How hard [N]: what presses square to the surface, summed over all contacts of the two."""
+
+
+@sensor
+def contacts(body: Body) -> tuple[Touch, ...]:
+    """Senses what touches the skin, in the order of names: the hardest moments of the last tick."""
+    if body.touched is None:
+        body.touched = present(body)
+    return body.touched
+
+
+def present(body: Body) -> tuple[Touch, ...]:
+    """Returns what touches the skin in the present state, in the order of names. For observers: it starts no watch."""
+    body.world.solve()
+    return _touches(body)
+
+
+def step_and_feel(world: World, bodies: Iterable[Body], steps: int) -> None:
+    """Advances the physics by single steps, and gives each of some bodies the hardest moments of all its touches."""
+    data = world.mj_data
+    felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
+    for _ in range(steps):
+        mujoco.mj_step(world.mj_model, data)
+        if data.ncon:
+            for body, hardest in felt:
+                for touch in _touches(body):
+                    known = hardest.get((touch.part, touch.other))
+                    if known is None or touch.force > known.force:
+                        hardest[touch.part, touch.other] = touch
+    for body, hardest in felt:
+        body.touched = tuple(touch for _, touch in sorted(hardest.items()))
+
+
+def _touches(body: Body) -> tuple[Touch, ...]:
+    """Returns the touches that the solver has last found."""
+    model, data = body.world.mj_model, body.world.mj_data
+    if data.ncon == 0:
+        return ()
+    pairs: NDArray[np.int32] = data.contact.geom
+    ours = body.members[model.geom_bodyid[pairs]]
+    forces: defaultdict[tuple[str, str], float] = defaultdict(float)
+    wrench: NDArray[np.float64] = np.zeros(6)
+    for number in np.flatnonzero(ours[:, 0] != ours[:, 1]).tolist():
+        mine, other = pairs[number] if ours[number, 0] else pairs[number][::-1]
+        if int(mine) in body.feels and data.contact.dist[number] <= 0:
+            mujoco.mj_contactForce(model, data, number, wrench)
+            forces[body.geom_name(int(mine)), object_name(model, int(other))] += float(wrench[0])
+    return tuple(Touch(part=part, other=other, force=force) for (part, other), force in sorted(forces.items()))
+
+
+def object_name(model: Any, geom: int) -> str:
+    """Returns what an object in the world is called: its body's name, or its own where it lies in the world itself."""
+    root = int(model.body_rootid[model.geom_bodyid[geom]])
+    return str(model.body(root).name if root else model.geom(geom).name)

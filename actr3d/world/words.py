@@ -1,0 +1,73 @@
+"""Words: what a body can be told or asked, each with the function that does it."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from actr3d.errors import WorldError
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+
+
+class Word:
+    """One actuator or sensor of a body.
+
+    Args:
+        name: The word.
+        does: What it does, with the body as its first argument.
+        fits: Which bodies have it.
+    """
+
+    def __init__(self, name: str, does: Callable[..., Any], fits: Callable[[Body], bool]) -> None:
+        self.name = name
+        self.fits = fits
+        self._does = does
+        self._signature = inspect.signature(does)
+
+    def __call__(self, body: Body, *values: Any, **named: Any) -> Any:
+        """Does it.
+
+        Raises:
+            WorldError: If it does not take these values; says what it takes.
+        """
+        try:
+            self._signature.bind(body, *values, **named)
+        except TypeError as error:
+            takes = ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in self._parameters())
+            raise WorldError(f"{body.name}: {self.name} takes ({takes}): {error}") from error
+        return self._does(body, *values, **named)
+
+    def _parameters(self) -> list[inspect.Parameter]:
+        return list(self._signature.parameters.values())[1:]
+
+
+def adder(words: dict[str, Word], fits: Callable[[Body], bool] = lambda _: True) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Returns a decorator that adds a function to words, under its own name, for the bodies that have it."""
+
+    def add(does: Callable[..., Any]) -> Callable[..., Any]:
+        words[does.__name__] = Word(does.__name__, does, fits)
+        return does
+
+    return add
+
+
+def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
+    """Returns a finite number within bounds.
+
+    Raises:
+        WorldError: If it is not one.
+    """
+    try:
+        given = float(value)
+    except (TypeError, ValueError) as error:
+        raise WorldError(f"{what}: must be a number (got {value!r})") from error
+    if not math.isfinite(given):
+        raise WorldError(f"{what}: must be a finite number (got {value!r})")
+    if not least <= given <= most:
+        bounds = f"{least:g} to {most:g}" if most < math.inf else f"at least {least:g}"
+        raise WorldError(f"{what}: must be {bounds} (got {value!r})")
+    return given
