@@ -19,6 +19,7 @@ COMMANDS = {
     30: ("aperture", 0.5, None),
     77: ("stop", None, "walker"),
     78: ("parameter", "walker.looks", None),
+    110: ("posture", {"torso_yaw": 0.2}, "walker"),
     120: ("aperture", 0.6, None),
 }
 """After which tick: the word, its value, and the body."""

@@ -295,7 +295,7 @@ def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
     simulation = driving("all")
     simulation.step(3)
     simulation.command("aperture", width=0.4)
-    simulation.command("stop", body="walker")
+    simulation.command("posture", {"torso_yaw": 0.1}, body="walker")
     simulation.command("parameter", "walker.looks", 100)
     simulation.command("parameter", "other.body.error", True)
     assert simulation.world.aperture_width() == near(0.4)
@@ -303,14 +303,14 @@ def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
     assert simulation.minds["walker"].looks > 100
     assert simulation.trace is not None
     told = simulation.trace.select("command")
-    assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "stop", "parameter", "parameter")]
+    assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
 
 
 WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\?; name its body: walker, other"),
     (lambda s: s.command("stop", body="walkr"), r"no body 'walkr'; did you mean 'walker'\?"),
     (lambda s: s.command("stp", body="walker"), r"has no actuator 'stp'; did you mean 'stop'"),
-    (lambda s: s.command("aperture", object()), "numbers, texts and tuples of these"),
+    (lambda s: s.command("aperture", object()), "numbers, texts, and tuples and dicts of these"),
     (lambda s: s.command("aperture", 1, colour=2), r"command 'aperture': .*unexpected keyword argument 'colour'"),
     (lambda s: s.command("aperture", -1), r"Aperture\.width: must be >= 0"),
     (lambda s: s.command("parameter", "walkr.looks", 1), r"has no part 'walkr'; did you mean 'walker'"),
@@ -380,6 +380,9 @@ def test_other_threads_submit_commands_and_do_nothing_else() -> None:
         simulation.step()
     simulation.carry_out_submitted()
     assert sum(future.exception(timeout=0) is None for future in futures) == 8
+    simulation.submit("walk", 3.0).cancel()
+    simulation.step()
+    assert simulation.world.bodies["walker"].get("velocity").linear[0] < 1
     (failed,) = [error for future in futures if (error := future.exception()) is not None]
     assert "no actuator 'apertur'" in str(failed)
 

@@ -1,4 +1,7 @@
-"""`actr3d bench lockstep`: what lockstep and recording cost, as ratios to the bare physics of the same scene on the same states."""
+"""`actr3d bench lockstep`: what lockstep and recording cost, as ratios to the bare physics of the same scene on the same states.
+
+All is processor time, of all threads together: a recording has one of its own, which must not hide what it costs.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from pathlib import Path
 import mujoco
 
 from actr3d.actr.loading import load_text
-from actr3d.bench.figures import Figure, report, seconds_of
+from actr3d.bench.figures import Figure, processor_time_of, report
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene, WorldState
 
@@ -57,7 +60,7 @@ def _cost(make: Callable[[], Simulation]) -> float:
     """Returns what a tick and its tock cost [s]."""
     simulation = make()
     simulation.step(WARM)
-    return seconds_of(lambda: simulation.step(TICKS)) / TICKS
+    return processor_time_of(lambda: simulation.step(TICKS)) / TICKS
 
 
 def _recorded_cost(make: Callable[[], Simulation]) -> float:
@@ -71,7 +74,7 @@ def _recorded_cost(make: Callable[[], Simulation]) -> float:
             simulation.step(TICKS)
             recording.close()
 
-        return seconds_of(work) / TICKS
+        return processor_time_of(work) / TICKS
 
 
 def _bare_cost(make: Callable[[], Simulation]) -> float:
@@ -83,7 +86,7 @@ def _bare_cost(make: Callable[[], Simulation]) -> float:
     simulation.step(TICKS)
     world = simulation.world
     steps = round(simulation.period / world.scene.timestep)
-    mj_model, mj_data, clock, spent = world.mj_model, world.mj_data, time.perf_counter, 0.0
+    mj_model, mj_data, clock, spent = world.mj_model, world.mj_data, time.process_time, 0.0
     gc.collect()
     gc.disable()
     try:

@@ -103,4 +103,6 @@ def _fixed(value: Any) -> Any:
         return value
     if isinstance(value, (list, tuple)):
         return tuple(map(_fixed, cast("list[Any]", value)))
-    raise SimulationError(f"a command takes numbers, texts and tuples of these, which can be recorded (got {value!r})")
+    if isinstance(value, dict) and all(isinstance(key, str) for key in cast("dict[Any, Any]", value)):
+        return {key: _fixed(item) for key, item in cast("dict[str, Any]", value).items()}
+    raise SimulationError(f"a command takes numbers, texts, and tuples and dicts of these, which can be recorded (got {value!r})")

@@ -180,3 +180,15 @@ def steps_of(period: float, world: World) -> int:
     if rest or steps < 1:
         raise SimulationError(f"Simulation.period: must be a whole multiple of the physics step of {seconds(step):g} s (got {period!r})")
     return steps
+
+
+def whole_ticks(time: float, period: int, what: str) -> int:
+    """Returns how many ticks of a period [us] a time [s] is.
+
+    Raises:
+        SimulationError: If it is no whole number of them, or negative.
+    """
+    ticks, rest = divmod(microseconds(time, f"the time of {what}"), period)
+    if rest or ticks < 0:
+        raise SimulationError(f"{what}: must be a whole number of ticks of {seconds(period):g} s, at least 0 (got {time!r})")
+    return ticks

@@ -12,20 +12,19 @@ from typing import Any
 from zlib import crc32
 
 from actr3d.actr.limits import RunLimits, fresh_seed
-from actr3d.clock import microseconds, seconds
+from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.simulation.course import Course
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.journal import Journal, Listener
-from actr3d.simulation.lockstep import Lockstep, steps_of
+from actr3d.simulation.lockstep import Lockstep, steps_of, whole_ticks
 from actr3d.simulation.minds import Factory, check_names
+from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
 from actr3d.simulation.sources import sources_of
 from actr3d.trace import Trace
 from actr3d.world import Scene, World
-
-Observer = Callable[[Glimpse], object]
 
 
 class Simulation:
@@ -74,8 +73,7 @@ class Simulation:
         if limits is not None and limits.trace is not None:
             self._journal.tell_program(limits.trace)
         self._course = Course(self.world, self._begin, self._journal)
-        self._observers: list[Observer] = []
-        self._observing = False
+        self._onlookers = Onlookers()
         self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
         self._owner = threading.get_ident()
 
@@ -144,8 +142,7 @@ class Simulation:
         """
         self._enter()
         self._course.tock()
-        if self._observers:
-            self._show()
+        self._onlookers.show(self._glimpse)
         self._journal.check()
 
     def step(self, n: int = 1) -> None:
@@ -181,7 +178,7 @@ class Simulation:
         """
         if real_time is not None and not real_time > 0:
             raise SimulationError(f"run(real_time): must be above 0 (got {real_time!r})")
-        end = None if seconds is None else self.ticks + self._whole_ticks(seconds, "run(seconds)")
+        end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
         open_end = end is None and until is None
         pace = Pace(self._period, real_time)
         minds = self._course.lockstep.minds
@@ -199,7 +196,7 @@ class Simulation:
     def _enter(self) -> None:
         if threading.get_ident() != self._owner:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
-        if self._observing:
+        if self._onlookers.looking:
             raise SimulationError("an observer only looks: it cannot step or change the simulation it observes")
 
     # -- commands
@@ -214,7 +211,7 @@ class Simulation:
 
         Args:
             word: What to do.
-            values: With what; numbers, texts, and tuples of these.
+            values: With what; numbers, texts, and tuples and dicts of these.
             body: Which body is to do it; the only one unless named.
             named: More values, by name.
 
@@ -240,6 +237,8 @@ class Simulation:
         """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
         while self._submitted:
             future, command = self._submitted.popleft()
+            if not future.set_running_or_notify_cancel():
+                continue
             try:
                 command()
             except Exception as error:  # noqa: BLE001 - it is told to who asked
@@ -251,7 +250,7 @@ class Simulation:
 
     def observe(self, observer: Observer) -> None:
         """Calls an observer with a `Glimpse` after each tock, and after `seek`; it sees copies and can change nothing."""
-        self._observers.append(observer)
+        self._onlookers.add(observer)
 
     def listen(self, listener: Listener) -> None:
         """Calls a listener with every event of the trace from now on; not with those that `seek` goes through again.
@@ -283,15 +282,6 @@ class Simulation:
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.ticks)
 
-    def _show(self) -> None:
-        self._observing = True
-        try:
-            glimpse = self._glimpse()
-            for observer in self._observers:
-                observer(glimpse)
-        finally:
-            self._observing = False
-
     # -- going back
 
     def seek(self, time: float) -> None:
@@ -306,16 +296,9 @@ class Simulation:
             SimulationError: If the run has not come so far, or the time is no whole number of ticks.
         """
         self._enter()
-        to = self._whole_ticks(time, "seek")
+        to = whole_ticks(time, self._period, "seek")
         if to > self._course.furthest:
             raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
         self._course.seek(to)
         self._journal.check()
-        if self._observers:
-            self._show()
-
-    def _whole_ticks(self, time: float, what: str) -> int:
-        ticks, rest = divmod(microseconds(time, f"the time of {what}"), self._period)
-        if rest or ticks < 0:
-            raise SimulationError(f"{what}: must be a whole number of ticks of {self.period:g} s, at least 0 (got {time!r})")
-        return ticks
+        self._onlookers.show(self._glimpse)
