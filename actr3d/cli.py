@@ -19,7 +19,6 @@ from actr3d.actr.limits import RunLimits
 from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.output import ModelOutput, all_written, standard_output
-from actr3d.recording import Recorded
 from actr3d.running.run import run_model, settings_of
 from actr3d.trace import LEVELS, Trace, TraceEvent
 
@@ -103,6 +102,7 @@ def _complain_of_output(error: OSError) -> int:
 
 def replay_command(options: argparse.Namespace) -> int:
     """Runs a recording again, and says whether every byte agrees: 0 where it does, 1 where not, 2 where it cannot tell."""
+    from actr3d.recording import Recorded
     from actr3d.running.replay import replay
 
     try:

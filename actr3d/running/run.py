@@ -15,7 +15,6 @@ from actr3d.actr.reading import read_source
 from actr3d.actr.sources import syntax_tree
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ConfigurationError, ParameterError
-from actr3d.recording import Recording
 from actr3d.trace import Trace
 
 
@@ -99,6 +98,8 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str
 
 
 def _record_program(path: Path, source: str, limits: RunLimits, record: Path | str) -> None:
+    from actr3d.recording import Recording
+
     if limits.trace is None:
         limits.trace = Trace("all", keep=False)
     elif limits.trace.level != "all":
