@@ -16,10 +16,10 @@ from typing import Any, NoReturn, TextIO
 
 from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
-from actr3d.actr.loading import run_file
 from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.output import ModelOutput, all_written, standard_output
+from actr3d.running.run import run_model, settings_of
 from actr3d.trace import LEVELS, Trace, TraceEvent
 
 
@@ -38,20 +38,20 @@ def run_command(options: argparse.Namespace) -> int:
 def _run(options: argparse.Namespace, out: TextIO) -> int:
     """Runs a model file; its events, and with --json its own lines, go to `out`."""
     level = options.trace or ("all" if options.json else "none")
-    trace = Trace(level, keep=False) if level != "none" else None
-    limits = RunLimits(seed=options.seed, until=options.until, trace=trace)
+    trace = Trace("all" if options.record else level, keep=False)
+    limits = RunLimits(seed=options.seed, until=options.until, trace=trace if trace.level != "none" else None)
     printed: ModelOutput | None = None
     if options.json:
         printed = ModelOutput(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
-    if trace is not None:
+    if level != "none":
         show = TraceEvent.to_json if options.json else event_line
-        trace.listen(lambda event: None if out.closed else print(show(event), file=out))
+        trace.listen(lambda event: None if out.closed else print(show(event), file=out), level)
     limits.last_resort = partial(_leave, out, printed)
     trouble: Exception | None = None
     try:
         with warnings.catch_warnings(), _printing_to(printed or out):
             warnings.showwarning = _show_warning
-            run_file(options.file, limits=limits)
+            run_model(options.file, limits, settings=settings_of(options.set), record=options.record)
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
         trouble = error
     except (SystemExit, KeyboardInterrupt):
@@ -98,6 +98,21 @@ def _complain_of_output(error: OSError) -> int:
     if not isinstance(error, BrokenPipeError):
         print(f"error: cannot write the output: {error.strerror}", file=sys.stderr)
     return 1
+
+
+def replay_command(options: argparse.Namespace) -> int:
+    """Runs a recording again, and says whether every byte agrees: 0 where it does, 1 where not, 2 where it cannot tell."""
+    from actr3d.recording import Recorded
+    from actr3d.running.replay import replay
+
+    try:
+        with Recorded(options.file) as recorded:
+            comparison = replay(recorded, any_version=options.any_version)
+    except Actr3dError as error:
+        _complain(error)
+        return 2
+    print(comparison)
+    return 0 if comparison.difference is None else 1
 
 
 def _complain(error: BaseException) -> int:
@@ -158,22 +173,28 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest")
     run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)")
     run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
+    run.add_argument("--record", metavar="RECORDING", help="record everything to this new file")
+    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds")
     run.set_defaults(function=run_command)
+    again = commands.add_parser("replay", help="run a recording again", description="Runs a recording again: does every byte agree?")
+    again.add_argument("file", metavar="RECORDING", help="the recording")
+    again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
+    again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core", "camera"], help="what to measure")
+    bench.add_argument("name", choices=["core", "camera", "lockstep", "soak"], help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     return parser
 
 
 def _bench(options: argparse.Namespace) -> int:
-    measured = importlib.import_module(f"actr3d.bench.{options.name}")
-    return measured.main(json_output=options.json)
+    bench: Any = importlib.import_module(f"actr3d.bench.{options.name}")
+    return bench.main(json_output=options.json)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if arguments is None and sys.argv[1:2] == ["run"]:
+    if arguments is None and sys.argv[1:2] in (["run"], ["replay"]):
         _order_sets()
     if sys.stdout is None:  # it was closed before we came
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays until the end

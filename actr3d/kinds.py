@@ -67,6 +67,7 @@ KINDS: Mapping[str, Kind] = {
         "[s] and its `outcome`",
     ),
     "retrieval": Kind("all", "memory", "failed [chunk]", "a memory's answer arrives, or its failure"),
+    "answer": Kind("all", "port", "word value", "a body answers what it was asked for"),
     "add": Kind("all", "memory", "chunk merged size given", "a memory takes in a chunk, or strengthens (merges with) the equal one it has"),
     "chunks": Kind("all", "memory", "by size gone new", "a memory's chunks are changed otherwise: by which method, and which ones"),
 }

@@ -37,10 +37,11 @@ PARTS: dict[str, set[str]] = {
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY,
     "simulation": BASE | BODILY | SENSES | {"recording"},
+    "running": BASE | BODILY | SENSES | RUNNING,
     "experiment": BASE | BODILY | SENSES | RUNNING,
     "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},
     "output": set(),
-    "cli": BASE | BODILY | SENSES | RUNNING | {"experiment", "bench", "output"},
+    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "output"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING,
 }

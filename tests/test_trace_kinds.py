@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
 from actr3d.actr.limits import RunLimits
@@ -71,7 +72,9 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     arguments = [sys.executable, "-m", "actr3d.cli", "run", str(file), "--json", "--seed", "1"]
     done = subprocess.run(arguments, capture_output=True, text=True, check=True, timeout=60)
     printed = [TraceEvent(0, line["source"], line["kind"], line["data"]) for line in map(json.loads, done.stdout.splitlines())]
-    return [*trace, *printed]
+    simulation = driving("all")
+    simulation.run(0.1)
+    return [*trace, *printed, *(simulation.trace or ())]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:

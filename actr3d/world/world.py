@@ -22,6 +22,8 @@ from actr3d.world.servo import fit_servos
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
 
+_INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
+
 
 @dataclass(frozen=True, kw_only=True)
 class WorldState:
@@ -62,6 +64,8 @@ class World:
         self._scratch: MjData | None = None
         self._state_size: int = mujoco.mj_stateSize(self.mj_model, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
+        self._state_numbers = np.empty(self._state_size)
+        self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
         mujoco.mj_forward(self.mj_model, self.mj_data)
         self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
         """By geom: what the object is called that it belongs to; a geom that lies in the world itself has its own name."""
@@ -97,7 +101,7 @@ class World:
         for commands in running:
             commands.after_step()
             self.changed()
-        if any(self.mj_data.warning.number[_DIVERGED]):
+        if self._warnings.any():
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
 
     def changed(self) -> None:
@@ -140,6 +144,11 @@ class World:
         mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         bodies = tuple((name, body.state()) for name, body in self.bodies.items())
         return WorldState(steps=self._steps, mj_state=mj_state, bodies=bodies)
+
+    def state_bytes(self) -> bytes:
+        """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
+        mujoco.mj_getState(self.mj_model, self.mj_data, self._state_numbers, _INTEGRATION)
+        return self._state_numbers.tobytes()
 
     def restore(self, state: WorldState) -> None:
         """Brings the world to a state of its own; going on from there gives the same bytes as the first time.

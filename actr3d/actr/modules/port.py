@@ -1,0 +1,179 @@
+"""The port: through it a mind tells its body what to do, and asks it what it senses."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.answers import answer_slots, plain_answer
+from actr3d.actr.events import Event
+from actr3d.actr.model import Model
+from actr3d.actr.parameters import named_parameters
+from actr3d.errors import SimulationError
+
+_LIBRARY = str(Path(__file__).parents[2])
+
+
+class Reading(Event):
+    """An answer that the body will give: `yield reading` waits for it, `reading.value` is it."""
+
+    __slots__ = ("_value", "word")
+
+    def __init__(self, word: str) -> None:
+        super().__init__(Reading)
+        self.word = word
+
+    @property
+    def value(self) -> Any:
+        """What the body answered.
+
+        Raises:
+            SimulationError: If it has not answered yet.
+        """
+        if not self.done:
+            raise SimulationError(f"the body has not answered '{self.word}' yet; wait for it: yield reading")
+        return self._value
+
+    def describe(self) -> str:
+        """Names what was asked."""
+        return f"reading of '{self.word}'"
+
+
+@dataclass(slots=True)
+class Request:
+    """What a mind wants of its body, until the body's next tock."""
+
+    body: str
+    """The body's name."""
+    word: str
+    values: tuple[Any, ...]
+    named: Mapping[str, Any]
+    place: str
+    """`file:line` where the modeller asked, for error messages."""
+    port: BodyPort
+    reading: Reading | None = None
+    """Where the answer goes; None where something is to be done and nothing answered."""
+    to_buffer: bool = False
+    """Whether the answer goes into the port's buffer."""
+
+
+class Embodiment:
+    """Joins a mind to its body, by the name of the body and the list of what the mind wants of it.
+
+    Args:
+        body: The body's name.
+        outbox: Where requests wait for the next tock; shared by all minds of a simulation, in the order they came.
+    """
+
+    __slots__ = ("body", "outbox")
+
+    def __init__(self, body: str, outbox: list[Request]) -> None:
+        self.body = body
+        self.outbox = outbox
+
+    def join(self, mind: Model) -> None:
+        """Gives a mind, and all ports below it, this body."""
+        mind.__dict__["_embodiment"] = self
+
+
+class BodyPort(Model):
+    """Carries a mind's commands to its body, and the body's answers back.
+
+    `set(word, …)` tells the body what to do; `get(word, …)` asks it for what it senses, `request(word, …)` likewise, with
+    the answer as a chunk in a buffer. The body does what it is told at the end of the present tick, then moves, then
+    answers; the answers are there when the next tick begins. `busy` is True while answers are outstanding; `error`
+    after an answer to `request` that was nothing.
+
+    Args:
+        buffer: Where the answers to `request` go; None for a port without.
+    """
+
+    @named_parameters
+    def __init__(self, buffer: Any = None) -> None:
+        Model.__init__(self)
+        self._buffer = buffer
+        self._outstanding = 0
+        self.busy = False
+        self.error = False
+
+    def set(self, word: str, *values: Any, **named: Any) -> None:
+        """Tells the body to do something: `set("walk", 1.2)`.
+
+        Raises:
+            SimulationError: If the agent has no body.
+        """
+        self._trace_request("set", word=word, **_given(values, named))
+        self._send(Request(self._joined().body, word, values, named, _place(), self))
+
+    def get(self, word: str, *values: Any, **options: Any) -> Reading:
+        """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
+
+        Raises:
+            SimulationError: If the agent has no body.
+        """
+        self._trace_request("get", word=word, **_given(values, options))
+        return self._ask(word, values, options, to_buffer=False)
+
+    def request(self, word: str, *values: Any, **options: Any) -> Reading:
+        """Asks the body what it senses; the answer comes as a chunk: the word, then what was sensed, by name or in order.
+
+        Raises:
+            SimulationError: If the agent has no body, or the port no buffer.
+        """
+        if self._buffer is None:
+            raise SimulationError(f"port '{self._path}' has no buffer to put the answer to '{word}' into; give it one: BodyPort(buffer)")
+        self._trace_request("request", word=word, **_given(values, options))
+        self.error = False
+        return self._ask(word, values, options, to_buffer=True)
+
+    def _ask(self, word: str, values: tuple[Any, ...], options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
+        reading = Reading(word)
+        self._send(Request(self._joined().body, word, values, options, _place(), self, reading, to_buffer))
+        self._outstanding += 1
+        self.busy = True
+        return reading
+
+    def _send(self, request: Request) -> None:
+        self._joined().outbox.append(request)
+
+    def _joined(self) -> Embodiment:
+        for part in self._line():
+            embodiment = part.__dict__.get("_embodiment")
+            if embodiment is not None:
+                return embodiment
+        raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
+
+    def _take(self, request: Request, answer: Any) -> None:
+        """Takes the answer in, as an event of the mind."""
+        reading = request.reading
+        assert reading is not None
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
+        reading._value = answer
+        self._outstanding -= 1
+        if request.to_buffer:
+            if answer is None:
+                self._buffer.clear()
+                self.error = True
+            else:
+                self._buffer.set(answer_slots(request.word, answer))
+        if self._outstanding == 0:
+            self.busy = False
+        self.sch.finish(reading)
+
+
+def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns what the trace tells of the values that a word is given."""
+    return {**({"values": values} if values else {}), **({"named": named} if named else {})}
+
+
+def _place() -> str:
+    """Returns where the innermost running line that is not the library's stands."""
+    frame = sys._getframe(2)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_LIBRARY):
+        frame = frame.f_back
+    return f"{frame.f_code.co_filename}:{frame.f_lineno}"

@@ -1,0 +1,125 @@
+"""`actr3d bench lockstep`: what lockstep and recording cost, as ratios to the bare physics of the same scene on the same states.
+
+All is processor time, of all threads together: a recording has one of its own, which must not hide what it costs.
+"""
+
+from __future__ import annotations
+
+import gc
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import mujoco
+
+from actr3d.actr.loading import load_text
+from actr3d.bench.figures import Figure, processor_time_of, report
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene, WorldState
+
+WARM = 200
+"""Ticks before anything is measured."""
+TICKS = 2_000
+"""Ticks that are measured at a time."""
+ROUNDS = 9
+
+AGENT = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+
+class Agent(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    body = BodyPort(felt)
+    def init():
+        for number in range(20):
+            memory.add(f"count {number} {(number + 1) % 20}")
+        goal.set("count 0")
+        body.request("pose")
+    def remember(goal="count ?now", retrieval=None):
+        memory.request("count ?now ?next")
+    def go_on(goal="count ?now", retrieval="count ?now ?next", felt="pose x:?x"):
+        goal.set("count ?next")
+        retrieval.clear()
+        body.set("walk", 1.0 if float(x) < 2 else -1.0)
+        body.request("pose")
+"""
+"""A production each 50 ms, each second one with a word to the body and a question; a retrieval between them."""
+
+
+def typical() -> Simulation:
+    """Returns a body without vision and its mind, in front of a doorway."""
+    scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker")))
+    return Simulation(scene, {"walker": load_text(AGENT, "agent.py").Agent}, seed=1)
+
+
+def _cost(make: Callable[[], Simulation]) -> float:
+    """Returns what a tick and its tock cost [s]."""
+    simulation = make()
+    simulation.step(WARM)
+    return processor_time_of(lambda: simulation.step(TICKS)) / TICKS
+
+
+def _recorded_cost(make: Callable[[], Simulation]) -> float:
+    """Returns what they cost while all is recorded, with all that is still to be written in the end [s]."""
+    with tempfile.TemporaryDirectory() as folder:
+        simulation = make()
+        recording = simulation.record(Path(folder) / "run")
+        simulation.step(WARM)
+
+        def work() -> None:
+            simulation.step(TICKS)
+            recording.close()
+
+        return processor_time_of(work) / TICKS
+
+
+def _bare_cost(make: Callable[[], Simulation]) -> float:
+    """Returns what MuJoCo alone costs for a tick, from each state that the same run comes through [s]."""
+    simulation = make()
+    states: list[WorldState] = []
+    simulation.step(WARM)
+    simulation.observe(lambda seen: states.append(seen.state()))
+    simulation.step(TICKS)
+    world = simulation.world
+    steps = round(simulation.period / world.scene.timestep)
+    mj_model, mj_data, clock, spent = world.mj_model, world.mj_data, time.process_time, 0.0
+    gc.collect()
+    gc.disable()
+    try:
+        for state in states:
+            world.restore(state)
+            start = clock()
+            mujoco.mj_step(mj_model, mj_data, nstep=steps)
+            spent += clock() - start
+    finally:
+        gc.enable()
+    return spent / len(states)
+
+
+def measure() -> list[Figure]:
+    """Measures everything."""
+    times = "times the bare physics"
+    plain, bare, recorded = _best(typical)
+    return [
+        Figure(name="tick and tock, no vision", value=plain / bare, sense="at most", bar=3, what=times),
+        Figure(
+            name="cognition and lockstep", value=(plain - bare) * 1e6, sense="at most", bar=40, what="us a tick beyond the bare physics"
+        ),
+        Figure(name="recording everything", value=recorded / plain, sense="at most", bar=1.5, what="times the unrecorded run"),
+    ]
+
+
+def _best(make: Callable[[], Simulation]) -> tuple[float, float, float]:
+    """Returns what a tick costs plain, as bare physics, and recorded [s]: the best of rounds in turn, which others disturb least."""
+    rounds = [(_cost(make), _bare_cost(make), _recorded_cost(make)) for _ in range(ROUNDS)]
+    plain, bare, recorded = (min(costs) for costs in zip(*rounds, strict=True))
+    return plain, bare, recorded
+
+
+def main(*, json_output: bool) -> int:
+    """Measures and prints; returns the exit code."""
+    return report(measure(), json_output=json_output)

@@ -1,0 +1,97 @@
+"""A recording that is read."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from array import array
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NamedTuple, Self
+
+from actr3d.errors import RecordingError
+from actr3d.recording.form import FORM
+from actr3d.recording.writer import Answer
+from actr3d.trace import TraceEvent
+
+
+class RecordedState(NamedTuple):
+    """The physics at the end of a tick."""
+
+    tick: int
+    data: bytes
+    """MuJoCo's `mjSTATE_INTEGRATION`, 8 bytes a number."""
+    events: int
+    """How many events there were until then."""
+
+
+class Recorded:
+    """Reads a recording, also one whose program was killed, or that is still being made.
+
+    Args:
+        path: The file.
+
+    Raises:
+        RecordingError: If there is no such file, or it is no recording.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise RecordingError(f"no recording '{path}'")
+        try:
+            # Where a killed program left a journal, reading the file takes writing it.
+            self._file = sqlite3.connect(self.path, isolation_level=None)
+            self.facts: dict[str, Any] = {name: json.loads(value) for name, value in self._file.execute("SELECT name, value FROM facts")}
+        except (sqlite3.Error, ValueError) as error:
+            raise RecordingError(f"'{path}' is no recording: {error}") from None
+        if self.facts.get("form") != FORM:
+            raise RecordingError(f"'{path}' is no recording of this form: it says {self.facts.get('form')!r}, this version reads {FORM!r}")
+
+    @property
+    def ticks(self) -> int:
+        """How many whole ticks it holds."""
+        return max(0, self._count("states") - 1)
+
+    @property
+    def event_count(self) -> int:
+        """How many events it holds."""
+        return self._count("events")
+
+    def _count(self, table: str) -> int:
+        (count,) = self._file.execute(f"SELECT max(first + count) FROM {table}").fetchone()
+        return count or 0
+
+    def events(self) -> Iterator[TraceEvent]:
+        """Yields every event."""
+        for (text,) in self._file.execute("SELECT data FROM events ORDER BY first"):
+            yield from (TraceEvent(*event) for event in json.loads(text))
+
+    def states(self) -> Iterator[RecordedState]:
+        """Yields the physics at the start (tick 0), and at the end of each tick."""
+        for first, count, data, events in self._file.execute("SELECT * FROM states ORDER BY first"):
+            size = len(data) // count
+            counts = array("q", events)
+            for number in range(count):
+                yield RecordedState(first + number, data[number * size : (number + 1) * size], counts[number])
+
+    def commands(self) -> Iterator[tuple[int, dict[str, Any]]]:
+        """Yields what the user did, and after which tick."""
+        for tick, data in self._file.execute("SELECT tick, data FROM commands ORDER BY number"):
+            yield tick, json.loads(data)
+
+    def answers(self) -> Iterator[Answer]:
+        """Yields what the bodies answered; the values are plain."""
+        for (text,) in self._file.execute("SELECT data FROM answers ORDER BY first"):
+            yield from (Answer(*answer) for answer in json.loads(text))
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        self.close()

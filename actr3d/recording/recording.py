@@ -1,0 +1,120 @@
+"""A recording that is being made."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from actr3d.errors import RecordingError
+from actr3d.recording.form import FORM, versions
+from actr3d.recording.writer import Answer, Writer
+from actr3d.trace import TraceEvent
+
+MOST_WAITING = 100_000
+"""So many events may wait to be written; then the run waits for the disk."""
+
+
+class Recording:
+    """Writes one run to one file: facts about it, then every event, state, command and answer as they come.
+
+    What has come is in the file a quarter of a second later, also where the program is killed then. All are counted;
+    after `cut`, the counting goes on from what was kept.
+
+    Args:
+        path: The file; it must not exist.
+        facts: What can be told of the run before it begins: the model's source, its parameters, the seed; plain values.
+
+    Raises:
+        RecordingError: If the file exists already, or cannot be made.
+    """
+
+    def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
+        told = {"form": FORM, "versions": versions(), **facts}
+        self._writer = Writer(Path(path), [(name, json.dumps(value)) for name, value in told.items()])
+        self._append = self._writer.events.append
+        self.events = self.answers = self.commands = self.states = 0
+        """How many of each it has been given."""
+
+    def fact(self, name: str, value: Any) -> None:
+        """Writes a fact that becomes known in the run: plain values."""
+        self._writer.facts.append((name, json.dumps(value)))
+
+    def event(self, event: TraceEvent) -> None:
+        """Writes an event."""
+        self.events += 1
+        self._append(event)
+
+    def event_alone(self, event: TraceEvent) -> None:
+        """Writes an event of a run without ticks, which tells of nothing else.
+
+        Raises:
+            RecordingError: If the file cannot be written any more.
+        """
+        self.event(event)
+        self.check()
+
+    def answer(self, body: str, word: str, value: Any) -> None:
+        """Writes what a body answered at the end of the tick that is about to end; nobody may change it any more."""
+        self.answers += 1
+        self._writer.answers.append(Answer(self.states, body, word, value))
+
+    def command(self, tick: int, data: Mapping[str, Any]) -> None:
+        """Writes what a user did after a tick."""
+        self.commands += 1
+        self._writer.commands.append((tick, json.dumps(data)))
+
+    def state(self, data: bytes) -> None:
+        """Writes the physics at the start, and then at the end of each tick; the tick is over then.
+
+        Raises:
+            RecordingError: If the file cannot be written any more.
+        """
+        self.states += 1
+        writer = self._writer
+        writer.states.append((data, self.events))
+        if len(writer.states) > MOST_WAITING or len(writer.events) > MOST_WAITING or writer.failure is not None:
+            self.check()
+
+    def check(self) -> None:
+        """Waits where too much has come to be kept in memory.
+
+        Raises:
+            RecordingError: If the file cannot be written any more.
+        """
+        writer = self._writer
+        if len(writer.events) > MOST_WAITING or len(writer.states) > MOST_WAITING:
+            writer.flush()
+        if writer.failure is not None:
+            raise writer.failure
+
+    def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
+        """Drops what came after a tick, and all but the first few events, answers and commands: the run goes another way.
+
+        Raises:
+            RecordingError: If the file cannot be written any more.
+        """
+        self.states, self.events, self.answers, self.commands = ticks + 1, events, answers, commands
+        self._writer.cut(ticks, events, answers, commands)
+        self.check()
+
+    def close(self) -> None:
+        """Writes what is left, and closes the file.
+
+        Raises:
+            RecordingError: If the file cannot be written.
+        """
+        self._writer.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        if error is None:
+            self.close()
+        else:
+            with suppress(RecordingError):  # what went wrong first is what is told
+                self.close()

@@ -1,0 +1,111 @@
+"""Runs a model file, be it a program or one that builds a simulation, and records it."""
+
+from __future__ import annotations
+
+import ast
+import random
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.loading import run_text
+from actr3d.actr.reading import read_source
+from actr3d.actr.sources import syntax_tree
+from actr3d.clock import microseconds, seconds
+from actr3d.errors import ConfigurationError, ParameterError
+from actr3d.trace import Trace
+
+
+def has_build(source: str) -> bool:
+    """Tells whether a model's text has a function `build` that says it returns a `Simulation`."""
+    return any(
+        isinstance(node, ast.FunctionDef)
+        and node.name == "build"
+        and node.returns is not None
+        and ast.unparse(node.returns).strip("'\"").rpartition(".")[2] == "Simulation"
+        for node in syntax_tree(source).body
+    )
+
+
+def settings_of(texts: Sequence[str]) -> dict[str, Any]:
+    """Returns parameters from texts `name=value`; a value that is no number, None, True, False or tuple is a text.
+
+    Raises:
+        ConfigurationError: If a text is not of this form.
+    """
+    settings: dict[str, Any] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.isidentifier():
+            raise ConfigurationError(f"a parameter is set by name=value (got {text!r})")
+        try:
+            settings[name] = ast.literal_eval(value)
+        except (ValueError, SyntaxError):
+            settings[name] = value
+    return settings
+
+
+def run_model(path: Path | str, limits: RunLimits, *, settings: Mapping[str, Any] | None = None, record: Path | str | None = None) -> None:
+    """Runs a model file: what it builds, where it has `build(parameters) -> Simulation`, or else itself, as a program.
+
+    Args:
+        path: The file.
+        limits: Its seed, end and trace. What is built ends with the last whole tick before the end.
+        settings: Values of the parameters of what it builds.
+        record: Where the run is to be recorded, if it is; a new file.
+
+    Raises:
+        ModelFileError: If there is no such file, or it is no Python 3.
+        ConfigurationError: If parameters are given to a program, or are not what the model takes.
+        ParameterError: If a trace of less than everything is to be recorded.
+        RecordingError: If the recording cannot be made or written.
+        Exception: Whatever the model raises.
+    """
+    path = Path(path)
+    source = read_source(path)
+    if limits.seed is None and record is not None:
+        limits.seed = fresh_seed()
+    if has_build(source):
+        _run_built(path, source, limits, settings or {}, record)
+        return
+    if settings:
+        raise ConfigurationError(f"'{path}' has no build(parameters) -> Simulation, so there are no parameters to set")
+    if record is None:
+        run_text(source, str(path), limits=limits, folder=path.parent)
+    else:
+        _record_program(path, source, limits, record)
+
+
+def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str, Any], record: Path | str | None) -> None:
+    from actr3d.running.building import build  # a program does without the world that this loads
+
+    with limits, suppress(EndOfRun):
+        random.seed(limits.program_seed)
+        simulation, parameters = build(source, str(path), settings, path.parent)
+        end = None
+        if limits.until is not None:  # down to the end of a tick
+            period = microseconds(simulation.period)
+            end = seconds(microseconds(limits.until) // period * period)
+        if record is None:
+            simulation.run(end)
+            return
+        facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
+        with simulation.record(record, **facts, program_seed=limits.program_seed) as recording:
+            report = simulation.run(end)
+            recording.fact("ended", {"by": report.ended_by})
+
+
+def _record_program(path: Path, source: str, limits: RunLimits, record: Path | str) -> None:
+    from actr3d.recording import Recording
+
+    if limits.trace is None:
+        limits.trace = Trace("all", keep=False)
+    elif limits.trace.level != "all":
+        raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
+    facts = {"kind": "program", "file": str(path), "sources": {str(path): source}, "seed": limits.seed, "until": limits.until}
+    with Recording(record, facts) as recording:
+        limits.trace.listen(recording.event_alone)
+        run_text(source, str(path), limits=limits, folder=path.parent)
+        recording.fact("ended", {"by": "end"})

@@ -1,0 +1,108 @@
+"""What a user may do to a running simulation, between two steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+from actr3d.actr.chunk import LASTING_TYPES
+from actr3d.errors import SimulationError, did_you_mean
+from actr3d.simulation.minds import Minds
+from actr3d.world import World
+
+Carry = Callable[..., None]
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One thing that a user did to the run."""
+
+    tick: int
+    """After how many ticks."""
+    word: str
+    """What: see `ON_WORLD`, `ON_MINDS`; any other word is one for a body."""
+    values: tuple[Any, ...]
+    named: Mapping[str, Any]
+    body: str | None = None
+    """To which body the word is said."""
+
+    def to_data(self) -> dict[str, Any]:
+        """Returns the command as plain values."""
+        return {"command": self.word, "data": {"values": list(self.values), "named": dict(self.named), "body": self.body}}
+
+    @classmethod
+    def from_data(cls, tick: int, data: Mapping[str, Any]) -> Command:
+        """Returns the command that `to_data` described."""
+        given = data["data"]
+        named = {name: _fixed(value) for name, value in given["named"].items()}
+        return cls(tick, data["command"], tuple(map(_fixed, given["values"])), named, given["body"])
+
+    def carry_out(self, world: World, minds: Minds, *, only_minds: bool = False) -> None:
+        """Does it.
+
+        Args:
+            world: On what.
+            minds: On whom.
+            only_minds: Whether what concerns the world is left out, because its state is to come from a record.
+
+        Raises:
+            SimulationError: If there is nothing of that name, or what is given is wrong.
+            Exception: What a body raises.
+        """
+        if self.body is None and self.word in ON_MINDS:
+            self._call(ON_MINDS[self.word], minds)
+        elif not only_minds:
+            if self.body is None:
+                self._call(ON_WORLD[self.word], world)
+            else:
+                world.bodies[self.body].set(self.word, *self.values, **self.named)
+
+    def _call(self, carry: Carry, on: World | Minds) -> None:
+        try:
+            carry(on, *self.values, **self.named)
+        except TypeError as error:
+            raise SimulationError(f"command '{self.word}': {error}") from error
+
+
+def _aperture(world: World, width: float, name: str = "aperture") -> None:
+    world.set_aperture_width(width, name)
+
+
+def _parameter(minds: Minds, path: str, value: Any) -> None:
+    minds.set_parameter(path, value)
+
+
+ON_WORLD: dict[str, Carry] = {"aperture": _aperture}
+"""By word, what is done to the world; it may change its state only, not the compiled model, so that a stored state has it."""
+ON_MINDS: dict[str, Carry] = {"parameter": _parameter}
+"""By word, what is done to the minds."""
+
+
+def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, world: World) -> Command:
+    """Returns a command, with the body it is for.
+
+    Raises:
+        SimulationError: If there is no such body, or more than one, or a value is not plain.
+    """
+    bodies: Mapping[str, Any] = world.bodies
+    if body is None and word not in ON_WORLD and word not in ON_MINDS:
+        if len(bodies) != 1:
+            known = [*ON_WORLD, *ON_MINDS]
+            say = f"name its body: {', '.join(bodies)}" if bodies else f"there are: {', '.join(known)}"
+            raise SimulationError(f"no command '{word}'{did_you_mean(word, known)}; {say}")
+        (body,) = bodies
+    if body is not None and body not in bodies:
+        raise SimulationError(f"command '{word}': no body '{body}'{did_you_mean(body, bodies)}; there are: {', '.join(bodies) or 'none'}")
+    return Command(tick, word, tuple(map(_fixed, values)), {name: _fixed(value) for name, value in named.items()}, body)
+
+
+def _fixed(value: Any) -> Any:
+    """Returns a value that can be recorded, and that nobody can change."""
+    if type(value) in LASTING_TYPES:
+        return value
+    if isinstance(value, (list, tuple)):
+        return tuple(map(_fixed, cast("list[Any]", value)))
+    if isinstance(value, dict) and all(isinstance(key, str) for key in cast("dict[Any, Any]", value)):
+        return {key: _fixed(item) for key, item in cast("dict[str, Any]", value).items()}
+    raise SimulationError(f"a command takes numbers, texts, and tuples and dicts of these, which can be recorded (got {value!r})")

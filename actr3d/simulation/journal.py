@@ -1,0 +1,153 @@
+"""What is told of a run while it goes on: its trace, its listeners and its recording."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from actr3d.actr.modules.port import Request
+from actr3d.errors import ParameterError
+from actr3d.kinds import KINDS, LEVELS
+from actr3d.recording import Recording
+from actr3d.simulation.commands import Command
+from actr3d.trace import Trace, TraceEvent
+from actr3d.world import World
+
+Listener = Callable[[TraceEvent], object]
+
+
+class Journal:
+    """Hands everything that happens to who listens, and to the recording each thing once.
+
+    A run that has gone back to an earlier time lives through what was recorded already. Because the same things happen
+    in the same order, counting them tells which are new.
+
+    Args:
+        level: What the trace records; one of `actr3d.trace.LEVELS`.
+
+    Raises:
+        ParameterError: If the level is unknown.
+    """
+
+    def __init__(self, level: str) -> None:
+        self._level = Trace(level).level
+        self._keep = level != "none"
+        self._listeners: list[Listener] = []
+        self._recording: Recording | None = None
+        self._failure: Exception | None = None
+        self.silent = False
+        """Whether the past is being gone through again on the way to another time, which no listener is to hear."""
+        self.trace: Trace | None = None
+        """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
+        self._events = self._answers = 0
+        self._held: list[TraceEvent] | None = None
+
+    def raise_level(self, level: str) -> None:
+        """Lets the next trace record at least as much as a level.
+
+        Raises:
+            ParameterError: If the level is unknown.
+        """
+        self._level = max(self._level, Trace(level).level, key=LEVELS.index)
+
+    def listen(self, listener: Listener) -> None:
+        """Calls a listener with every event from now on.
+
+        Raises:
+            ParameterError: If nothing is traced.
+        """
+        if self._level == "none":
+            raise ParameterError("nothing is traced; make the simulation with trace='all', or another level")
+        if self.trace is not None and not self._listeners and self._recording is None:
+            self.trace.listen(self._hear)
+        self._listeners.append(listener)
+
+    def tell_program(self, trace: Trace) -> None:
+        """Hands on to the trace of the whole program as much as that one records."""
+        self.raise_level(trace.level)
+        rank = LEVELS.index(trace.level)
+
+        def hand_on(event: TraceEvent) -> None:
+            if LEVELS.index(KINDS[event.kind].level) <= rank:
+                trace.emit(*event)
+
+        if rank:
+            self.listen(hand_on)
+
+    def record(self, recording: Recording) -> None:
+        """Lets everything be recorded."""
+        self.raise_level("all")
+        self._recording = recording
+
+    def begin(self) -> Trace | None:
+        """Begins a new trace, of a run that is at its start; returns it, or None where nobody wants one."""
+        self._events = self._answers = 0
+        self._failure = None
+        self.trace = None if self._level == "none" else Trace(self._level, keep=self._keep)
+        if self.trace is not None and (self._listeners or self._recording is not None):
+            self.trace.listen(self._hear)
+        return self.trace
+
+    @contextmanager
+    def holding(self) -> Generator[None]:
+        """Holds events back inside the block: whether they belong to the known run or to a new one is decided there."""
+        held = self._held = []
+        try:
+            yield
+        finally:
+            self._held = None
+            for event in held:
+                self._hear(event)
+
+    def _hear(self, event: TraceEvent) -> None:
+        if self._held is not None:
+            self._held.append(event)
+            return
+        self._events += 1
+        recording = self._recording
+        if recording is not None and self._events > recording.events:
+            recording.event(event)
+        if self._listeners and not self.silent:
+            self._hand_on(event)
+
+    def _hand_on(self, event: TraceEvent) -> None:
+        try:
+            for listener in self._listeners:
+                listener(event)
+        except Exception as error:  # noqa: BLE001 - raised by `check`, where no event of a mind is half done
+            self._failure = self._failure or error
+
+    def check(self) -> None:
+        """Raises what a listener has raised meanwhile; the run can go on afterwards.
+
+        Raises:
+            Exception: That error.
+        """
+        failure, self._failure = self._failure, None
+        if failure is not None:
+            raise failure
+
+    def answers(self, requests: Sequence[Request], answers: Sequence[Any]) -> None:
+        """Takes what bodies answered in this tick."""
+        recording = self._recording
+        if recording is not None:
+            for request, answer in zip(requests, answers, strict=True):
+                self._answers += 1
+                if self._answers > recording.answers:
+                    recording.answer(request.body, request.word, answer)
+
+    def state(self, tick: int, world: World) -> None:
+        """Takes the end of a tick."""
+        if self._recording is not None and tick == self._recording.states:
+            self._recording.state(world.state_bytes())
+
+    def command(self, command: Command) -> None:
+        """Takes something new that a user did."""
+        if self._recording is not None:
+            self._recording.command(command.tick, command.to_data())
+
+    def cut(self, tick: int, commands: int) -> None:
+        """Lets the recording end here, because from here the run goes another way."""
+        if self._recording is not None:
+            self._recording.cut(tick, self._events, self._answers, commands)

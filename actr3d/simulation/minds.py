@@ -1,0 +1,133 @@
+"""The minds of a simulation: agents in one environment, with one clock and one queue of events."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import Any
+
+from actr3d.actr.chunk import LASTING_TYPES
+from actr3d.actr.limits import RunLimits
+from actr3d.actr.model import Model
+from actr3d.actr.modules.port import Embodiment, Request
+from actr3d.clock import MICROSECONDS
+from actr3d.errors import SimulationError, did_you_mean
+from actr3d.trace import Trace
+
+Factory = Callable[[], Any]
+"""Makes an agent: its class, or a function without arguments."""
+
+
+class Environment(Model):
+    """What all minds of a simulation are in."""
+
+
+class Minds:
+    """The agents of one simulation, made from their factories; what they want of their bodies waits in `outbox`.
+
+    All share one queue, so that what happens at one moment in several minds has one order: by priority, then first come
+    first served. A mind holds generators, which cannot be copied; so who wants an earlier moment makes the minds anew.
+
+    Args:
+        factories: By name, what makes each mind.
+        bodies: The names of those minds that have bodies.
+        seed: What all random choices come from, those of the module `random` included.
+        trace: Where events go.
+
+    Raises:
+        SimulationError: If a factory makes no agent, or the same one twice, or a name is taken.
+    """
+
+    def __init__(self, factories: Mapping[str, Factory], bodies: frozenset[str], seed: int | str, trace: Trace | None) -> None:
+        self.outbox: list[Request] = []
+        self.stopped = False
+        """Whether a mind asked in the last tick for the end of the run."""
+        outer = RunLimits.current()
+        random.seed(seed)
+        with RunLimits(seed=seed):
+            self.environment = Environment()
+            for name, factory in factories.items():
+                mind = _made(name, factory)
+                if hasattr(self.environment, name):
+                    raise SimulationError(f"a mind cannot be named '{name}': every environment has something of that name")
+                if name in bodies:
+                    Embodiment(name, self.outbox).join(mind)
+                setattr(self.environment, name, mind)
+            self.environment._ensure_converted()
+        self._sch = self.environment.sch
+        self._sch.limits = outer
+        if outer is not None:
+            outer.clock = lambda: self._sch.now_us
+        if trace is not None:
+            self.environment._attach_trace(trace)
+
+    @property
+    def time(self) -> int:
+        """The minds' time [us]."""
+        return self._sch.now_us
+
+    @property
+    def done(self) -> bool:
+        """Whether no mind has anything left to do, now or ever."""
+        return not (self._sch.queue.heap or self._sch._incoming or self.outbox)
+
+    def run(self, period: float, end: int) -> None:
+        """Lets the minds think for a period [s], until `end` [us]; also to its end where one of them says stop."""
+        sch = self._sch
+        sch.run(period)
+        self.stopped = sch.stop_flag
+        while sch.stop_flag or sch.now_us < end:
+            sch.run((end - sch.now_us) / MICROSECONDS)
+
+    def take(self, request: Request, answer: Any) -> None:
+        """Gives a mind an answer, which is there from the next tick on."""
+        self._sch.call_after(0, request.port._take, (request, answer))
+
+    def tell(self, trace: Trace, kind: str, data: dict[str, Any]) -> None:
+        """Lets a trace know of something that concerns the whole run."""
+        if trace.production:
+            trace.emit(self._sch.now_us, "top", kind, data)
+
+    def set_parameter(self, path: str, value: Any) -> None:
+        """Sets a parameter of a mind that is a number, a text, True, False or None: `walker.memory.latency`.
+
+        Raises:
+            SimulationError: If there is no such parameter.
+        """
+        *places, name = path.split(".")
+        part: Any = self.environment
+        for place in places:
+            inner = {child.name: child for child in part.get_children()}
+            if place not in inner:
+                raise SimulationError(f"no parameter '{path}': '{part._path}' has no part '{place}'{did_you_mean(place, inner)}")
+            part = inner[place]
+        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
+        if name not in known:
+            raise SimulationError(f"no parameter '{path}': '{part._path}' has no '{name}'{did_you_mean(name, known)}")
+        setattr(part, name, value)
+
+
+def _made(name: str, factory: Factory) -> Model:
+    if not callable(factory):
+        raise SimulationError(f"minds['{name}']: must be what makes an agent, its class or a function without arguments (got {factory!r})")
+    mind = factory()
+    if not isinstance(mind, Model):
+        raise SimulationError(f"minds['{name}']: must make an agent (made {mind!r})")
+    if mind.__dict__.get("parent") is not None or (mind._converted and mind.sch.now_us > 0):
+        raise SimulationError(f"minds['{name}']: must make a new agent each time it is called, for the run may go back to its start")
+    return mind
+
+
+def check_names(minds: Iterable[str], bodiless: Iterable[str], bodies: Collection[str]) -> None:
+    """Checks that minds have the bodies they should have.
+
+    Raises:
+        SimulationError: If there is no such body, or there is one of a name that should have none.
+    """
+    for name in minds:
+        if name not in bodies:
+            hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
+            raise SimulationError(f"minds: no body '{name}' in the scene{hint} (a mind without a body goes into `bodiless`)")
+    for name in bodiless:
+        if name in bodies:
+            raise SimulationError(f"bodiless: '{name}' is the name of a body")

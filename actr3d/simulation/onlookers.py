@@ -1,0 +1,38 @@
+"""Who looks on at a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from actr3d.simulation.glimpse import Glimpse
+
+Observer = Callable[[Glimpse], object]
+
+
+class Onlookers:
+    """Shows the present to all observers, who cannot change anything meanwhile."""
+
+    def __init__(self) -> None:
+        self._observers: list[Observer] = []
+        self.looking = False
+        """Whether one of them is looking now."""
+
+    def add(self, observer: Observer) -> None:
+        """Calls an observer from now on."""
+        self._observers.append(observer)
+
+    def show(self, make: Callable[[], Glimpse]) -> None:
+        """Shows what `make` returns; nothing is made where nobody looks.
+
+        Raises:
+            Exception: What an observer raises.
+        """
+        if not self._observers:
+            return
+        self.looking = True
+        try:
+            glimpse = make()
+            for observer in self._observers:
+                observer(glimpse)
+        finally:
+            self.looking = False

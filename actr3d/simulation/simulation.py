@@ -1,0 +1,304 @@
+"""Simulation: minds and their bodies in one world, in lockstep."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from functools import partial
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+from actr3d.actr.limits import RunLimits, fresh_seed
+from actr3d.clock import seconds
+from actr3d.errors import SimulationError
+from actr3d.recording import Recording
+from actr3d.simulation.course import Course
+from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.journal import Journal, Listener
+from actr3d.simulation.lockstep import Lockstep, steps_of, whole_ticks
+from actr3d.simulation.minds import Factory, check_names
+from actr3d.simulation.onlookers import Observer, Onlookers
+from actr3d.simulation.pace import Ending, Pace, RunReport
+from actr3d.simulation.sources import sources_of
+from actr3d.trace import Trace
+from actr3d.world import Scene, World
+
+
+class Simulation:
+    """Runs minds and their bodies through the same time: a tick of cognition, then a tock of physics, then sensing.
+
+    A tick lets every mind think for one period, events at its very end included. The tock carries out what the minds
+    told their bodies meanwhile, simulates the physics of the same period, and lets the bodies answer what they were
+    asked; the answers are there when the next tick begins. However long a tick takes on the wall, the result is the
+    same: it depends on scene, minds, seed and commands alone.
+
+    A simulation belongs to the thread that makes it; others may `submit` commands.
+
+    Args:
+        scene: What the world is made of; or a world that is compiled already, at its start, with a seed of its own.
+        minds: By a body's name, what makes its mind: an agent's class, or a function without arguments. It is called again
+            where the run goes back to an earlier time. A body that is not named has no mind.
+        bodiless: By a name, what makes a mind that has no body.
+        period: How long a tick is [s]; a whole multiple of the physics step. Source of 10 ms: the original ACT-R 3D.
+        seed: What all random choices come from; None takes the program's, or draws one.
+        trace: How much of what happens is kept; see `actr3d.trace.LEVELS`.
+
+    Raises:
+        SimulationError: If the period is no whole multiple of the physics step, or a mind's body is not there.
+        ParameterError: If the trace's level is unknown.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | World,
+        minds: Mapping[str, Factory] | None = None,
+        *,
+        bodiless: Mapping[str, Factory] | None = None,
+        period: float = 0.01,
+        seed: int | None = None,
+        trace: str = "none",
+    ) -> None:
+        limits = RunLimits.current()
+        self.seed: int | str = seed if seed is not None else fresh_seed() if limits is None else limits.next_seed()
+        self.world = scene if isinstance(scene, World) else World(scene, crc32(str(self.seed).encode()))
+        self._minds = dict(minds or {})
+        self._bodiless = dict(bodiless or {})
+        check_names(self._minds, self._bodiless, self.world.bodies)
+        self._steps = steps_of(period, self.world)
+        self._period = self._steps * self.world.scene.timestep_us
+        self._journal = Journal(trace)
+        if limits is not None and limits.trace is not None:
+            self._journal.tell_program(limits.trace)
+        self._course = Course(self.world, self._begin, self._journal)
+        self._onlookers = Onlookers()
+        self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
+        self._owner = threading.get_ident()
+
+    def _begin(self) -> Lockstep:
+        minds = {**self._minds, **self._bodiless}
+        return Lockstep(self.world, minds, frozenset(self._minds), self.seed, self._steps, self._period, self._journal)
+
+    # -- where it stands
+
+    @property
+    def ticks(self) -> int:
+        """How many whole ticks the run has gone."""
+        return self._course.ticks
+
+    @property
+    def time(self) -> float:
+        """The present [s]."""
+        return seconds(self.ticks * self._period)
+
+    @property
+    def period(self) -> float:
+        """How long a tick is [s]."""
+        return seconds(self._period)
+
+    @property
+    def furthest(self) -> float:
+        """How far the run has come [s]; after `seek` the present may lie before that."""
+        return seconds(self._course.furthest * self._period)
+
+    @property
+    def minds(self) -> dict[str, Any]:
+        """The minds by name, to look at: what is changed here from outside is not repeated when the run goes back.
+
+        Raises:
+            SimulationError: If a mind cannot be made.
+        """
+        environment = self._course.lockstep.minds.environment
+        return {name: environment[name] for name in (*self._minds, *self._bodiless)}
+
+    @property
+    def trace(self) -> Trace | None:
+        """The trace of the run up to now; None where nothing is traced. After `seek` it is another one."""
+        return self._course.lockstep.trace
+
+    # -- going on
+
+    def tick(self) -> None:
+        """Lets the minds think for one period, after carrying out what other threads have submitted.
+
+        Raises:
+            SimulationError: If the last tick has had no tock, or has failed; if this is another thread, or an observer.
+            Exception: What a mind raises.
+        """
+        self._enter()
+        if self._submitted:
+            self.carry_out_submitted()
+        self._course.tick()
+
+    def tock(self) -> None:
+        """Lets the bodies do what they were told, simulates the physics of the same period, and lets them answer.
+
+        Raises:
+            SimulationError: If there has been no tick before, or something has failed.
+            WorldError: If the physics diverges.
+            Exception: What a body, an observer or a listener of the trace raises.
+        """
+        self._enter()
+        self._course.tock()
+        self._onlookers.show(self._glimpse)
+        self._journal.check()
+
+    def step(self, n: int = 1) -> None:
+        """Goes on by a number of ticks, each with its tock.
+
+        Raises:
+            SimulationError: As `tick` does.
+            Exception: As `tick` and `tock` do.
+        """
+        for _ in range(n):
+            self.tick()
+            self.tock()
+
+    def run(
+        self, seconds: float | None = None, *, until: Callable[[Glimpse], bool] | None = None, real_time: float | None = None
+    ) -> RunReport:
+        """Goes on until a time has passed, something has come true, a mind says `stop`, or no mind has anything left to do.
+
+        The last of these ends a run only where neither a time nor a condition is given. A mind that says `stop` ends the
+        run after the present tick and its tock.
+
+        Args:
+            seconds: How long [s from now]; a whole number of ticks.
+            until: Asked after each tock; ends the run when it returns True.
+            real_time: How many times as fast as real time it is to go, at most; None for as fast as possible.
+
+        Returns:
+            How it went: what ended it, how fast it was, and how late where it could not keep to real time.
+
+        Raises:
+            SimulationError: If the time is no whole number of ticks, or the factor is not above 0; and as `tick` does.
+            Exception: As `tick` and `tock` do.
+        """
+        if real_time is not None and not real_time > 0:
+            raise SimulationError(f"run(real_time): must be above 0 (got {real_time!r})")
+        end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
+        open_end = end is None and until is None
+        pace = Pace(self._period, real_time)
+        minds = self._course.lockstep.minds
+        while end is None or self.ticks < end:
+            if open_end and minds.done and not self._submitted and self.ticks >= self._course.furthest:
+                return pace.report("done")
+            self.tick()
+            self.tock()
+            pace.tick()
+            ending: Ending | None = "stop" if minds.stopped else "until" if until is not None and until(self._glimpse()) else None
+            if ending is not None:
+                return pace.report(ending)
+        return pace.report("seconds")
+
+    def _enter(self) -> None:
+        if threading.get_ident() != self._owner:
+            raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
+        if self._onlookers.looking:
+            raise SimulationError("an observer only looks: it cannot step or change the simulation it observes")
+
+    # -- commands
+
+    def command(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> None:
+        """Does something to the run, at once, between two ticks: `command("aperture", 0.6)`, `command("walk", 1.2, body="walker")`.
+
+        A word of the world (`aperture`), of the minds (`parameter`, a path and a value), or any word that a body takes. It
+        is recorded with its tick, and done again at the same tick where the run goes back and on again. Where the run
+        has gone back, a new command makes it go another way: what came after the present is forgotten, also by the
+        recording.
+
+        Args:
+            word: What to do.
+            values: With what; numbers, texts, and tuples and dicts of these.
+            body: Which body is to do it; the only one unless named.
+            named: More values, by name.
+
+        Raises:
+            SimulationError: If there is no such command or body, or a tick waits for its tock.
+            Exception: What the world or the body raises; then nothing was done.
+        """
+        self._enter()
+        self._course.command(word, values, named, body)
+        self._journal.check()
+
+    def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
+        """Asks for a command from any thread; it is carried out before the next tick.
+
+        Returns:
+            What tells when it is done, or raises what went wrong with it.
+        """
+        future: Future[None] = Future()
+        self._submitted.append((future, partial(self.command, word, *values, body=body, **named)))
+        return future
+
+    def carry_out_submitted(self) -> None:
+        """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
+        while self._submitted:
+            future, command = self._submitted.popleft()
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                command()
+            except Exception as error:  # noqa: BLE001 - it is told to who asked
+                future.set_exception(error)
+            else:
+                future.set_result(None)
+
+    # -- looking on
+
+    def observe(self, observer: Observer) -> None:
+        """Calls an observer with a `Glimpse` after each tock, and after `seek`; it sees copies and can change nothing."""
+        self._onlookers.add(observer)
+
+    def listen(self, listener: Listener) -> None:
+        """Calls a listener with every event of the trace from now on; not with those that `seek` goes through again.
+
+        Raises:
+            ParameterError: If nothing is traced.
+        """
+        self._journal.listen(listener)
+
+    def record(self, path: Path | str, **facts: Any) -> Recording:
+        """Records the whole run to a new file, with every event, state, command and answer; to be closed by who asks for it.
+
+        Args:
+            path: The file; it must not exist.
+            facts: What else is to be told of the run: plain values by name.
+
+        Raises:
+            SimulationError: If the run has begun already.
+            RecordingError: If the file exists, or cannot be made.
+        """
+        if self._course.begun:
+            raise SimulationError("a recording holds a run from its start on, and this one has begun already")
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
+        sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
+        recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
+        self._journal.record(recording)
+        return recording
+
+    def _glimpse(self) -> Glimpse:
+        return Glimpse(self.world, self.ticks)
+
+    # -- going back
+
+    def seek(self, time: float) -> None:
+        """Brings the run to any time from its start to the furthest it has come; to the end of that tick, before what users did then.
+
+        Going on from there gives what the first run gave, with all its commands, byte for byte.
+
+        Args:
+            time: When [s]; a whole number of ticks.
+
+        Raises:
+            SimulationError: If the run has not come so far, or the time is no whole number of ticks.
+        """
+        self._enter()
+        to = whole_ticks(time, self._period, "seek")
+        if to > self._course.furthest:
+            raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
+        self._course.seek(to)
+        self._journal.check()
+        self._onlookers.show(self._glimpse)

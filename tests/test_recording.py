@@ -1,0 +1,241 @@
+"""Recordings: one file a run, whole after a kill, and an error where it cannot be written."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pytest
+from walkers import driving
+
+from actr3d.errors import RecordingError, SimulationError
+from actr3d.recording import Recorded, Recording
+from actr3d.recording.form import versions
+from actr3d.trace import TraceEvent
+
+TESTS = Path(__file__).parent
+RUN = """
+import sys
+sys.path.insert(0, {tests!r})
+from walkers import driving
+simulation = driving("none")
+recording = simulation.record({path!r})
+{before}
+while True:
+    simulation.step()
+    if simulation.ticks % 10 == 0:
+        print(simulation.ticks, flush=True)
+"""
+
+
+def program(path: Path, before: str = "") -> list[str]:
+    return [sys.executable, "-c", RUN.format(tests=str(TESTS), path=str(path), before=before)]
+
+
+def whole(path: Path) -> bool:
+    with sqlite3.connect(path) as file:
+        return file.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def test_a_recording_holds_everything(tmp_path: Path) -> None:
+    simulation = driving("all")
+    states: list[bytes] = []
+    simulation.observe(lambda seen: states.append(seen.state().mj_state.tobytes()))
+    with simulation.record(tmp_path / "run", subject=7) as recording:
+        simulation.run(0.5)
+        simulation.command("aperture", width=0.5)
+        simulation.run(0.5)
+        recording.fact("ended", "here")
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+    assert simulation.trace is not None
+    with Recorded(tmp_path / "run") as recorded:
+        assert recorded.ticks == 100
+        assert recorded.event_count == len(simulation.trace)
+        assert [event.to_json() for event in recorded.events()] == [event.to_json() for event in simulation.trace]
+        assert [state.data for state in recorded.states()][1:] == states
+        counts = [state.events for state in recorded.states()]
+        events = list(recorded.events())
+        assert counts[100] == len(events)
+        for tick in (0, 20, 55):  # some events at exactly the end of a tick are of the next one
+            assert all(event.time <= tick / 100 for event in events[: counts[tick]])
+            assert all(event.time >= tick / 100 for event in events[counts[tick] :])
+        assert list(recorded.commands()) == [(50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})]
+        told = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
+        answers = list(recorded.answers())
+        assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(told)] == told
+        assert len(answers) >= len(told) > 10
+        assert [answer.tick for answer in answers] == sorted(answer.tick for answer in answers)
+        facts = recorded.facts
+    assert (facts["seed"], facts["period_us"], facts["timestep_us"], facts["subject"], facts["ended"]) == (1, 10_000, 2_000, 7, "here")
+    assert facts["versions"] == versions()
+    assert {"python", "mujoco", "numpy", "actr3d", "machine"} <= versions().keys()
+    (source,) = facts["sources"].values()
+    assert "class Driver(ACTR):" in source
+
+
+def test_a_run_is_the_same_with_a_recording_or_without(tmp_path: Path) -> None:
+    plain, recorded = driving(), driving()
+    with recorded.record(tmp_path / "run"):
+        plain.run(1)
+        recorded.run(1)
+    assert plain.world.state_bytes() == recorded.world.state_bytes()
+
+
+def test_odd_values_are_recorded_as_the_trace_tells_them(tmp_path: Path) -> None:
+    odd: dict[Any, Any] = {"inf": float("inf"), 1: "number", "object": object(), "word": "größe \ud800"}
+    events = [TraceEvent(5, "top", "state", odd), TraceEvent(6, "top", "state", {"a": [1, (2, 3)]})]
+    with Recording(tmp_path / "run", {}) as recording:
+        for event in events:
+            recording.event(event)
+    with Recorded(tmp_path / "run") as recorded:
+        first, second = recorded.events()
+    assert second.to_json() == events[1].to_json()
+    assert first.data["inf"] == "inf"
+    assert first.data["1"] == "number"
+    assert json.loads(first.to_json())["data"]["word"].startswith("größe ")
+
+
+@pytest.mark.parametrize("wait", [0.6, 1.7])
+def test_a_killed_run_leaves_all_but_the_last_second(wait: float, tmp_path: Path) -> None:
+    path = tmp_path / "run"
+    with subprocess.Popen(program(path), stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        said = [(time.monotonic(), int(process.stdout.readline()))]
+        start = time.monotonic()
+        while time.monotonic() - start < wait:
+            said.append((time.monotonic(), int(process.stdout.readline())))
+        os.kill(process.pid, signal.SIGKILL)
+        killed = time.monotonic()
+        process.wait()
+    due = max([tick for when, tick in said if when < killed - 1], default=0)
+    with Recorded(path) as recorded:
+        assert recorded.ticks >= due
+        states = list(recorded.states())
+        events = list(recorded.events())
+    assert whole(path)
+    assert [state.tick for state in states] == list(range(len(states)))
+    assert len(states) > 10
+    assert states[-1].events <= len(events)
+    again = driving("all")
+    again.step(len(states) - 1)
+    assert again.world.state_bytes() == states[-1].data
+    assert again.trace is not None
+    assert [event.to_json() for event in again.trace] == [event.to_json() for event in events[: states[-1].events]]
+
+
+def test_a_paused_run_is_written_too(tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run"):
+        simulation.step(20)
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline:
+            with Recorded(tmp_path / "run") as recorded:
+                if recorded.ticks == 20:
+                    break
+            time.sleep(0.05)
+        else:
+            pytest.fail("nothing was written")
+
+
+SLOW = "import time; simulation.observe(lambda seen: time.sleep(0.002)); "
+LIMIT = SLOW + "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, 1_000_000))"
+FULL = SLOW + "recording._writer._file.execute('PRAGMA max_page_count = 250')"
+
+
+@pytest.mark.parametrize(("before", "reason"), [(LIMIT, r""), (FULL, "the disk is full")])
+def test_a_full_disk_stops_the_run_and_spoils_nothing(before: str, reason: str, tmp_path: Path) -> None:
+    path = tmp_path / "run"
+    done = subprocess.run(program(path, before), capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 1
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith(f"actr3d.errors.RecordingError: cannot write the recording '{path}': {reason}")
+    assert last.endswith("; what was written before is kept")
+    with Recorded(path) as recorded:
+        ticks = recorded.ticks
+        states = [state.data for state in recorded.states()]
+    assert whole(path)
+    assert ticks > 10
+    again = driving()
+    again.step(ticks)
+    assert again.world.state_bytes() == states[-1]
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_the_run_begins() -> None:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        text = f"""
+import os, sys
+from actr3d.recording import Recording, form
+form.versions()
+if os.geteuid() == 0:
+    os.setuid(65534)  # root may write anywhere
+try:
+    Recording({str(folder / "run")!r}, {{}})
+except Exception as error:
+    print(type(error).__name__, error)
+"""
+        folder.chmod(0o555)
+        done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, check=False)
+        assert done.stdout == f"RecordingError cannot write the recording '{folder / 'run'}': Permission denied\n", done.stderr
+        assert list(folder.iterdir()) == []
+        folder.chmod(0o755)
+        with pytest.raises(RecordingError, match="No such file or directory"):
+            Recording(folder / "nowhere" / "run", {})
+
+
+def test_what_is_there_is_not_replaced(tmp_path: Path) -> None:
+    path = tmp_path / "run"
+    path.write_text("precious", encoding="utf-8")
+    with pytest.raises(RecordingError, match="exists already"):
+        driving().record(path)
+    assert path.read_text(encoding="utf-8") == "precious"
+
+
+def test_a_recording_begins_with_its_run(tmp_path: Path) -> None:
+    simulation = driving()
+    simulation.step()
+    with pytest.raises(SimulationError, match="a recording holds a run from its start on"):
+        simulation.record(tmp_path / "run")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [(None, "no recording"), (b"no database at all", "is no recording: file is not a database"), (b"", "is no recording: no such table")],
+)
+def test_what_is_no_recording_is_called_that(content: bytes | None, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "run"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(RecordingError, match=message):
+        Recorded(path)
+
+
+def test_a_recording_of_another_form_is_refused(tmp_path: Path) -> None:
+    with Recording(tmp_path / "run", {"form": "actr3d recording 9"}):
+        pass
+    with pytest.raises(RecordingError, match="says 'actr3d recording 9', this version reads"):
+        Recorded(tmp_path / "run")
+
+
+def test_the_run_waits_for_a_slow_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from actr3d.recording import recording as module
+
+    monkeypatch.setattr(module, "MOST_WAITING", 50)
+    simulation = driving()
+    with simulation.record(tmp_path / "run") as recording:
+        most = 0
+        for _ in range(300):
+            simulation.step()
+            most = max(most, len(recording._writer.states))
+    assert 1 < most <= 51
+    with Recorded(tmp_path / "run") as recorded:
+        assert recorded.ticks == 300

@@ -1,0 +1,351 @@
+"""`actr3d run --record` and `actr3d replay`: a recording is run again, and every byte compared."""
+
+from __future__ import annotations
+
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from walkers import driving
+
+from actr3d.actr.limits import RunLimits
+from actr3d.cli import main
+from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
+from actr3d.recording import Recorded
+from actr3d.running.building import build
+from actr3d.running.replay import replay
+from actr3d.running.run import has_build, run_model, settings_of
+from actr3d.trace import Trace
+
+ROOT = Path(__file__).parent.parent
+BUILT = """
+from dataclasses import dataclass
+from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Loose, Scene
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    times: int = 3
+    height: float = 1.0
+    word: str = "fall"
+
+class Watcher(ACTR):
+    goal = Buffer()
+    noise = PMNoise(noise=1)
+    times = 0
+    def init():
+        goal.set("watch")
+    def left(goal="watch"):
+        self.watch("left")
+    def right(goal="watch"):
+        self.watch("right")
+    def watch(self, side):
+        self.times += 1
+        print(side, self.times)
+        if self.times >= self.most:
+            self.stop()
+
+def build(parameters: Parameters) -> Simulation:
+    scene = Scene(parts=(Floor(), Aperture(), Loose(name="box", position=(0, 0, parameters.height), heading=0.3)))
+    def watcher():
+        agent = Watcher()
+        agent.most = parameters.times
+        return agent
+    return Simulation(scene, bodiless={"watcher": watcher})
+"""
+NOISY = """
+from python_actr import *
+class Noisy(ACTR):
+    goal = Buffer()
+    noise = PMNoise(noise=1)
+    def init():
+        goal.set('go 0')
+    def left(goal='go ?n!5'):
+        goal.set({0: 'go', 1: int(n) + 1})
+    def right(goal='go ?n!5'):
+        goal.set({0: 'go', 1: int(n) + 1})
+for _ in range(2):
+    Noisy().run()
+"""
+
+
+@pytest.fixture(name="file")
+def file_(tmp_path: Path) -> Path:
+    path = tmp_path / "falling.py"
+    path.write_text(BUILT, encoding="utf-8")
+    return path
+
+
+def recorded_run(file: Path, *words: str) -> Path:
+    path = file.parent / "run"
+    assert main(["run", str(file), "--seed", "1", "--record", str(path), *words]) == 0
+    return path
+
+
+def alter(path: Path, *changes: str) -> None:
+    with sqlite3.connect(path) as file:
+        for change in changes:
+            assert file.execute(change).rowcount > 0
+    file.close()
+
+
+def test_what_a_file_builds_is_run_to_its_end_recorded_and_replayed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file, "--set", "times=4", "--set", "height=0.5")
+    assert capsys.readouterr().out.split()[1::2] == ["1", "2", "3", "4"]
+    with Recorded(path) as recorded:
+        assert recorded.ticks == 20
+        assert recorded.facts["parameters"] == {"times": 4, "height": 0.5, "word": "fall"}
+        assert recorded.facts["sources"] == {str(file): BUILT}
+        assert recorded.facts["ended"] == {"by": "stop"}
+        count = recorded.event_count
+    assert main(["replay", str(path)]) == 0
+    assert capsys.readouterr().out == f"every byte agrees: 20 ticks, {count} events\n"
+
+
+WALKING = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene, Wall
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    body = BodyPort(felt)
+    def init():
+        goal.set("start")
+    def start(goal="start"):
+        body.set("walk", 1.2)
+        body.request("rangefinder")
+        goal.set("walk")
+    def far(goal="walk", felt="rangefinder ?", utility=0):
+        body.request("rangefinder", noise=0.01)
+        felt.clear()
+    def near(goal="walk", felt=(lambda chunk, bound: float(chunk[1]) < 0.5), utility=1):
+        body.set("stop")
+        print("stopped", self.now())
+        goal.clear()
+        felt.clear()
+
+def build() -> Simulation:
+    scene = Scene(parts=(Floor(), Wall(name="wall", start=(2, -1), end=(2, 1)), Mannequin(name="walker")))
+    return Simulation(scene, {"walker": Walker})
+"""
+
+
+def test_a_walker_that_stops_before_a_wall_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "walking.py"
+    file.write_text(WALKING, encoding="utf-8")
+    path = recorded_run(file)
+    assert capsys.readouterr().out.startswith("stopped 1.")
+    with Recorded(path) as recorded:
+        assert recorded.facts["ended"] == {"by": "done"}
+        assert all(answer.word == "rangefinder" and answer.body == "walker" for answer in recorded.answers())
+        last = list(recorded.answers())[-1]
+        ticks = recorded.ticks
+    assert 0.2 < last.value < 0.6
+    assert main(["replay", str(path)]) == 0
+    assert f"every byte agrees: {ticks:,} ticks" in capsys.readouterr().out
+
+
+def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
+    path = recorded_run(file, "--until", "0.127")
+    with Recorded(path) as recorded:
+        assert recorded.ticks == 12
+        assert recorded.facts["ended"] == {"by": "seconds"}
+    assert main(["replay", str(path)]) == 0
+
+
+def test_fewer_events_can_be_shown_than_are_recorded(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file, "--trace", "production")
+    shown = [line.split()[2] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
+    with Recorded(path) as recorded:
+        kinds = [event.kind for event in recorded.events()]
+    assert shown == [kind for kind in kinds if kind in ("start", "select", "fire")]
+    assert "buffer" in kinds
+
+
+def test_events_can_be_shown_while_they_are_recorded(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file, "--json")
+    shown = [line for line in capsys.readouterr().out.splitlines() if '"output"' not in line]
+    with Recorded(path) as recorded:
+        assert [event.to_json() for event in recorded.events()] == shown
+
+
+@pytest.mark.parametrize("name", ["models/counting.py", "models/tutorial/two_agents.py", "noisy.py"])
+def test_a_program_without_a_world_is_recorded_and_replayed(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "noisy.py").write_text(NOISY, encoding="utf-8")
+    file = ROOT / name if name.startswith("models") else tmp_path / name
+    path = tmp_path / "run"
+    assert main(["run", str(file), "--record", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert main(["replay", str(path)]) == 0
+    with Recorded(path) as recorded:
+        assert capsys.readouterr().out == f"every byte agrees: {recorded.event_count:,} events\n"
+        assert recorded.event_count > 20
+    assert main(["run", str(file), "--seed", "1"]) == 0
+    assert (printed == capsys.readouterr().out) or name == "noisy.py"
+
+
+def test_a_program_without_a_world_does_not_load_what_worlds_need(tmp_path: Path) -> None:
+    text = "import sys; from actr3d.cli import main; code = main(sys.argv[1:]); sys.exit(code or ('mujoco' in sys.modules) * 9)"
+    for words in (["run", "models/counting.py"], ["run", "models/counting.py", "--record", str(tmp_path / "run")]):
+        assert subprocess.run([sys.executable, "-c", text, *words], cwd=ROOT, check=False, capture_output=True, timeout=60).returncode == 0
+
+
+def in_fact(name: str, old: str, new: str) -> str:
+    return f"UPDATE facts SET value = replace(value, '{old}', '{new}') WHERE name = '{name}'"
+
+
+CHANGES = [
+    (in_fact("sources", "noise=1", "noise=2"), "differs: event "),
+    (in_fact("sources", "heading=0.3", "heading=0.4"), "differs: the physics at the end of tick 0 (0 s): number 4 of "),
+    (in_fact("sources", "Scene(", "Scene(gravity=(0, 0, -9), "), "differs: the physics at the end of tick 1 (0.01 s): number "),
+    (in_fact("sources", "times", "counts"), "error: Parameters has no parameter 'times'"),
+    (in_fact("versions", '"mujoco": "', '"mujoco": "1'), "error: the recording was made with other versions"),
+    (
+        """UPDATE events SET data = replace(data, '"watch"', '"wait"')""",
+        'recorded: {"time": 0.0, "source": "watcher.goal", "kind": "buffer", "data": {"chunk": {"0": "wait"}}}; now: {',
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), CHANGES)
+def test_a_replay_says_where_it_differs(change: str, message: str, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file)
+    alter(path, change)
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == (2 if "error" in message else 1)
+    told = capsys.readouterr()
+    assert message in told.out + told.err
+
+
+def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file)
+    alter(path, """UPDATE facts SET value = '{"python": "2.7"}' WHERE name = 'versions'""")
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert "python 2.7 then, 3." in capsys.readouterr().err
+    assert main(["replay", str(path), "--any-version"]) == 0
+
+
+def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "noisy.py"
+    file.write_text(NOISY, encoding="utf-8")
+    path = recorded_run(file)
+    alter(path, in_fact("sources", "range(2)", "range(1)"))
+    assert main(["replay", str(path)]) == 1
+    assert "differs: the run ended after " in capsys.readouterr().out
+    alter(path, in_fact("sources", "range(1)", "range(3)"))
+    assert main(["replay", str(path)]) == 1
+    assert "recorded: nothing; now: " in capsys.readouterr().out
+
+
+CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
+
+
+def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path) -> None:
+    file = tmp_path / "noisy.py"
+    file.write_text(NOISY, encoding="utf-8")
+    path = recorded_run(file)
+    alter(path, "DELETE FROM facts WHERE name = 'ended'", CUT)
+    with Recorded(path) as recorded:
+        comparison = replay(recorded)
+    assert comparison.difference is None
+    assert comparison.events > 20
+
+
+def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run"):
+        simulation.run(0.3)
+        simulation.command("stop", body="walker")
+        simulation.run(0.3)
+        simulation.command("aperture", 0.5)
+    with Recorded(tmp_path / "run") as recorded:
+        with pytest.raises(RecordingError, match="was made by a program that is not recorded with it"):
+            replay(recorded)
+        same = replay(recorded, driving)
+        assert (same.difference, same.ticks, same.unfinished) == (None, 60, 0)
+        assert same.events == recorded.event_count
+        other = replay(recorded, lambda: driving(seed=2))
+        assert other.difference == "recorded: period 0.01 s, seed 1; now: period 0.01 s, seed 2"
+
+
+def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "failing.py"
+    file.write_text(BUILT.replace("self.stop()", "self.halt()"), encoding="utf-8")
+    path = tmp_path / "run"
+    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
+    assert "has no attribute 'halt'" in capsys.readouterr().err
+    assert main(["replay", str(path)]) == 0
+    assert capsys.readouterr().out.startswith("every byte agrees: 14 ticks, ")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'?; it has: times, height, word"),
+        (["--set", "times"], "a parameter is set by name=value (got 'times')"),
+        (["--record", "falling.py"], "cannot write the recording 'falling.py': it exists already"),
+        (["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
+    ],
+)
+def test_wrong_options_of_run_are_told(
+    words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(file.parent)
+    assert main(["run", "falling.py", *words]) == 1
+    assert f"error: {message}" in capsys.readouterr().err
+    assert file.read_text(encoding="utf-8") == BUILT
+
+
+def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "noisy.py"
+    file.write_text(NOISY, encoding="utf-8")
+    assert main(["run", str(file), "--set", "a=1"]) == 1
+    assert "so there are no parameters to set" in capsys.readouterr().err
+    with pytest.raises(ParameterError, match=r"a recording holds every event: trace 'all', or none \(got 'production'\)"):
+        run_model(file, RunLimits(trace=Trace("production")), record=tmp_path / "run")
+    assert main(["replay", str(file)]) == 2
+    assert "is no recording" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("def build(a, b) -> Simulation: pass", "build takes one argument, its parameters"),
+        ("def build(a) -> Simulation: pass", r"build\(a\) does not say which dataclass its parameters are of"),
+        ("def build() -> Simulation: return 3", r"build must return a Simulation \(returned 3\)"),
+    ],
+)
+def test_a_wrong_build_is_told(line: str, message: str) -> None:
+    text = f"from actr3d.simulation import Simulation\n{line}\n"
+    assert has_build(text)
+    with pytest.raises(ModelFileError, match=message):
+        build(text, "wrong.py", {})
+
+
+def test_a_build_without_parameters() -> None:
+    text = "import actr3d.simulation\nfrom actr3d.world import Scene\n"
+    text += "def build() -> 'actr3d.simulation.Simulation':\n    return actr3d.simulation.Simulation(Scene())\n"
+    assert has_build(text)
+    simulation, parameters = build(text, "plain.py", {})
+    assert (simulation.ticks, parameters) == (0, {})
+    with pytest.raises(ConfigurationError, match="build takes no parameters"):
+        build(text, "plain.py", {"a": 1})
+
+
+@pytest.mark.parametrize(
+    "text", ["def build(model):\n    return model", "class A:\n    def build(self) -> Simulation: pass", "not python ("]
+)
+def test_other_functions_called_build_are_none(text: str) -> None:
+    assert not has_build(text)
+
+
+def test_settings_are_values_or_texts() -> None:
+    given: dict[str, Any] = settings_of(["a=1", "b=0.5", "c=None", "d=(1, 2)", "e=box", "f=x=y", "g="])
+    assert given == {"a": 1, "b": 0.5, "c": None, "d": (1, 2), "e": "box", "f": "x=y", "g": ""}

@@ -1,0 +1,56 @@
+"""Walkers with minds, for the tests of lockstep."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+from actr3d.actr.loading import load_text
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+DRIVER = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+
+class Driver(ACTR):
+    goal = Buffer()
+    seen = Buffer()
+    body = BodyPort(seen)
+    looks = 0
+
+    def init():
+        goal.set("go")
+
+    def go(goal="go"):
+        body.set("walk", 0.5)
+        body.request("pose", noise=0.05)
+        goal.set("look")
+
+    def look(goal="look", seen="pose x:?x", body="busy:False"):
+        self.looks += 1
+        body.set("walk", self.random.choice([-0.5, 0.25, 1.0]) - 0.01 * float(x), turn=0.1)
+        body.set("position", "head_yaw", 0.3 * self.random.random())
+        body.request("pose", noise=0.05)
+"""
+"""Walks, and looks where it is again and again; goes another way at random."""
+
+Driver: Any = load_text(DRIVER, "driver.py").Driver
+
+
+def scene_of(*names: str, timestep: float = 0.002) -> Scene:
+    """Returns a scene with a doorway and mannequins side by side, the first in front of the gap."""
+    walkers = [Mannequin(name=name, position=(0.0, float(number))) for number, name in enumerate(names)]
+    return Scene(parts=(Floor(), Aperture(position=(3.0, 0.0)), *walkers), timestep=timestep)
+
+
+def driving(trace: str = "none", seed: int = 1) -> Simulation:
+    """Returns a simulation of two mannequins with minds."""
+    return Simulation(scene_of("walker", "other"), {"walker": Driver, "other": Driver}, seed=seed, trace=trace)
+
+
+def digest(simulation: Simulation) -> str:
+    """Returns a hash of the present state, with what bodies are about to do, and of the whole trace."""
+    lines = [] if simulation.trace is None else [event.to_json() for event in simulation.trace]
+    state = simulation.world.state()
+    return hashlib.sha256(state.mj_state.tobytes() + repr(state.bodies).encode() + "\n".join(lines).encode()).hexdigest()
