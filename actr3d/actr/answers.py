@@ -12,12 +12,12 @@ from actr3d.actr.chunk import PLAIN_TYPES
 def plain_answer(answer: Any) -> Any:
     """Returns an answer as plain values, lists and dicts.
 
-    A frozen dataclass becomes a dict of its fields; what has `as_dict()`, as a view has, what that returns.
+    A frozen dataclass becomes a dict of its fields; what has a `summary()`, as a view has, that.
     """
     if answer is None or type(answer) in PLAIN_TYPES:
         return answer
-    if hasattr(answer, "as_dict"):
-        return plain_answer(answer.as_dict())
+    if hasattr(answer, "summary"):
+        return plain_answer(answer.summary())
     if is_dataclass(answer):
         return {field.name: plain_answer(getattr(answer, field.name)) for field in fields(answer)}
     if isinstance(answer, Mapping):
@@ -31,7 +31,9 @@ def plain_answer(answer: Any) -> Any:
 def answer_slots(word: str, answer: Any) -> dict[str | int, Any]:
     """Returns the slots of the chunk that an answer becomes: the word first, then what was sensed, under its names or in order."""
     slots: dict[str | int, Any] = {0: word}
-    if is_dataclass(answer):
+    if hasattr(answer, "summary"):  # what has one is too large for slots
+        slots["seen"] = answer
+    elif is_dataclass(answer):
         slots.update({field.name: getattr(answer, field.name) for field in fields(answer)})
     elif isinstance(answer, Mapping):
         slots.update(cast("Mapping[str, Any]", answer))

@@ -2,6 +2,7 @@
 
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.sense import Sight
 from actr3d.camera.view import View
 
-__all__ = ["CameraParameters", "GeometricCamera", "View"]
+__all__ = ["CameraParameters", "GeometricCamera", "Sight", "View"]

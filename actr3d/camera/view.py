@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
+from zlib import crc32
 
+from numpy.random import Generator
 from numpy.typing import NDArray
+
+from actr3d.errors import CameraError, did_you_mean
+
+NOISY = ("x1", "x2", "d1", "d2", "a1", "a2")
+"""The fields that noise can be added to."""
 
 Extent = list[float]
 """`[x1, x2, d1, d2, a1, a2]`, see `View`."""
@@ -40,3 +48,33 @@ class View:
         for row, label, _, *extent in self.extents.tolist():
             view[ys[row]].setdefault(label, []).append(extent)
         return view
+
+    def __repr__(self) -> str:
+        return f"<View of {self.rows} rows: {len(self.extents)} extents>"
+
+    def summary(self) -> dict[str, int]:
+        """Returns what a trace and a recording keep of it: how many rows and extents, and the CRC-32 of all their bytes.
+
+        The view itself can be had again from the state of the world, exactly.
+        """
+        return {"rows": self.rows, "extents": len(self.extents), "crc32": crc32(self.extents.tobytes())}
+
+    def with_noise(self, sd: Any, random: Generator) -> View:
+        """Returns the view with Gaussian noise on some fields of all extents.
+
+        Args:
+            sd: Standard deviations by field, in its unit: `{"d1": 0.05, "d2": 0.05}`.
+            random: Where the random numbers come from.
+
+        Raises:
+            CameraError: If they are not given by field, or there is no such field.
+        """
+        if not isinstance(sd, Mapping):
+            raise CameraError(f"noise of view: its fields have different units; name them: {{'d1': {sd}}}, of {', '.join(NOISY)}")
+        extents = self.extents.copy()
+        for field, of in cast("Mapping[str, float]", sd).items():
+            if field not in NOISY:
+                raise CameraError(f"noise of view: no field '{field}'{did_you_mean(field, NOISY)}; there are {', '.join(NOISY)}")
+            extents[field] += of * random.standard_normal(len(extents))
+        extents.flags.writeable = False
+        return View(self.rows, extents)

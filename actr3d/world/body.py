@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 import numpy as np
 from mujoco import mjtJoint
@@ -41,6 +41,25 @@ class BodyState:
 
     touched: tuple[Touch, ...] | None
     """What the skin has felt in the last tick; None before anyone asks."""
+
+    senses: tuple[tuple[Any, Any], ...]
+    """What each sense that remembers something remembers."""
+
+
+class Sense(Protocol):
+    """A sense that remembers something from one reading to the next."""
+
+    def state(self) -> Any:
+        """Returns what it remembers: plain values."""
+        ...
+
+    def restore(self, state: Any) -> None:
+        """Brings that back; None is what a new sense remembers."""
+        ...
+
+
+S = TypeVar("S", bound=Sense)
+P = TypeVar("P")
 
 
 class Body:
@@ -82,6 +101,7 @@ class Body:
         self.running = Running(self)
         self.touched: tuple[Touch, ...] | None = None
         """What the skin has felt in the last tick; None before anyone asks."""
+        self._senses: dict[Any, Sense] = {}
         self.noise = Noise(world.seed, self.name)
         self.extent = Extent(world, self.geoms)
         self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
@@ -142,16 +162,34 @@ class Body:
     def state(self) -> BodyState:
         """Returns what is not in the physics state: commands on their way, noise, what hands hold."""
         held = tuple((side, hand.held) for side, hand in self.hands.items() if hand.held is not None)
-        return BodyState(running=self.running.state(), noise=self.noise.state(), held=held, touched=self.touched)
+        senses = tuple((key, sense.state()) for key, sense in self._senses.items())
+        return BodyState(running=self.running.state(), noise=self.noise.state(), held=held, touched=self.touched, senses=senses)
 
     def restore(self, state: BodyState) -> None:
         """Brings back a state of its own, after the physics state."""
         self.running.restore(state.running)
         self.noise.restore(state.noise)
         self.touched = state.touched
+        known = dict(state.senses)
+        for make, parameters in known:
+            self.sense(make, parameters)
+        for key, sense in self._senses.items():
+            sense.restore(known.get(key))
         held = dict(state.held)
         for side, hand in self.hands.items():
             hand.restore(held.get(side))
+
+    def sense(self, make: Callable[[Body, P], S], parameters: P) -> S:
+        """Returns the one sense of its kind and parameters, which is made when it is first asked for.
+
+        Args:
+            make: Makes it, of the body and the parameters.
+            parameters: What tells senses of one kind apart; hashable.
+        """
+        key = make, parameters
+        if key not in self._senses:
+            self._senses[key] = make(self, parameters)
+        return cast("S", self._senses[key])
 
     def joint(self, name: str) -> Joint:
         """Returns a joint by name.

@@ -59,6 +59,8 @@ class World:
             raise WorldError(f"the scene cannot be compiled: {error}") from error
         self.mj_data = MjData(self.mj_model)
         self._steps = 0
+        self.moment = 0
+        """Counts the states it comes through: what was read of an earlier one is stale."""
         self._refreshed = False
         self._solved = False
         self._scratch: MjData | None = None
@@ -107,6 +109,7 @@ class World:
     def changed(self) -> None:
         """Notes that positions, speeds or commands are not those that were last computed with."""
         self._refreshed = self._solved = False
+        self.moment += 1
 
     def refresh(self) -> None:
         """Brings positions, contacts and rays up to date with the state, once a state.

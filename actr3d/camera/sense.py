@@ -1,0 +1,67 @@
+"""The sensor word `view`: what a body's eye sees."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from actr3d.camera.geometric import GeometricCamera
+from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.view import View
+from actr3d.world.sensors.registry import SENSORS
+from actr3d.world.words import adder
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+
+
+class Sight:
+    """A body's eye, looked through with one set of parameters: at most one look for each state of the world.
+
+    Args:
+        body: Whose eye.
+        parameters: How it sees.
+    """
+
+    def __init__(self, body: Body, parameters: CameraParameters) -> None:
+        self._world = body.world
+        self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
+        self._unseen = self._camera.state()
+        self._moment = -1
+        self._view: View | None = None
+
+    def look(self) -> View:
+        """Returns what is visible now.
+
+        Raises:
+            CameraError: If the poses are no numbers.
+        """
+        world = self._world
+        if self._view is None or self._moment != world.moment:
+            world.refresh()
+            self._view = self._camera.look(world.mj_data)
+            self._moment = world.moment
+        return self._view
+
+    def state(self) -> tuple[int, ...]:
+        """Returns the labels given so far."""
+        return self._camera.state()
+
+    def restore(self, state: Any) -> None:
+        """Takes the labels up again that were given then; None for before the first look."""
+        self._camera.restore(self._unseen if state is None else state)
+        self._view = None
+
+
+@adder(SENSORS, lambda body: body.eye is not None)
+def view(body: Body, **options: Any) -> View:
+    """Senses the edges of all that is visible from the eye.
+
+    Args:
+        body: Whose.
+        options: The fields of `CameraParameters`; looks with the same options share their labels.
+
+    Raises:
+        ConfigurationError: If an option is no field, or a value is not what it takes.
+        CameraError: If something named as background is not there.
+    """
+    return body.sense(Sight, CameraParameters.from_mapping(options)).look()
