@@ -16,10 +16,10 @@ from actr3d.actr.parameters import named_parameters
 from actr3d.actr.partial import Partial
 from actr3d.actr.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.requests import Candidate, Retrieval
-from actr3d.actr.saying import warn_modeller
 from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
 from actr3d.errors import ChunkError
+from actr3d.saying import warn_modeller
 
 
 class Memory(Model):

@@ -1,7 +1,8 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
+from actr3d.world.mesh import Mesh
 from actr3d.world.parts import Aperture, Floor, Loose, Track, Wall
 from actr3d.world.scene import Scene
 from actr3d.world.world import World, WorldState
 
-__all__ = ["Aperture", "Floor", "Loose", "Scene", "Track", "Wall", "World", "WorldState"]
+__all__ = ["Aperture", "Floor", "Loose", "Mesh", "Scene", "Track", "Wall", "World", "WorldState"]
