@@ -29,6 +29,7 @@ from actr3d.world.files import Folder, digest
 from actr3d.world.surface import surface
 
 creation: Any = trimesh.creation
+linalg: Any = np.linalg
 FORMATS = ["stl", "stl_ascii", "obj", "ply", "off", "glb", "3mf", "dae"]
 
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
@@ -79,7 +80,7 @@ def nearest(mesh: Any, starts: NDArray[Any], ways: NDArray[Any]) -> NDArray[Any]
     best = np.full(len(starts), np.inf)
     for a, b, c in np.asarray(mesh.triangles):
         system = np.stack([np.broadcast_to(b - a, ways.shape), np.broadcast_to(c - a, ways.shape), -ways], axis=-1)
-        solved: Any = np.linalg.solve(system, (starts - a)[..., None])
+        solved: Any = linalg.solve(system, (starts - a)[..., None])
         u, v, t = (solved[:, n, 0] for n in range(3))
         hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0)
         best = np.where(hit & (t < best), t, best)

@@ -176,7 +176,9 @@ class _Source:
 def _read(source: _Source) -> tuple[Triangles, Surface]:
     name = source.files[0][0]
     triangles = read_triangles(Folder(Path(), MeshError, source.files), name, source.up)
-    return triangles, surface(triangles.vertices * source.scale, triangles.faces, name)
+    ordered = surface(triangles.vertices * source.scale, triangles.faces, name)
+    ordered.check_extent(name)
+    return triangles, ordered
 
 
 @lru_cache(maxsize=64)

@@ -48,6 +48,20 @@ class Surface:
     repairs: tuple[str, ...]
     """What was repaired, in words."""
 
+    def check_extent(self, name: str) -> None:
+        """Checks that its length is one of things and rooms.
+
+        Raises:
+            MeshError: If it is too small or too large; supposes another unit.
+        """
+        extent = float(np.ptp(self.vertices, axis=0).max())
+        if not MIN_EXTENT <= extent <= MAX_EXTENT:
+            large = extent > MAX_EXTENT
+            raise MeshError(
+                f"'{name}' is {extent:.3g} m long; the {'most' if large else 'least'} is {MAX_EXTENT if large else MIN_EXTENT:g} m. "
+                f"Is its unit the metre? Give scale=…, {'0.001 for millimetres' if large else '1000 for kilometres'}"
+            )
+
     def mass_properties(self, mass: float) -> tuple[Vertices, Vertices]:
         """Returns the centre of mass (3,) [m] and the inertia about it (3, 3) [kg m^2], of a solid of even density.
 
@@ -73,10 +87,11 @@ def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:
         name: Of what, for the messages.
 
     Raises:
-        MeshError: If no triangle is left, or all of it is a point, a line, too small or too large.
+        MeshError: If no triangle is left, or all of it is a point or a line.
     """
     repairs: list[str] = []
-    _check_extent(vertices[faces.ravel()], name)
+    if float(np.ptp(vertices[faces.ravel()], axis=0).max()) == 0:
+        raise MeshError(f"'{name}': all its vertices are one point")
     vertices, faces = _merged(vertices, faces)
     faces = _without_repeats(faces, repairs)
     if not len(faces):
@@ -99,18 +114,6 @@ def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:
         repairs=tuple(repairs),
     )
     return found if len(np.unique(faces)) == len(vertices) else replace(found, **_used(vertices, faces))
-
-
-def _check_extent(points: Vertices, name: str) -> None:
-    extent = float(np.ptp(points, axis=0).max())
-    if extent == 0:
-        raise MeshError(f"'{name}': all its vertices are one point")
-    if not MIN_EXTENT <= extent <= MAX_EXTENT:
-        large = extent > MAX_EXTENT
-        raise MeshError(
-            f"'{name}' is {extent:.3g} m long; the {'most' if large else 'least'} is {MAX_EXTENT if large else MIN_EXTENT:g} m. "
-            f"Is its unit the metre? Give scale=…, {'0.001 for millimetres' if large else '1000 for kilometres'}"
-        )
 
 
 def _merged(vertices: Vertices, faces: Faces) -> tuple[Vertices, Faces]:
