@@ -29,7 +29,8 @@ ARM = """<mujoco model="arm">
     <body name="base" pos="1 0 0.5" euler="90 10 0">
       <geom name="foot" type="box" size="0.1 0.2 0.3"/>
       <site name="eye" pos="0 0 0.4"/>
-      <body name="arm" pos="0 0 0.5"><joint name="elbow" class="stiff" axis="0 1 0" range="-30 60"/><geom size="0.05" fromto="0 0 0 0.5 0 0" type="capsule"/></body>
+      <body name="arm" pos="0 0 0.5"><joint name="elbow" class="stiff" axis="0 1 0" range="-30 60"/>
+        <geom size="0.05" fromto="0 0 0 0.5 0 0" type="capsule"/></body>
     </body>
   </worldbody>
   <actuator><motor name="pull" joint="elbow" gear="2"/></actuator>
@@ -38,12 +39,14 @@ ARM = """<mujoco model="arm">
 """
 
 CART = """<robot name="cart">
-  <link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual><collision><geometry><sphere radius="0.7"/></geometry></collision>
+  <link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual>
+    <collision><geometry><sphere radius="0.7"/></geometry></collision>
     <inertial><mass value="5"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <link name="wheel"><collision><geometry><cylinder radius="0.2" length="0.1"/></geometry></collision></link>
   <link name="frame"/>
   <joint name="axle" type="continuous"><parent link="base"/><child link="wheel"/><axis xyz="0 1 0"/></joint>
-  <joint name="lift" type="prismatic"><parent link="base"/><child link="frame"/><axis xyz="0 0 1"/><limit lower="-0.2" upper="0.3" effort="1" velocity="1"/></joint>
+  <joint name="lift" type="prismatic"><parent link="base"/><child link="frame"/><axis xyz="0 0 1"/>
+    <limit lower="-0.2" upper="0.3" effort="1" velocity="1"/></joint>
 </robot>
 """
 
@@ -241,6 +244,15 @@ def test_gaps_are_filled_and_said(tmp_path: Path) -> None:
     assert model(part).body("i_b").mass[0] == near(8000, rel=1e-6)
 
 
+def test_what_mujoco_says_is_said_at_the_modeller_s_line() -> None:
+    text = mjcf('<body name="b"><flexcomp name="f" type="grid" count="3 3 1" spacing="1 1 1" dim="2"/></body>')
+    with pytest.warns(
+        ModelWarning, match="Imported 'i': flex 'f' is not rigid and has no equality constraints .*; Element name 'f'"
+    ) as said:
+        Imported(name="i", text=text)
+    assert [warning.filename for warning in said] == [__file__]
+
+
 def test_the_eye_is_a_site_of_the_file() -> None:
     arm = Imported(name="a", text=ARM, eye="eye")
     assert model(arm).site(arm.prefix + "eye").name == "a_eye"
@@ -287,12 +299,14 @@ BROKEN: list[tuple[str, str]] = [
         r"unknown .*'k'",
     ),
     (mjcf(REPLICAS), r"<replicate> makes more than 10,000 elements"),
-    (mjcf('<replicate count="100000"><geom size="1"/></replicate>'), r'i\.xml, line 3: <replicate count="100000">: the limit is 1,000'),
+    (mjcf('<body name="b"><flexcomp name="f" count="100 100 1"/></body>'), r'<flexcomp count="100 100 1">: the limit is 2,500'),
+    (asset('<mesh name="m" builtin="plate" params="100000 100000"/>'), r'<mesh params="100000 100000">: the limit is 1,000'),
+    (mjcf('<replicate count="100000"><geom size="1"/></replicate>'), r'i\.xml, line 3: <replicate count="100000">: the limit is 2,500'),
     (
         asset('<hfield name="h" nrow="10000000" ncol="10000000" size="1 1 1 1"/>'),
         r'i\.xml, line 3: <hfield nrow="10000000">: the limit is 4,096',
     ),
-    (asset('<texture type="2d" builtin="flat" width="100000000" height="9"/>'), r'<texture width="100000000">: the limit is 16,384'),
+    (asset('<texture type="2d" builtin="flat" width="100000000" height="9"/>'), r'<texture width="100000000">: the limit is 8,192'),
     (asset('<mesh file="gone.stl"/>'), r"i\.xml, line 3: no file 'gone\.stl' in the folder 'here'"),
     (asset('<mesh file="cut.stl"/>'), r"i\.xml, line 3: 'cut\.stl' is cut short: 12 triangles take 684 bytes, it has 600"),
     (asset('<mesh file="../outside.stl"/>'), r"i\.xml, line 3: '\.\./outside\.stl' lies outside the folder 'here'"),
@@ -304,8 +318,8 @@ BROKEN: list[tuple[str, str]] = [
         asset('<hfield name="h" file="h.bin" size="1 1 1 1"/>'),
         r"'h\.bin' is neither PNG nor a height field of MuJoCo's own format, or is cut short",
     ),
-    (asset('<texture type="2d" file="large.png"/>'), r"'large\.png' is an image of 100000 x 100000; the limit is 16384 each way"),
-    (asset('<texture type="2d" file="cut.stl"/>'), r"cut\.stl"),
+    (asset('<texture type="2d" file="large.png"/>'), r"'large\.png' is an image of 100000 x 100000; the limit is 8192 each way"),
+    (asset('<texture type="2d" file="cut.stl"/>'), r"unsupported content type: 'model/stl'; Element name 'cut', id 0, i\.xml, line 3"),
     (asset('<model name="m" file="i.xml"/>'), r"i\.xml, line 3: models inside models are not taken; export the model as one file"),
     (asset('<skin name="s" file="s.skn"/>'), r"i\.xml, line 3: skins are not taken"),
     ('<mujoco>\n<include file="gone.xml"/>\n</mujoco>', r"i\.xml, line 2: no file 'gone\.xml' in the folder 'here'"),
@@ -385,9 +399,11 @@ def test_no_text_crashes_the_process(tmp_path: Path) -> None:
     rich = ARM.replace(
         "<worldbody>",
         '<asset><texture name="t" type="2d" builtin="checker" width="8" height="8"/><material name="m" texture="t" texrepeat="1 1"/>'
-        '<hfield name="h" nrow="3" ncol="3" size="1 1 1 1"/><mesh name="q" vertex="0 0 0 1 0 0 0 1 0 0 0 1" face="0 2 1 0 1 3 0 3 2 1 2 3"/></asset>'
-        '<worldbody><replicate count="2" offset="1 0 0"><geom size="0.1"/></replicate><geom type="hfield" hfield="h"/><geom type="mesh" mesh="q"/>'
-        '<body pos="0 0 5"><flexcomp name="f" type="grid" count="3 3 1" spacing="1 1 1" dim="2" mass="1" radius="0.01"/></body>',
+        '<hfield name="h" nrow="3" ncol="3" size="1 1 1 1"/>'
+        '<mesh name="q" vertex="0 0 0 1 0 0 0 1 0 0 0 1" face="0 2 1 0 1 3 0 3 2 1 2 3"/></asset>'
+        '<worldbody><replicate count="2" offset="1 0 0"><geom size="0.1"/></replicate><geom type="hfield" hfield="h"/>'
+        '<geom type="mesh" mesh="q"/>'
+        '<body name="cloth" pos="0 0 5"><flexcomp name="f" type="grid" count="3 3 1" spacing="1 1 1" dim="2" mass="1"/></body>',
     ).replace("</sensor>", '<rangefinder site="eye" cutoff="3"/><user dim="3" objtype="site" objname="eye"/></sensor>')
     code = """
 import re, sys, warnings

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -135,18 +136,20 @@ def _checked(files: Files, free: bool, eye: str | None) -> tuple[str, ...]:
     sites = [site.name for site in mj_spec.sites]
     if eye is not None and eye not in sites:
         raise WorldError(f"no site '{eye}' to be the eye; there are {', '.join(filter(None, sites)) or 'none'}{did_you_mean(eye, sites)}")
-    try:
-        mj_spec.compile()
-    except ValueError as error:
-        raise WorldError(_said(error, document)) from error
-    return tuple(document.remarks)
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        try:
+            mj_spec.compile()
+        except (ValueError, RuntimeError) as error:
+            raise WorldError(_said(error, document)) from error
+    return (*document.remarks, *(_on_one_line(str(warning.message)) for warning in said))
 
 
 def _specification(document: Document, free: bool) -> MjSpec:
     """Returns a new specification of a document, its meshes and assets in it."""
     try:
         mj_spec = MjSpec.from_string(document.text, assets=document.assets)
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:
         raise WorldError(_said(error, document)) from error
     for mesh in mj_spec.meshes:
         if mesh.file in document.meshes:
@@ -172,7 +175,7 @@ def _hide(geoms: list[Any], urdf: bool) -> None:
             geom.group = max(geom.group, HIDDEN_GROUP)
 
 
-def _said(error: ValueError, document: Document) -> str:
+def _said(error: Exception, document: Document) -> str:
     """Returns MuJoCo's message on one line, with the modeller's file and line in place of those of our text."""
 
     def origin(found: re.Match[str]) -> str:
@@ -180,4 +183,8 @@ def _said(error: ValueError, document: Document) -> str:
         return document.origins[number - 1] if 0 < number <= len(document.origins) else found[0]
 
     text = re.sub(r"(?:L|\bl)ine(?: number=| )(\d+)", origin, str(error))
-    return re.sub(r"\s*\n\s*", "; ", text.strip()).removeprefix("XML ").removeprefix("Error: ")
+    return _on_one_line(text).removeprefix("XML ").removeprefix("Error: ")
+
+
+def _on_one_line(text: str) -> str:
+    return re.sub(r"\s*\n\s*", "; ", text.strip())

@@ -19,8 +19,21 @@ OF_THE_WORLD = ("option", "size", "statistic", "visual", "keyframe")
 MAX_COPIES = 10_000
 """The most elements that `<replicate>` may make."""
 
-MAX_COUNTS = {"count": 1_000, "nrow": 4_096, "ncol": 4_096, "nsample": 10_000, "width": 16_384, "height": 16_384, "num": 1_000}
-"""The most that attributes which say how many may say. Without a limit MuJoCo takes all memory, or ends the process."""
+MAX_COUNTS = {
+    "count": 2_500,
+    "nrow": 4_096,
+    "ncol": 4_096,
+    "width": 8_192,
+    "height": 8_192,
+    "resolution": 8_192,
+    "nsample": 10_000,
+    "dim": 10_000,
+    "actdim": 10_000,
+    "num": 1_000,
+    "params": 1_000,
+}
+"""The most that attributes which say how many may say, all the numbers of a `count` multiplied. Without a limit MuJoCo takes
+all memory, computes for minutes (a flex of 100 x 100 points: 14 s), or ends the process (a height field of 10^7 x 10^7)."""
 
 LEAST_MASS, LEAST_INERTIA = 1e-3, 1e-6
 """What a moving URDF link without a mass is given [kg, kg m^2]: too little to change how a robot moves."""
@@ -80,24 +93,30 @@ def read_imported(folder: Folder, name: str) -> Document:
 
 def _check_numbers(element: Element) -> None:
     for attribute, value in element.attributes.items():
-        for word in value.split():
-            number = _number(word)
-            if math.isnan(number) and word.lower().lstrip("+-") == "nan" and attribute not in ("name", "class", "file"):
-                raise WorldError(f'{element.where}: <{element.tag} {attribute}="{value}"> is not a number')
-            if number > MAX_COUNTS.get(attribute, math.inf):
-                raise WorldError(f'{element.where}: <{element.tag} {attribute}="{value}">: the limit is {MAX_COUNTS[attribute]:,}')
+        numbers = _numbers(value)
+        says = f'{element.where}: <{element.tag} {attribute}="{value}">'
+        if any(map(math.isnan, numbers)):
+            raise WorldError(f"{says} is not a number")
+        most = MAX_COUNTS.get(attribute, math.inf)
+        if any(number > most for number in numbers) or (attribute == "count" and math.prod(numbers) > most):
+            raise WorldError(f"{says}: the limit is {most:,}")
 
 
-def _number(word: str) -> float:
-    try:
-        return float(word)
-    except ValueError:
-        return math.nan
+def _numbers(value: str) -> list[float]:
+    """Returns those words of an attribute that are numbers."""
+    numbers: list[float] = []
+    for word in value.split():
+        try:
+            numbers.append(float(word))
+        except ValueError:
+            continue
+    return numbers
 
 
 def _copies(element: Element) -> float:
-    times = _number(element.attributes.get("count", "1")) if element.tag == "replicate" else 1
-    return 1 + max(times, 1) * sum(map(_copies, element.children)) if times > 1 else 1 + sum(map(_copies, element.children))
+    """Returns how many elements there are when each `<replicate>` has made its copies."""
+    times = max(1, *_numbers(element.attributes.get("count", "1"))) if element.tag == "replicate" else 1
+    return 1 + times * sum(map(_copies, element.children))
 
 
 def _leave_to_the_scene(root: Element, document: Document) -> None:
@@ -136,7 +155,7 @@ def _prepare_urdf(root: Element, document: Document) -> None:
 def _is_without_mass(link: Element) -> bool:
     masses = [part for child in link.children if child.tag == "inertial" for part in child.children if part.tag == "mass"]
     if masses:
-        return all(_number(mass.attributes.get("value", "0")) == 0 for mass in masses)
+        return not any(any(_numbers(mass.attributes.get("value", ""))) for mass in masses)
     return not any(child.tag == "collision" for child in link.children)
 
 
