@@ -494,3 +494,10 @@ def test_a_moebius_strip_has_no_outside_and_is_left_as_it_is() -> None:
     faces = [f for n in range(11) for f in ((2 * n, 2 * n + 1, 2 * n + 2), (2 * n + 1, 2 * n + 3, 2 * n + 2))] + [(22, 23, 1), (23, 0, 1)]
     found = surface(vertices, np.array(faces), "strip")
     assert (found.closed, found.flat, found.repairs) == (False, False, ())
+
+
+def test_a_scene_without_meshes_does_not_wait_for_the_packages_that_read_them() -> None:
+    code = (
+        "import sys; from actr3d.world import *; World(Scene(parts=(Floor(),))); print({'trimesh', 'scipy', 'coacd'} & sys.modules.keys())"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "set()\n"

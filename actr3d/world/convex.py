@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import coacd
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from actr3d.errors import MeshError
 from actr3d.world.surface import Surface
@@ -28,6 +26,8 @@ def convex_parts(surface: Surface, coarseness: float, seed: int) -> list[NDArray
     Source: X. Wei et al. (2022), Approximate convex decomposition for 3D meshes with collision-aware concavity and tree
     search, ACM Transactions on Graphics 41(4).
     """
+    import coacd  # slow to load, and only for meshes
+
     # CoACD ends the process on an empty mesh and takes minutes over an open one, so it is given neither.
     if not surface.manifold:
         raise MeshError("only a closed surface, each edge between two triangles, can be cut into parts; close it, or take collision='hull'")
@@ -44,6 +44,8 @@ def convex_parts(surface: Surface, coarseness: float, seed: int) -> list[NDArray
 
 
 def _has_volume(part: NDArray[np.float64]) -> bool:
+    from scipy.spatial import ConvexHull, QhullError
+
     try:
         return float(ConvexHull(part).volume) > 1e-12
     except (QhullError, ValueError):

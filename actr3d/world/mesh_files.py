@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from trimesh.exchange import load
 
 from actr3d.errors import Actr3dError, MeshError, did_you_mean
 from actr3d.world.files import MAX_BYTES, Folder
@@ -56,6 +55,8 @@ def read_triangles(folder: Folder, name: str, up: str | None = None) -> Triangle
     Raises:
         MeshError: If it is not a mesh, is cut short, has no triangles, refers to what is not there, or is too large.
     """
+    from trimesh.exchange import load  # takes about a second, which a scene without meshes need not wait
+
     content = folder.read(name)
     kind, content, remarks = _kind(content, name)
     beside = _Beside(folder, name)
@@ -130,6 +131,8 @@ def _by_content(content: bytes) -> str:
 
 
 def _check_readable(kind: str, name: str) -> None:
+    from trimesh.exchange import load
+
     formats: set[str] = load.mesh_formats() - {"stl_ascii"}
     if kind == "zip":
         raise MeshError(f"'{name}' is an archive, not a mesh: unpack it")

@@ -6,10 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from actr3d.errors import MeshError
 
@@ -70,6 +67,8 @@ class Surface:
         Raises:
             MeshError: If it is flat, so that there is no solid.
         """
+        import trimesh  # slow to load, and only for meshes
+
         if self.flat:
             raise MeshError("it is flat: it has no volume to hold a mass")
         whole = trimesh.Trimesh(self.vertices, self.faces, process=False)
@@ -160,6 +159,9 @@ def _turned(faces: Faces, repairs: list[str]) -> Faces:
     Each triangle is two nodes, as it is and turned over; an edge of two triangles joins the nodes that agree. What is
     connected then is one consistent choice. A piece whose two choices are connected (a Moebius strip) has none.
     """
+    from scipy.sparse import coo_array  # slow to load, and only for meshes
+    from scipy.sparse.csgraph import connected_components
+
     count = len(faces)
     start, end, owner = _directed(faces)
     key = np.minimum(start, end) * (int(faces.max()) + 1) + np.maximum(start, end)
