@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.saying import warn_modeller
 from actr3d.errors import did_you_mean
+from actr3d.saying import warn_modeller
 
 if TYPE_CHECKING:
     from actr3d.actr.activation import MemorySubModule

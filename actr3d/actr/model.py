@@ -16,10 +16,10 @@ from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.actr.members import check_names, class_members, copy_objects, has_setter, minding_properties
 from actr3d.actr.methods import GeneratorWrapper, Method, MethodWrapper
 from actr3d.actr.profile import PROFILES, Profile
-from actr3d.actr.saying import warn_modeller
 from actr3d.actr.scheduler import Scheduler
 from actr3d.actr.sources import for_python_actr
 from actr3d.actr.traced import UNWATCHED, traceable
+from actr3d.saying import warn_modeller
 from actr3d.trace import Trace
 
 Option = TypeVar("Option")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from actr3d.actr.chunk import Slot, as_text
 from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.profile import PYTHON_ACTR
-from actr3d.actr.saying import warn_modeller
+from actr3d.saying import warn_modeller
 
 if TYPE_CHECKING:
     from actr3d.actr.memory import Memory

@@ -10,9 +10,9 @@ from types import FunctionType
 from typing import Any, cast
 
 from actr3d.actr.chunk import Chunk
-from actr3d.actr.saying import warn_modeller
 from actr3d.actr.search import PlainSearch, Search
 from actr3d.actr.traced import chunk_text, traceable
+from actr3d.saying import warn_modeller
 
 Row = tuple[Chunk, tuple[float, ...], float, float]
 """A candidate as it is kept, of which there may be thousands: (chunk, parts, partial, activation)."""

@@ -10,8 +10,8 @@ from actr3d.actr.activation import MemorySubModule
 from actr3d.actr.chunk import Chunk, as_text
 from actr3d.actr.parameters import named_parameters
 from actr3d.actr.pattern import Pattern
-from actr3d.actr.saying import warn_modeller
 from actr3d.errors import ChunkError
+from actr3d.saying import warn_modeller
 
 if TYPE_CHECKING:
     from actr3d.actr.memory import Memory

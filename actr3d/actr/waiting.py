@@ -8,8 +8,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.events import Event, Trigger
-from actr3d.actr.saying import warn_at_frame
 from actr3d.errors import SchedulerError, did_you_mean
+from actr3d.saying import warn_at_frame
 
 if TYPE_CHECKING:
     from actr3d.actr.scheduler import Scheduler

@@ -3,6 +3,8 @@
 from actr3d.world.bodies import Car, Load, Mannequin
 from actr3d.world.body import Body, BodyState
 from actr3d.world.bounding_box import BoundingBox
+from actr3d.world.imported import Imported
+from actr3d.world.mesh import Mesh
 from actr3d.world.parts import Aperture, Floor, Loose, Track, Wall
 from actr3d.world.scene import Scene
 from actr3d.world.world import World, WorldState
@@ -14,9 +16,11 @@ __all__ = [
     "BoundingBox",
     "Car",
     "Floor",
+    "Imported",
     "Load",
     "Loose",
     "Mannequin",
+    "Mesh",
     "Scene",
     "Track",
     "Wall",

@@ -18,9 +18,9 @@ from actr3d.actr.model import Model
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.partial import Partial
 from actr3d.actr.pattern import parse
-from actr3d.actr.saying import warn_at
 from actr3d.actr.sources import function_node, source_of
 from actr3d.errors import PatternException, did_you_mean
+from actr3d.saying import warn_at
 
 if TYPE_CHECKING:
     from actr3d.actr.production import Production

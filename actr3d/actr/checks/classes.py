@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from actr3d.actr.model import Model
 from actr3d.actr.parameters import slip_hint
 from actr3d.actr.rebinding import stored_names
-from actr3d.actr.saying import warn_at
 from actr3d.actr.sources import SOURCE, source_of, syntax_tree
 from actr3d.errors import ModelWarning
+from actr3d.saying import warn_at
 
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.pattern import Condition
-from actr3d.actr.saying import warn_at
+from actr3d.saying import warn_at
 
 if TYPE_CHECKING:
     from actr3d.actr.production import Production

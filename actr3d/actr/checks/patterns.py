@@ -11,8 +11,8 @@ from actr3d.actr.checks.vocabulary import vocabulary
 from actr3d.actr.memory import Memory
 from actr3d.actr.pattern import MISSING, Condition
 from actr3d.actr.plain import UNKNOWN, plain_value
-from actr3d.actr.saying import warn_at
 from actr3d.errors import did_you_mean
+from actr3d.saying import warn_at
 
 if TYPE_CHECKING:
     from actr3d.actr.production import Production

@@ -2,22 +2,35 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any
 
 from actr3d.errors import ModelWarning
 
-LIBRARY = str(Path(__file__).parents[1])
+LIBRARY = str(Path(__file__).parent) + os.sep
+MODELS = f"{LIBRARY}models{os.sep}"
+"""Where an installed library has its models, which are files like any modeller's."""
+
+
+def is_library(filename: str) -> bool:
+    """Tells whether a file, as a frame names it, is the library's own."""
+    return filename.startswith(LIBRARY) and not filename.startswith(MODELS)
+
+
+def _of_library(code: CodeType) -> bool:
+    # A dataclass's own `__init__`, between a configuration's checks and who makes it, has no file.
+    return is_library(code.co_filename) or (code.co_filename == "<string>" and code.co_name == "__init__")
 
 
 def warn_modeller(message: str) -> None:
     """Warns (`ModelWarning`) at the innermost running line that is not the library's: the modeller's."""
     frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(LIBRARY):
+    while frame.f_back is not None and _of_library(frame.f_code):
         frame = frame.f_back
     warn_at_frame(message, frame)
 

@@ -1,0 +1,190 @@
+"""An MJCF or URDF file as a part of a scene: a robot, furniture, a whole room."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, Any
+
+from annotated_types import MinLen
+from mujoco import MjSpec
+
+from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError, WorldError, did_you_mean
+from actr3d.saying import warn_modeller
+from actr3d.world.files import Files, Folder, digest
+from actr3d.world.imported_document import Document, read_imported
+from actr3d.world.mesh import UNSEEN, Quaternion, orientation
+from actr3d.world.parts import Name
+
+HIDDEN_GROUP = 3
+"""From this geom group on, MuJoCo's viewers draw nothing: files keep there what is only for contacts."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Imported(Configuration):
+    """What an MJCF or URDF file describes, put somewhere in a scene, all its names with `<name>_` before them.
+
+    The file, with those it includes and mentions, is read once, when the part is described, and only from inside its folder.
+    Meshes may be of any format that `Mesh` reads, and are repaired as there. What speaks of the whole world (`option`, `size`,
+    `statistic`, `visual`, `keyframe`) is left out: the scene's holds. Shapes that are only for contacts are not seen: in MJCF
+    those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
+    """
+
+    name: Name
+    """Its name in the scene; its bodies, joints, sites and so on are `<name>_<their name>`."""
+
+    path: str | Path | None = None
+    """The file; a relative path is as seen from the working directory."""
+
+    text: Annotated[str, MinLen(1)] | None = None
+    """MJCF or URDF itself, instead of a path."""
+
+    folder: str | Path | None = None
+    """The folder that all its files lie in, for files that reach beyond their own folder; `None` is the folder of the file, for
+    `package://NAME/…` the folder NAME above it. Without a path, files are read only with a folder."""
+
+    files: Files | None = field(default=None, repr=False)
+    """Names and contents of the file and of those it mentions; `None` reads them now. Given, nothing is read from the disk."""
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where its origin is at the start, (x, y, z) [m]."""
+
+    heading: float = 0.0
+    """How it is turned about the vertical at the start [rad]."""
+
+    quaternion: Quaternion | None = None
+    """How it is turned at the start, (w, x, y, z), instead of a heading."""
+
+    free: bool = False
+    """Whether its one root body gets a free joint, `<name>_free`; URDF cannot say that a robot is not fixed to the ground."""
+
+    eye: str | None = None
+    """The site in the file that is its eye; `None` for what does not see."""
+
+    def __post_init__(self) -> None:
+        """Checks the fields, reads the files and compiles what they describe, alone.
+
+        Raises:
+            ConfigurationError: If a field is wrong.
+            WorldError: If the file, or one that it mentions, cannot be read or compiled; says the file and line.
+            ModelWarning: (a warning) Says what was repaired or left out.
+        """
+        super().__post_init__()
+        orientation(f"Imported '{self.name}'", self.heading, self.quaternion)
+        try:
+            if self.files is None:
+                object.__setattr__(self, "files", self._read())
+            remarks = _checked(self.files or (), self.free, self.eye)
+        except WorldError as error:
+            raise type(error)(f"Imported '{self.name}': {error}") from error
+        if remarks:
+            warn_modeller(f"Imported '{self.name}': {'; '.join(remarks)}")
+
+    @property
+    def digest(self) -> str:
+        """The sha256 of the files, in hexadecimal."""
+        return digest(self.files or ())
+
+    @property
+    def prefix(self) -> str:
+        """What stands before each name of the file in the scene."""
+        return f"{self.name}_"
+
+    def add_to(self, mj_spec: MjSpec) -> None:
+        """Attaches it, turned and placed."""
+        frame = mj_spec.worldbody.add_frame(pos=self.position, quat=orientation("", self.heading, self.quaternion))
+        mj_spec.attach(_specification(_document(self.files or ()), self.free), prefix=self.prefix, frame=frame)
+
+    def _read(self) -> Files:
+        if (self.path is None) == (self.text is None):
+            raise ConfigurationError(f"Imported '{self.name}': give a path, or a text")
+        if self.text is not None:
+            name = f"{self.name}.xml"
+            folder = Folder(Path(self.folder), WorldError) if self.folder else Folder(Path(), WorldError, ())
+            folder.put(name, self.text.encode())
+        else:
+            path = Path(str(self.path)).resolve()
+            root = Path(self.folder).resolve() if self.folder else _package_folder(path)
+            if not path.is_relative_to(root):
+                raise WorldError(f"'{path.name}' does not lie in the folder '{root.name}'")
+            name, folder = path.relative_to(root).as_posix(), Folder(root, WorldError)
+        read_imported(folder, name)
+        return folder.files
+
+
+def _package_folder(path: Path) -> Path:
+    """Returns the folder of a file; of a file that names a ROS package that it lies in, that package's folder."""
+    packages = set(re.findall(rb"(?:package|model)://([^/\"']+)/", path.read_bytes())) if path.is_file() else set[bytes]()
+    above = [folder for folder in path.parents if folder.name.encode() in packages]
+    return above[0] if above else path.parent
+
+
+@lru_cache(maxsize=64)
+def _document(files: Files) -> Document:
+    return read_imported(Folder(Path(), WorldError, files), files[0][0])
+
+
+@lru_cache(maxsize=64)
+def _checked(files: Files, free: bool, eye: str | None) -> tuple[str, ...]:
+    """Compiles what files describe, alone, so that errors speak of them; returns what is to be said."""
+    document = _document(files)
+    mj_spec = _specification(document, free)
+    sites = [site.name for site in mj_spec.sites]
+    if eye is not None and eye not in sites:
+        raise WorldError(f"no site '{eye}' to be the eye; there are {', '.join(filter(None, sites)) or 'none'}{did_you_mean(eye, sites)}")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        try:
+            mj_spec.compile()
+        except (ValueError, RuntimeError) as error:
+            raise WorldError(_said(error, document)) from error
+    return (*document.remarks, *(_on_one_line(str(warning.message)) for warning in said))
+
+
+def _specification(document: Document, free: bool) -> MjSpec:
+    """Returns a new specification of a document, its meshes and assets in it."""
+    try:
+        mj_spec = MjSpec.from_string(document.text, assets=document.assets)
+    except (ValueError, RuntimeError) as error:
+        raise WorldError(_said(error, document)) from error
+    for mesh in mj_spec.meshes:
+        if mesh.file in document.meshes:
+            found = document.meshes[mesh.file]
+            mesh.uservert, mesh.userface, mesh.file = found.vertices.ravel(), found.faces.ravel(), ""
+    for body in mj_spec.bodies:
+        _hide(body.geoms, document.urdf)
+    if free:
+        roots = mj_spec.worldbody.bodies
+        if len(roots) != 1 or any(roots[0].joints):
+            raise WorldError(f"free=True needs one root body without a joint (there are {len(roots)})")
+        roots[0].add_freejoint(name="free")
+    return mj_spec
+
+
+def _hide(geoms: list[Any], urdf: bool) -> None:
+    """Makes what is only for contacts invisible to rays and viewers."""
+    seen = [geom for geom in geoms if geom.contype == 0 and geom.conaffinity == 0]
+    for geom in geoms:
+        if (urdf and seen and geom not in seen) or (not urdf and geom.group >= HIDDEN_GROUP):
+            geom.material = ""
+            geom.rgba = UNSEEN["rgba"]
+            geom.group = max(geom.group, HIDDEN_GROUP)
+
+
+def _said(error: Exception, document: Document) -> str:
+    """Returns MuJoCo's message on one line, with the modeller's file and line in place of those of our text."""
+
+    def origin(found: re.Match[str]) -> str:
+        number = int(found[1])
+        return document.origins[number - 1] if 0 < number <= len(document.origins) else found[0]
+
+    text = re.sub(r"(?:L|\bl)ine(?: number=| )(\d+)", origin, str(error))
+    return _on_one_line(text).removeprefix("XML ").removeprefix("Error: ")
+
+
+def _on_one_line(text: str) -> str:
+    return re.sub(r"\s*\n\s*", "; ", text.strip())

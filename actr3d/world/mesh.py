@@ -1,0 +1,196 @@
+"""A mesh from a file, as a part of a scene: seen as its true triangles, met as convex shapes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from annotated_types import Ge, Le
+from mujoco import MjSpec, mjtGeom, mjtMeshInertia
+from numpy.typing import NDArray
+
+from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError, MeshError
+from actr3d.saying import warn_modeller
+from actr3d.world.convex import convex_parts
+from actr3d.world.files import Files, Folder, digest
+from actr3d.world.mesh_files import Triangles, read_triangles
+from actr3d.world.parts import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
+from actr3d.world.surface import Surface, surface
+
+Quaternion = tuple[float, float, float, float]
+
+UNSEEN = {"rgba": (0.0, 0.0, 0.0, 0.0), "group": 3}
+"""What makes a geom for contacts invisible: rays pass what has alpha 0, MuJoCo's viewers do not draw group 3."""
+
+GREY = (0.6, 0.6, 0.6, 1.0)
+"""The colour of a mesh that has none of its own."""
+
+
+def orientation(whose: str, heading: float, quaternion: Quaternion | None) -> Quaternion:
+    """Returns the unit quaternion (w, x, y, z) of a heading [rad] or of a quaternion, of which one may be given.
+
+    Raises:
+        ConfigurationError: If both are given, or the quaternion is 0.
+    """
+    if quaternion is None:
+        return yaw_quaternion(heading)
+    length = math.hypot(*quaternion)
+    if heading != 0 or length == 0:
+        raise ConfigurationError(f"{whose}: give a heading, or a quaternion that is not 0 (got {heading!r}, {quaternion!r})")
+    w, x, y, z = (value / length for value in quaternion)
+    return (w, x, y, z)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mesh(Configuration):
+    """A mesh from a file of any format that trimesh reads: STL, OBJ, PLY, OFF, GLB, glTF; 3MF and DAE with the extra `formats`.
+
+    The file, with those it mentions, is read once, when the mesh is described. What is wrong with it and can be repaired is
+    repaired, and a `ModelWarning` says how; anything else is a `MeshError`. Textures are not used: it has one colour.
+    """
+
+    name: Name
+    """Its name in the scene. The shapes for contacts are `<name>_hull`, or `<name>_part_0`, `<name>_part_1`, …"""
+
+    path: str | Path
+    """The file; a relative path is as seen from the working directory. What it mentions is read only from its folder."""
+
+    files: Files | None = field(default=None, repr=False)
+    """Names and contents of the file and of those that it mentions; `None` reads them now. Given, nothing is read from the disk."""
+
+    scale: Length | tuple[Length, Length, Length] = 1.0
+    """Metres for one unit of the file, the same for all axes or one each (x, y, z): 0.001 for a file in millimetres."""
+
+    up: Literal["y", "z"] | None = None
+    """Which axis of the file points up; `None` is y for glTF and GLB, which say so, and z for all others."""
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where the origin of the file is at the start, (x, y, z) [m]."""
+
+    heading: float = 0.0
+    """How it is turned about the vertical at the start [rad]."""
+
+    quaternion: Quaternion | None = None
+    """How it is turned at the start, (w, x, y, z), instead of a heading."""
+
+    mass: Length | None = None
+    """[kg], spread evenly over its volume (over its convex hull where it is not closed); `None` fixes it in its place."""
+
+    collision: Literal["hull", "parts", "none"] = "hull"
+    """What meets other bodies: its convex hull, convex parts that follow its hollows (slow to make, once a process), or nothing."""
+
+    coarseness: Annotated[float, Ge(0.01), Le(1)] = 0.05
+    """For `parts`: how far they may differ from it, as a share of its size. Source of the default: CoACD."""
+
+    seed: Annotated[int, Ge(0)] = 0
+    """For `parts`: of the search for good cuts."""
+
+    colour: Colour | None = None
+    """Red, green, blue, alpha in 0 to 1; `None` is the colour of its largest piece in the file, grey if that has none."""
+
+    def __post_init__(self) -> None:
+        """Checks the fields, reads the files and brings the triangles in order.
+
+        Raises:
+            ConfigurationError: If a field is wrong.
+            MeshError: If the file cannot be read, or is not fit for a world; says why.
+            ModelWarning: (a warning) Says what was repaired.
+        """
+        super().__post_init__()
+        orientation(f"Mesh '{self.name}'", self.heading, self.quaternion)
+        if self.files is None:
+            path = Path(self.path)
+            folder = Folder(path.parent, MeshError)
+            read_triangles(folder, path.name, self.up)
+            object.__setattr__(self, "files", folder.files)
+        triangles, ordered = _read(self._source)
+        where = f"Mesh '{self.name}' ({Path(self.path).name})"
+        if ordered.flat and (self.collision != "none" or self.mass is not None):
+            raise MeshError(f"{where} is flat: it has no volume; leave it fixed, with collision='none', or give it thickness")
+        remarks = [*triangles.remarks, *ordered.repairs]
+        if not ordered.closed and (self.collision == "hull" or self.mass is not None):
+            remarks.append("it is not closed (watertight): contacts and mass are those of its convex hull")
+        if self.collision == "parts":
+            self._parts()
+        if remarks:
+            warn_modeller(f"{where}: {'; '.join(remarks)}")
+
+    @property
+    def digest(self) -> str:
+        """The sha256 of the files, in hexadecimal."""
+        return digest(self._source.files)
+
+    def add_to(self, mj_spec: MjSpec) -> None:
+        """Adds a body with one geom that is seen and, unless there is no collision, others that are met."""
+        triangles, ordered = _read(self._source)
+        body = mj_spec.worldbody.add_body(name=self.name, pos=self.position, quat=orientation("", self.heading, self.quaternion))
+        if self.mass is not None:
+            body.add_freejoint(name=self.name)
+            centre, inertia = ordered.mass_properties(self.mass)
+            body.mass, body.ipos, body.explicitinertial = self.mass, centre, True
+            body.fullinertia = [*np.diag(inertia), inertia[0, 1], inertia[0, 2], inertia[1, 2]]
+        _add_geom(
+            mj_spec,
+            body,
+            self.name,
+            ordered.vertices,
+            ordered.faces,
+            rgba=self.colour or triangles.colour or GREY,
+            contype=0,
+            conaffinity=0,
+        )
+        met = {**UNSEEN, **({"solref": WALL_SOLREF} if self.mass is None else {})}
+        if self.collision == "hull":
+            body.add_geom(name=f"{self.name}_hull", type=mjtGeom.mjGEOM_MESH, meshname=self.name, mass=0, **met)
+        elif self.collision == "parts":
+            for number, corners in enumerate(self._parts()):
+                _add_geom(mj_spec, body, f"{self.name}_part_{number}", corners, None, **met)
+
+    @property
+    def _source(self) -> _Source:
+        scale = self.scale if isinstance(self.scale, tuple) else (self.scale, self.scale, self.scale)
+        return _Source(files=self.files or (), up=self.up, scale=scale)
+
+    def _parts(self) -> list[NDArray[np.float64]]:
+        try:
+            return _cut(self._source, self.coarseness, self.seed)
+        except MeshError as error:
+            raise MeshError(f"Mesh '{self.name}' ({Path(self.path).name}): {error}") from error
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Source:
+    """What the triangles depend on; the same mesh in several scenes, and several times in one, is worked out once."""
+
+    files: Files
+    up: str | None
+    scale: tuple[float, float, float]
+
+
+@lru_cache(maxsize=64)
+def _read(source: _Source) -> tuple[Triangles, Surface]:
+    name = source.files[0][0]
+    triangles = read_triangles(Folder(Path(), MeshError, source.files), name, source.up)
+    ordered = surface(triangles.vertices * source.scale, triangles.faces, name)
+    ordered.check_extent(name)
+    return triangles, ordered
+
+
+@lru_cache(maxsize=64)
+def _cut(source: _Source, coarseness: float, seed: int) -> list[NDArray[np.float64]]:
+    return convex_parts(_read(source)[1], coarseness, seed)
+
+
+def _add_geom(mj_spec: MjSpec, body: Any, name: str, vertices: Any, faces: Any, **options: Any) -> None:
+    mesh = mj_spec.add_mesh(name=name)
+    mesh.uservert = vertices.ravel()
+    if faces is not None:
+        mesh.userface = faces.ravel()
+    # The body has its mass already; of a surface, MuJoCo asks no volume.
+    mesh.inertia = mjtMeshInertia.mjMESH_INERTIA_SHELL
+    body.add_geom(name=name, type=mjtGeom.mjGEOM_MESH, meshname=name, mass=0, **options)

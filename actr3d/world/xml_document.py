@@ -1,0 +1,145 @@
+"""Reads XML files, with what they include, into plain elements that know their file and line."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from xml.parsers import expat
+from xml.sax.saxutils import quoteattr
+
+from actr3d.errors import WorldError
+from actr3d.world.files import Folder
+
+MAX_ELEMENTS = 100_000
+"""The most elements of a document with all that it includes; the largest public robots have some thousands."""
+
+MAX_DEPTH = 200
+"""The most elements inside one another. MuJoCo's own reader stops at 500."""
+
+
+@dataclass
+class Element:
+    """One XML element. Text between elements is not kept: neither MJCF nor URDF has any."""
+
+    tag: str
+    attributes: dict[str, str]
+    where: str
+    """File and line, for messages: `robot.xml, line 3`."""
+
+    children: list[Element] = field(default_factory=list["Element"])
+
+    def walk(self) -> Iterator[Element]:
+        """Yields it and all elements inside it, in the order of the document."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+def read_document(folder: Folder, name: str) -> Element:
+    """Reads an XML file, puts in the place of each `<include file="…"/>` what is in that file, and returns the root.
+
+    An included name is relative to the folder of the first file, or else to that of the file that includes it.
+
+    Raises:
+        WorldError: If XML is not well formed, has a document type (entities), is too large or deep, includes itself, or
+            a file cannot be read; says the file and line.
+    """
+    root = _parsed(folder.read(name), name)
+    _expand(root, folder, (name,), [0])
+    return root
+
+
+def written(root: Element) -> tuple[str, list[str]]:
+    """Returns a document as text, and for each of its lines where that came from: MuJoCo's messages name lines."""
+    lines: list[str] = []
+    origins: list[str] = []
+    _write(root, lines, origins)
+    return "\n".join(lines), origins
+
+
+class _Reader:
+    """Builds elements from what expat meets."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self.open: list[Element] = []
+        self.root: Element | None = None
+        self._count = 0
+        self._parser = expat.ParserCreate()
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.StartDoctypeDeclHandler = self._doctype
+
+    def read(self, content: bytes) -> None:
+        try:
+            self._parser.Parse(content, True)
+        except expat.ExpatError as error:
+            still = f"; <{self.open[-1].tag}> of {self.open[-1].where} is still open" if self.open else ""
+            raise WorldError(f"{self._name}, line {error.lineno}: {expat.ErrorString(error.code)}{still}") from error
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag=tag, attributes=attributes, where=f"{self._name}, line {self._parser.CurrentLineNumber}")
+        self._count += 1
+        if self._count > MAX_ELEMENTS or len(self.open) >= MAX_DEPTH:
+            limit = f"more than {MAX_ELEMENTS:,} elements" if self._count > MAX_ELEMENTS else f"elements nested more than {MAX_DEPTH} deep"
+            raise WorldError(f"{element.where}: {limit}")
+        if self.open:
+            self.open[-1].children.append(element)
+        else:
+            self.root = element
+        self.open.append(element)
+
+    def _end(self, tag: str) -> None:
+        self.open.pop()
+
+    def _doctype(self, *_: object) -> None:
+        line = self._parser.CurrentLineNumber
+        raise WorldError(f"{self._name}, line {line}: <!DOCTYPE> is refused: entities can grow without bounds, and MuJoCo has none")
+
+
+def _parsed(content: bytes, name: str) -> Element:
+    reader = _Reader(name)
+    reader.read(content)
+    assert reader.root is not None  # expat has found a document
+    return reader.root
+
+
+def _expand(element: Element, folder: Folder, inside: tuple[str, ...], count: list[int]) -> None:
+    """Replaces the includes below an element; `inside` are the files that are being included, `count` what there is by now."""
+    children: list[Element] = []
+    for child in element.children:
+        count[0] += 1
+        if count[0] > MAX_ELEMENTS:
+            raise WorldError(f"{child.where}: more than {MAX_ELEMENTS:,} elements with all that is included")
+        if child.tag == "include":
+            included = _included(child, folder, inside, count)
+            children.extend(included.children)
+        else:
+            _expand(child, folder, inside, count)
+            children.append(child)
+    element.children = children
+
+
+def _included(element: Element, folder: Folder, inside: tuple[str, ...], count: list[int]) -> Element:
+    file = element.attributes.get("file")
+    if not file:
+        raise WorldError(f'{element.where}: <include> has no file="…"')
+    places = [posixpath.normpath(posixpath.join(posixpath.dirname(parent), file)) for parent in (inside[0], inside[-1])]
+    name = next((place for place in places if folder.has(place)), places[0])
+    if name in inside:
+        raise WorldError(f"{element.where}: {' includes '.join((*inside[inside.index(name) :], name))}, without end")
+    root = _parsed(folder.read(name, element.where), name)
+    _expand(root, folder, (*inside, name), count)
+    return root
+
+
+def _write(element: Element, lines: list[str], origins: list[str]) -> None:
+    attributes = "".join(f" {name}={quoteattr(value)}" for name, value in element.attributes.items())
+    lines.append(f"<{element.tag}{attributes}{'' if element.children else '/'}>")
+    origins.append(element.where)
+    for child in element.children:
+        _write(child, lines, origins)
+    if element.children:
+        lines.append(f"</{element.tag}>")
+        origins.append(element.where)

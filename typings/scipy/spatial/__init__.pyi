@@ -1,0 +1,6 @@
+# Names only what needs a type here; the rest of the package is `Any`.
+from typing import Any
+
+class QhullError(RuntimeError): ...
+
+def __getattr__(name: str) -> Any: ...
