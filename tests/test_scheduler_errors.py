@@ -80,7 +80,8 @@ def test_a_livelock_is_an_error_that_names_the_culprit() -> None:
         World().run(1)
 
 
-def test_run_inside_run_lets_time_pass_and_says_so() -> None:
+@pytest.mark.parametrize("traced", [False, True])
+def test_run_inside_run_lets_time_pass_and_says_so(traced: bool) -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             self.sch.add(lambda: self.note("other"), 0.6)
@@ -91,8 +92,11 @@ def test_run_inside_run_lets_time_pass_and_says_so() -> None:
             self.note("end")
 
     world = World()
-    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds"):
+    if traced:
+        world.traced()
+    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as said:
         world.run(3)
+    assert [w.filename for w in said] == [__file__]
     assert seen(world) == [("other", 0.6), ("after inner run", 1.1), ("end", 2.1)]
     assert world.now() == 3
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from collections.abc import Callable
@@ -11,13 +12,20 @@ from typing import Any
 
 from actr3d.errors import ModelWarning
 
-LIBRARY = str(Path(__file__).parents[1])
+LIBRARY = str(Path(__file__).parents[1]) + os.sep
+MODELS = f"{LIBRARY}models{os.sep}"
+"""Where an installed library has its models, which are files like any modeller's."""
+
+
+def is_library(filename: str) -> bool:
+    """Tells whether a file, as a frame names it, is the library's own."""
+    return filename.startswith(LIBRARY) and not filename.startswith(MODELS)
 
 
 def warn_modeller(message: str) -> None:
     """Warns (`ModelWarning`) at the innermost running line that is not the library's: the modeller's."""
     frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(LIBRARY):
+    while frame.f_back is not None and is_library(frame.f_code.co_filename):
         frame = frame.f_back
     warn_at_frame(message, frame)
 
