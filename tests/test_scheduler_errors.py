@@ -6,23 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from noting import Part, seen
 
 from actr3d.actr import Model
 from actr3d.errors import ModelWarning, SchedulerError
-
-
-class Part(Model):
-    """A model that notes what happens and when."""
-
-    def __init__(self) -> None:
-        self._seen: list[tuple[Any, float]] = []
-
-    def note(self, what: Any) -> None:
-        self._seen.append((what, self.now()))
-
-
-def seen(part: Any) -> list[Any]:
-    return part._seen
 
 
 @pytest.mark.parametrize(
