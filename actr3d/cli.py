@@ -20,6 +20,7 @@ from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.output import ModelOutput, all_written, standard_output
 from actr3d.running.run import run_model, settings_of
+from actr3d.saying import is_library
 from actr3d.trace import LEVELS, Trace, TraceEvent
 
 
@@ -136,8 +137,7 @@ def _complain(error: BaseException) -> int:
 def _keep_own_lines(report: traceback.TracebackException | None) -> None:
     """Leaves the library's own lines, and the loader's, out of a report and out of those of its causes."""
     if report is not None:
-        library = str(Path(__file__).parent)
-        own = [frame for frame in report.stack if not frame.filename.startswith((library, "<frozen"))]
+        own = [frame for frame in report.stack if not (is_library(frame.filename) or frame.filename.startswith("<frozen"))]
         report.stack = traceback.StackSummary.from_list([frame for frame in own if Path(frame.filename).name != "actr3d"])
         _keep_own_lines(report.__cause__)
         _keep_own_lines(report.__context__)
@@ -160,7 +160,7 @@ def _seconds(text: str) -> float:
     except ValueError:
         value = 0
     if not 0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"must be a number of seconds above 0 (got {text})")
+        raise argparse.ArgumentTypeError(f"must be a number of seconds above 0 and below 1e9 (got {text})")
     return value
 
 

@@ -115,7 +115,3 @@ class EventQueue(Generic[T]):
     def pop(self) -> T:
         """Takes the next event out."""
         return heappop(self.heap)[3]
-
-    def next_time(self) -> int | None:
-        """Returns the time of the next event [us], or None where nothing waits."""
-        return self.heap[0][0] if self.heap else None

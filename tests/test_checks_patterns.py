@@ -29,6 +29,7 @@ from actr3d.errors import ModelWarning
             "can never match: 'memory' has True or False in 'busy', with capital letters, and never 'true'",
         ),
         ("def p(eye='busy:!FALSE'): pass", "and never 'FALSE'; did you mean 'busy:!False'?"),
+        ("def p(memory='error:Ture'): pass", "and never 'Ture'; did you mean 'error:True'?"),
     ],
 )
 def test_what_can_never_match_is_said(body: str, message: str) -> None:
@@ -50,6 +51,8 @@ def test_what_can_never_match_is_said(body: str, message: str) -> None:
         "def p(memory='busy:True error:!False'): pass",
         "def init(): goal.set('done:true')\ndef p(goal='done:true'): pass",
         "def init():\n    self.eye.busy = 'true'\ndef p(eye='busy:true'): pass",
+        "def init():\n    self.eye.busy = 'tree'\ndef p(eye='busy:tree'): pass",
+        "def p(eye='busy:tired'): pass",
     ],
 )
 def test_what_can_match_is_let_be(body: str) -> None:

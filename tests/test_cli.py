@@ -2,12 +2,15 @@
 
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+import actr3d as actr3d_package
 from actr3d.cli import main
 
 COMMAND = [sys.executable, "-c", "import sys; from actr3d.cli import main; sys.exit(main(sys.argv[1:]))"]
@@ -157,6 +160,30 @@ def test_an_error_of_the_library_shows_the_modellers_line(tmp_path: Path) -> Non
     assert "actr3d/" not in done.stderr
 
 
+def test_an_error_while_matching_names_the_modellers_lines_and_the_production(tmp_path: Path) -> None:
+    source = (
+        "from python_actr import *\nclass Lamp(Model):\n    @property\n    def on(self):\n        return 1 / 0\n"
+        "class Agent(ACTR):\n    lamp = Lamp()\n    def p(lamp='on:1'):\n        pass\nAgent().run()\n"
+    )
+    done = run(tmp_path, source)
+    assert re.findall(r'File "(.*)", line (\d+)', done.stderr) == [("model.py", "10"), ("model.py", "5")]
+    assert done.stderr.endswith("ZeroDivisionError: division by zero\nin production 'p' (model.py:8) at 0 s\n")
+
+
+@pytest.mark.parametrize("folder", ["actr3d-models", "actr3d/models"])
+def test_a_model_beside_the_library_or_installed_with_it_is_no_part_of_it(tmp_path: Path, folder: str) -> None:
+    shutil.copytree(Path(actr3d_package.__file__).parent, tmp_path / "actr3d", ignore=shutil.ignore_patterns("__pycache__"))
+    model = tmp_path / folder / "model.py"
+    model.parent.mkdir()
+    model.write_text(ENDLESS.replace("print('on')", "1 / 0") + "display(model)\nmodel.run()\n")
+    done = subprocess.run(
+        [*COMMAND, "run", str(model)], cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(tmp_path)}
+    )
+    assert f"{model}:12: warning: display() opens no window here" in done.stderr
+    assert f'File "{model}", line 9, in on\n' in done.stderr
+    assert f'File "{tmp_path / "actr3d" / "actr"}' not in done.stderr
+
+
 def test_time_that_stands_still_is_an_error(tmp_path: Path) -> None:
     done = run(
         tmp_path, ENDLESS.replace("goal = Buffer()", "goal = Buffer(); production_time = 0").replace("print('on')", "pass") + "model.run()"
@@ -197,9 +224,9 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["run", "model.py", "--until", "-1"], "--until: must be a number of seconds above 0 (got -1)"),
-        (["run", "model.py", "--until", "nan"], "above 0 (got nan)"),
-        (["run", "model.py", "--until", "soon"], "above 0 (got soon)"),
+        (["run", "model.py", "--until", "-1"], "--until: must be a number of seconds above 0 and below 1e9 (got -1)"),
+        (["run", "model.py", "--until", "nan"], "above 0 and below 1e9 (got nan)"),
+        (["run", "model.py", "--until", "soon"], "above 0 and below 1e9 (got soon)"),
         (["run", "model.py", "--seed", "x"], "--seed: invalid int value: 'x'"),
         (["run", "model.py", "--trace", "much"], "--trace: invalid choice: 'much'"),
         (["run", "model.py", "--fast"], "unrecognized arguments: --fast"),

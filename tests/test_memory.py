@@ -25,7 +25,7 @@ def arrival(agent: Any, pattern: Any, **keys: Any) -> tuple[float, Any]:
     begin = agent.now()
     agent.memory.request(pattern, **keys)
     while agent.memory.busy:
-        wait = agent.sch.queue.next_time() - agent.sch.now_us
+        wait = agent.sch.queue.heap[0][0] - agent.sch.now_us
         agent.run(wait / 1_000_000)
     return agent.now() - begin, agent.buffer.chunk
 

@@ -6,22 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from boxes import Ball, Box, names
 
 from actr3d.actr import ACTR, Buffer, Model
 from actr3d.errors import SchedulerError
-
-
-class Ball(Model):
-    color = "red"
-
-
-class Box(Model):
-    ball = Ball()
-    sizes = [1, 2]
-
-
-def names(model: Model) -> list[str]:
-    return [part.name for part in model.get_children()]
 
 
 def test_class_attributes_become_each_instances_own() -> None:

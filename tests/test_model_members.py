@@ -8,22 +8,10 @@ import threading
 from typing import Any
 
 import pytest
+from boxes import Ball
 
 from actr3d.actr import Model
 from actr3d.errors import ModelWarning, SchedulerError
-
-
-class Ball(Model):
-    color = "red"
-
-
-class Box(Model):
-    ball = Ball()
-    sizes = [1, 2]
-
-
-def names(model: Model) -> list[str]:
-    return [part.name for part in model.get_children()]
 
 
 def test_what_cannot_be_copied_is_shared() -> None:

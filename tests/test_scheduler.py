@@ -7,22 +7,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from noting import Part, seen
+
 from actr3d.actr import Model
 from actr3d.actr.scheduler import Scheduler, Trigger
-
-
-class Part(Model):
-    """A model that notes what happens and when."""
-
-    def __init__(self) -> None:
-        self._seen: list[tuple[Any, float]] = []
-
-    def note(self, what: Any) -> None:
-        self._seen.append((what, self.now()))
-
-
-def seen(part: Any) -> list[Any]:
-    return part._seen
 
 
 def test_simultaneous_events_come_by_priority_then_in_order() -> None:

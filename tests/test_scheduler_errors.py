@@ -6,23 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from noting import Part, seen
 
 from actr3d.actr import Model
 from actr3d.errors import ModelWarning, SchedulerError
-
-
-class Part(Model):
-    """A model that notes what happens and when."""
-
-    def __init__(self) -> None:
-        self._seen: list[tuple[Any, float]] = []
-
-    def note(self, what: Any) -> None:
-        self._seen.append((what, self.now()))
-
-
-def seen(part: Any) -> list[Any]:
-    return part._seen
 
 
 @pytest.mark.parametrize(
@@ -80,7 +67,8 @@ def test_a_livelock_is_an_error_that_names_the_culprit() -> None:
         World().run(1)
 
 
-def test_run_inside_run_lets_time_pass_and_says_so() -> None:
+@pytest.mark.parametrize("traced", [False, True])
+def test_run_inside_run_lets_time_pass_and_says_so(traced: bool) -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             self.sch.add(lambda: self.note("other"), 0.6)
@@ -91,8 +79,11 @@ def test_run_inside_run_lets_time_pass_and_says_so() -> None:
             self.note("end")
 
     world = World()
-    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds"):
+    if traced:
+        world.traced()
+    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as said:
         world.run(3)
+    assert [w.filename for w in said] == [__file__]
     assert seen(world) == [("other", 0.6), ("after inner run", 1.1), ("end", 2.1)]
     assert world.now() == 3
 

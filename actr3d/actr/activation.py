@@ -40,7 +40,11 @@ class MemorySubModule(WithParameters):
         """Is told which chunks match a request."""
 
     def activation(self, chunk: Any) -> float:
-        """Returns this module's part of a chunk's activation."""
+        """Returns this module's part of a chunk's activation.
+
+        Raises:
+            ChunkError: If the module needs what only `memory.add` could have told it of the chunk.
+        """
         return 0
 
     def recalled(self, chunk: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from actr3d.actr.buffer import Buffer
@@ -120,11 +121,14 @@ def _assemble(lines: Sequence[str], tests: Sequence[Shape]) -> Maker:
     outer = [f"{name} = {place}" for name, place in given.items()]
     code = ["def make(buffers, readers, extras, MISSING, as_text, holds):", *(f"    {line}" for line in outer), "    def attempt():"]
     space: dict[str, Any] = {}
-    exec("\n".join([*code, *(f"        {line}" for line in lines), "    return attempt"]), space)
+    text = "\n".join([*code, *(f"        {line}" for line in lines), "    return attempt"])
+    exec(compile(text, _PLACE, "exec"), space)
     make = space["make"]
     return lambda buffers, readers, extras: make(buffers, readers, extras, MISSING, as_text, _holds)
 
 
+_PLACE = str(Path(__file__).with_name("<attempt>"))
+"""What tracebacks call such code: a place in the library, so that it is taken for no line of the modeller's."""
 _GIVEN = {"buffer": "buffers", "reader": "readers", "extra": "extras"}
 
 

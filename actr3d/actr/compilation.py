@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, cast
 
-from actr3d.actr.bodies import Body, Scope
 from actr3d.actr.parameters import named_parameters
 from actr3d.actr.pattern import Bindings, conditions
 from actr3d.actr.production import Production
+from actr3d.actr.production_body import Body, Scope
 from actr3d.actr.utility import PMNew, ProceduralSubModule
 
 

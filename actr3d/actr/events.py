@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
+from inspect import CO_GENERATOR
 from types import GeneratorType
 from typing import Any, Final, cast
 
@@ -109,3 +110,9 @@ class Event(Call):
         while generator is not None and isinstance(inner := generator.gi_yieldfrom, GeneratorType):
             generator = cast("GeneratorType[Any, Any, Any]", inner)
         return generator
+
+
+def makes_generator(func: Callable[..., Any]) -> bool:
+    """Tells whether a call gives a generator, also of a callable object."""
+    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)  # noqa: B004 - its code is wanted, not whether there is any
+    return code is not None and bool(code.co_flags & CO_GENERATOR)

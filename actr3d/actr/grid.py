@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import operator
 import sys
-import warnings
 from pathlib import Path
 from typing import Any, cast
 
 from actr3d.actr.grid_body import Body
 from actr3d.actr.model import Model, traceable
-from actr3d.errors import GridError, ModelWarning, did_you_mean
+from actr3d.errors import GridError, did_you_mean
+from actr3d.saying import warn_modeller
 
 COMPASS = ((0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1))
 """The steps (x, y) to the eight neighbours, clockwise from north; y grows downwards, as the lines of a map do."""
@@ -201,7 +201,7 @@ class World(Model):
             raise GridError(f"this agent stands in a world already, at {body._cell!r}")
         cell = self._cell_for(x, y, cell)
         if cell.wall:
-            warnings.warn(f"an agent is put into a wall, at ({cell.x}, {cell.y})", ModelWarning, stacklevel=2)
+            warn_modeller(f"an agent is put into a wall, at ({cell.x}, {cell.y})")
         self.agents.append(agent)
         self._bodies.append(body)
         if color is not None:

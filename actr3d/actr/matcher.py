@@ -119,7 +119,11 @@ class Matcher:
         result: list[Production] = []
         attempts = self._attempts
         for production in candidates:
-            bound = attempts[production]()
+            try:
+                bound = attempts[production]()
+            except Exception as error:
+                production.note(error)
+                raise
             if bound is not None:
                 production.bound = bound
                 result.append(production)
@@ -128,7 +132,11 @@ class Matcher:
 
     def matches(self, production: Production) -> bool:
         """Tells whether one production matches now; if so, it keeps what it bound."""
-        bound = self._attempts[production]()
+        try:
+            bound = self._attempts[production]()
+        except Exception as error:
+            production.note(error)
+            raise
         if bound is None:
             return False
         production.bound = bound

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.bodies import Body, Scope, compile_body
 from actr3d.actr.pattern import Bindings, conditions
+from actr3d.actr.production_body import Body, Scope, compile_body
 from actr3d.actr.rebinding import stored_names
 from actr3d.actr.sources import assigned_globals, function_node, has_file, place
 from actr3d.errors import PatternException, ProductionException, hint_for

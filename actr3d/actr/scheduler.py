@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Mapping, Sequence
 from heapq import heappop
-from inspect import CO_GENERATOR
 from typing import Any
 
-from actr3d.actr.events import AGAIN, Call, Event, Trigger
+from actr3d.actr.events import AGAIN, Call, Event, Trigger, makes_generator
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
 from actr3d.actr.waiting import wait, warn_of_none
 from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
-from actr3d.errors import ModelWarning, SchedulerError
+from actr3d.errors import SchedulerError
+from actr3d.saying import warn_modeller
 from actr3d.trace import Trace
 
 NEVER = 1 << 62
 """A time that does not come [us]."""
 STANDSTILL = 200_000
 """So many events without any time passing are an endless loop, not a model."""
-
-
 END = -9999999
 """The priority of a run's end: everything else of that moment comes before it."""
 FAR = 1e12
@@ -98,7 +95,7 @@ class Scheduler:
         if thread_safe:
             self._incoming.append((func, delay, args, keys, priority))
             return None
-        generator = func(*args, **(keys or {})) if _makes_generator(func) else None
+        generator = func(*args, **(keys or {})) if makes_generator(func) else None
         event = Event(func, args, keys, priority, generator)
         self.queue.push(self.after(delay, event), event, priority)
         return event
@@ -178,13 +175,26 @@ class Scheduler:
         Raises:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
-        end = until = None if duration is None else self._ends.after(self.now_us, duration)
-        bound = None
-        if self.limits is not None:
-            self._spend()
-            bound = self.limits.clip(self.now_us)
-            if bound is not None:
-                until = bound if until is None else min(until, bound)
+        end = None if duration is None else self._ends.after(self.now_us, duration)
+        if self.limits is None:
+            self._run_until(end, end)
+            return
+        self._spend(self.limits)
+        bound = self.limits.clip(self.now_us)
+        try:
+            self._run_until(end, end if bound is None else bound if end is None else min(bound, end))
+        finally:
+            self._spend(self.limits)
+            if bound is not None and self.now_us >= bound and (end is None or end > bound):
+                self.limits.cut(self.now_us)
+
+    def _spend(self, limits: RunLimits) -> None:
+        """Lets the limits know how much time has passed."""
+        limits.spend(self.now_us - self._spent_us)
+        self._spent_us = self.now_us
+
+    def _run_until(self, end: int | None, until: int | None) -> None:
+        """Runs up to a time [us], if any, that is the run's own end or comes before it."""
         self.stop_flag = False
         heap = self.queue.heap
         idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
@@ -195,15 +205,11 @@ class Scheduler:
                 self.queue.pop()
         if until is not None and idle:
             self._advance(until)
-            if self.limits is not None:
-                self._spend(bound, end)
             return
         if self._running:
-            warnings.warn(
+            warn_modeller(
                 f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
-                "to let time pass, yield a number of seconds",
-                ModelWarning,
-                stacklevel=3,
+                "to let time pass, yield a number of seconds"
             )
         before, self._running = self._running, True
         try:
@@ -212,16 +218,6 @@ class Scheduler:
                 self._advance(until)
         finally:
             self._running = before
-            if self.limits is not None:
-                self._spend(bound, end)
-
-    def _spend(self, bound: int | None = None, end: int | None = None) -> None:
-        """Lets the limits know how much time has passed, and whether their bound came before the run's own end [us]."""
-        if self.limits is not None:
-            self.limits.spend(self.now_us - self._spent_us)
-            self._spent_us = self.now_us
-            if bound is not None and self.now_us >= bound and (end is None or end > bound):
-                self.limits.cut(self.now_us)
 
     def _end(self, run_number: int) -> None:
         """Ends the run that asked for it; one that was stopped before leaves this without effect."""
@@ -315,9 +311,3 @@ class Scheduler:
         for parent in event.parents:
             self.queue.push(self.now_us, parent, parent.priority)
         event.parents = []
-
-
-def _makes_generator(func: Callable[..., Any]) -> bool:
-    """Tells whether a call gives a generator, also of a callable object."""
-    code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)  # noqa: B004 - its code is wanted, not whether there is any
-    return code is not None and bool(code.co_flags & CO_GENERATOR)

@@ -1,6 +1,6 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
-from actr3d.world.bodies import Car, Load, Mannequin
+from actr3d.world.bodies import Car, ImportedBody, Load, Mannequin
 from actr3d.world.body import Body, BodyState
 from actr3d.world.bounding_box import BoundingBox
 from actr3d.world.imported import Imported
@@ -17,6 +17,7 @@ __all__ = [
     "Car",
     "Floor",
     "Imported",
+    "ImportedBody",
     "Load",
     "Loose",
     "Mannequin",

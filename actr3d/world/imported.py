@@ -94,6 +94,10 @@ class Imported(Configuration):
         """What stands before each name of the file in the scene."""
         return f"{self.name}_"
 
+    def roots(self) -> tuple[str, ...]:
+        """Returns the names in the file of the bodies that stand in the world itself; empty for one without a name."""
+        return tuple(body.name for body in _specification(_document(self.files or ()), self.free).worldbody.bodies)
+
     def add_to(self, mj_spec: MjSpec) -> None:
         """Attaches it, turned and placed."""
         frame = mj_spec.worldbody.add_frame(pos=self.position, quat=orientation("", self.heading, self.quaternion))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.buffer import Buffer
@@ -109,17 +110,18 @@ def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
 
 
 def _check_state(production: Production, condition: Condition, target: object) -> None:
-    """Warns where a state that is True or False is compared with these words in other letters."""
+    """Warns where a state that is True or False is compared with a word that is nearly one of these."""
     wanted = condition.value
-    if condition.op in ("is", "not") and wanted.capitalize() in ("True", "False") and wanted.capitalize() != wanted:
-        found = plain_value(target, condition.key)
-        if isinstance(found, bool) and wanted not in vocabulary(production.original_func).mentioned:
-            what = f"'{condition.name}' has True or False in '{condition.key}', with capital letters, and never '{wanted}'"
-            meant = f"; did you mean '{condition.key}:{'!' if condition.op == 'not' else ''}{wanted.capitalize()}'?"
-            if condition.op == "is":
-                _never(production, what + meant)
-            else:
-                _say(production, what + meant)
+    if condition.op not in ("is", "not"):
+        return
+    meant = get_close_matches(str(wanted).capitalize(), ("True", "False"), n=1, cutoff=SURE)
+    if not meant or wanted in meant or wanted in vocabulary(production.original_func).mentioned:
+        return
+    if isinstance(plain_value(target, condition.key), bool):
+        sign = "!" if condition.op == "not" else ""
+        what = f"'{condition.name}' has True or False in '{condition.key}', with capital letters, and never '{wanted}'"
+        say = _say if sign else _never
+        say(production, f"{what}; did you mean '{condition.key}:{sign}{meant[0]}'?")
 
 
 def _never(production: Production, why: str) -> None:

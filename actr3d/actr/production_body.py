@@ -99,21 +99,13 @@ def compile_body(
     Raises:
         ProductionException: If the body contains `yield`, or cannot be compiled.
     """
+    names = _names_of(tuple(statements))
     around = cells(func)
     if for_python_actr(func.__globals__):
         # There, a body does not see its file: what Python itself names so is meant, whatever the file calls by that name.
-        context = {**{n: BUILTINS[n] for n in _names_of(tuple(statements)) if n in BUILTINS}, **context}
-    seen = {n for n in _names_of(tuple(statements)) if n in context or n in around}
-    # Thousands of agents of one class differ in what their names mean, not in their code.
-    places = tuple((statement.lineno, statement.col_offset) for statement in statements)
-    key = (func.__code__, func.__code__.co_filename, func.__qualname__, name, places, tuple(bound), frozenset(seen), more_bound)
-    made = _CODES.get(key)
-    if made is None:
-        _refuse_waiting(statements, name, func.__code__.co_filename)
-        if len(_CODES) >= MOST_CODES:
-            _CODES.clear()
-        made = _CODES[key] = _compile(statements, func, name, bound, seen, more_bound)
-    code, given = made
+        context = {**{n: BUILTINS[n] for n in names if n in BUILTINS}, **context}
+    seen = frozenset(n for n in names if n in context or n in around)
+    code, given = _code_of(statements, func, name, tuple(bound), seen, more_bound)
     space: dict[str, Any] = {}
     exec(code, func.__globals__, space)
     body: FunctionType = space["__make__"](*(context.get(n) for n in given))
@@ -133,8 +125,23 @@ def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
     return used_names(statements)
 
 
+def _code_of(
+    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: tuple[str, ...], seen: frozenset[str], more_bound: bool
+) -> tuple[CodeType, Sequence[str]]:
+    """Returns what `_compile` makes, once for all agents of a class: they differ in what their names mean, not in their code."""
+    places = tuple((statement.lineno, statement.col_offset) for statement in statements)
+    key = (func.__code__, func.__code__.co_filename, func.__qualname__, name, places, bound, seen, more_bound)
+    made = _CODES.get(key)
+    if made is None:
+        _refuse_waiting(statements, name, func.__code__.co_filename)
+        if len(_CODES) >= MOST_CODES:
+            _CODES.clear()
+        made = _CODES[key] = _compile(statements, func, name, bound, seen, more_bound)
+    return made
+
+
 def _compile(
-    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: set[str], more_bound: bool
+    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: Iterable[str], more_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
     """Compiles a function that takes what the body is given by name, and returns the body as a function; and those names."""
     filename = func.__code__.co_filename

@@ -1,0 +1,66 @@
+"""Bodies from files: a mind can live in them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from living import near
+
+from actr3d.errors import WorldError
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, ImportedBody, Loose, Scene, World
+
+ARM = """<mujoco>
+  <worldbody><body name="stand" pos="0 0 1"><geom size="0.1"/>
+    <body name="arm"><joint name="elbow" axis="0 0 1" damping="10" range="-60 60" limited="true"/>
+      <geom type="capsule" fromto="0 0 0 0.5 0 0" size="0.05"/><site name="tip" pos="0.6 0 0"/></body>
+  </body></worldbody>
+  <actuator><position name="turn" joint="elbow" kp="50"/></actuator>
+</mujoco>"""
+ROBOT = """<robot name="r"><link name="body"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><box size="1 2 3"/></geometry></collision></link></robot>"""
+
+
+def arm(heading: float = 0.0) -> ImportedBody:
+    return ImportedBody(name="arm", text=ARM, eye="tip", heading=heading)
+
+
+def test_what_the_file_has_is_found() -> None:
+    world = World(Scene(parts=(Floor(), arm(), Loose(name="ball", shape="sphere", size=(0.2,)))))
+    body = world.bodies["arm"]
+    assert body.parts == ("base", "arm")
+    assert list(body.joints) == ["elbow"]
+    assert (body.joints["elbow"].limits, body.eye) == (near((-math.pi / 3, math.pi / 3)), "arm_tip")
+    body.set("control", "turn", 0.5)
+    world.step(1000)
+    assert body.joints["elbow"].position == near(0.5, abs=0.01)
+    assert body.bounding_box().size[2] == near(0.2)
+
+
+def test_it_sees_along_its_eye() -> None:
+    scene = Scene(parts=(Floor(), arm(heading=1.0), Loose(name="ball", shape="sphere", size=(0.2,), position=(0, 3, 1), mass=None)))
+    body = World(scene).bodies["arm"]
+    view = body.get("view", rows=1)
+    assert [len(extents) for extents in view.as_dict()[0.5].values()] == [1]
+
+
+def test_a_robot_of_urdf_is_a_body_too_and_falls_when_it_is_free() -> None:
+    world = World(Scene(parts=(Floor(), ImportedBody(name="r", text=ROBOT, free=True, position=(0, 0, 3)))))
+    world.step(1000)
+    assert world.bodies["r"].get("pose").z == near(1.5, abs=0.01)
+
+
+def test_a_simulation_takes_it() -> None:
+    simulation = Simulation(Scene(parts=(Floor(), arm())), seed=1)
+    simulation.command("control", "turn", 0.3)
+    simulation.run(2)
+    assert simulation.world.bodies["arm"].joints["elbow"].position == near(0.3, abs=0.01)
+
+
+def test_scenery_is_no_body() -> None:
+    with pytest.raises(WorldError, match=r"needs one root body, with a name \(there is none\); use Imported for scenery"):
+        ImportedBody(name="s", text="<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
+    with pytest.raises(WorldError, match="there is one without a name"):
+        ImportedBody(name="s", text="<mujoco><worldbody><body><geom size='1'/></body></worldbody></mujoco>")
