@@ -1,4 +1,4 @@
-# seeds: 1 2 3
+# seeds: 1 2
 # compile + PMNew + noise; compiled rules named
 from python_actr import *
 class A(ACTR):

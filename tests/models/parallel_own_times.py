@@ -1,4 +1,4 @@
-# seeds: 1 2 3 4
+# seeds: 1 2
 # parallel systems with own times, own buffers, in a subclass; priorities
 from python_actr import *
 log=log()

@@ -1,4 +1,4 @@
-# seeds: 1 2 3
+# seeds: 1 3
 # environment moves many objects; SOSVision with delay whose object goes away during the delay; Models as chunks in memory
 import ccm
 from ccm.lib.actr import *

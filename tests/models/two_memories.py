@@ -1,4 +1,4 @@
-# seeds: 1 2 3
+# seeds: 1 2
 # rehearsal loop with base level + forgetting, RT printouts of seven decimals, request within request, cancel pending
 from python_actr import *
 log=log()

@@ -1,4 +1,4 @@
-# seeds: 1 2 3
+# seeds: 1 2
 # production utilities with PGC set/lock, mixed rewards, and all PMs printed
 from python_actr import *
 log=log()
