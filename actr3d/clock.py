@@ -86,8 +86,8 @@ class Ends:
         return end
 
 
-SUMS_STRAY = 1e-4
-"""A sum of delays that is farther from its event's time than this [s] no longer says which of two events comes first."""
+STRAY_US = 100
+"""A sum of delays that is farther from its event's time than this [us] no longer says which of two events comes first."""
 
 
 class EventQueue(Generic[T]):
@@ -122,9 +122,11 @@ class EventQueue(Generic[T]):
         if self.first_come:
             heappush(self.heap, (time, -priority, next(self._serials), event))
             return
-        total = self.sum + delay
-        if not -SUMS_STRAY < total - time / MICROSECONDS < SUMS_STRAY:
-            total = time / MICROSECONDS
+        total = self.sum
+        if delay:
+            total += delay
+            if not -STRAY_US < total * MICROSECONDS - time < STRAY_US:
+                total = time / MICROSECONDS
         heappush(self.heap, (time, total, -priority, event))
 
     def pop(self) -> T:

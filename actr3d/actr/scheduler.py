@@ -110,7 +110,7 @@ class Scheduler:
 
     def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
         """Schedules such a call at a time [us] that `after` gave."""
-        self.queue.push(time, Call(call, args), 0, seconds(time - self.now_us))
+        self.queue.push(time, Call(call, args), 0, (time - self.now_us) / MICROSECONDS)
 
     def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
