@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from itertools import count, repeat
+from itertools import count
 from math import isfinite
 from typing import Generic, TypeVar
 
@@ -86,6 +86,10 @@ class Ends:
         return end
 
 
+STRAY_US = 100
+"""A sum of delays that is farther from its event's time than this [us] no longer says which of two events comes first."""
+
+
 class EventQueue(Generic[T]):
     """Holds events ordered by (time, -priority, serial).
 
@@ -93,25 +97,44 @@ class EventQueue(Generic[T]):
     simultaneous events have one defined order.
 
     Args:
-        first_come: Whether equals come in the order they were put in. Without it they come as the heap has them, which
-            is defined too, though harder to foresee: it is the order that models written for python_actr know. Events
-            are compared then, and must say that none is less than another.
+        first_come: Whether equals come in the order they were put in. Without it they come as models written for
+            python_actr know it, which is defined too, though harder to foresee: its clock adds delays up as floating
+            point numbers, so that 20 times 0.05 s comes just after 1 s. Events of one microsecond are put in order by
+            these sums, then by priority, and then as the heap has them. Events are compared for that, and must say that
+            none is less than another.
     """
 
-    __slots__ = ("_serials", "first_come", "heap")
+    __slots__ = ("_serials", "first_come", "heap", "sum")
 
     def __init__(self, first_come: bool = True) -> None:
-        self.heap: list[tuple[int, float, int, T]] = []
+        self.heap: list[tuple[int, float, float, T]] = []
+        """Each event with its time [us], minus its priority and its serial; with its sum [s] and minus its priority instead."""
         self.first_come = first_come
-        self._serials = count(1) if first_come else repeat(0)
+        self.sum = 0.0
+        """The present as a sum of delays [s]."""
+        self._serials = count(1)
 
     def __len__(self) -> int:
         return len(self.heap)
 
-    def push(self, time: int, event: T, priority: float = 0) -> None:
-        """Puts an event in, at `time` [us]."""
-        heappush(self.heap, (time, -priority, next(self._serials), event))
+    def push(self, time: int, event: T, priority: float = 0, delay: float = 0.0) -> None:
+        """Puts an event in, at `time` [us], which is `delay` [s] from now."""
+        if self.first_come:
+            heappush(self.heap, (time, -priority, next(self._serials), event))
+            return
+        total = self.sum
+        if delay:
+            total += delay
+            if not -STRAY_US < total * MICROSECONDS - time < STRAY_US:
+                total = time / MICROSECONDS
+        heappush(self.heap, (time, total, -priority, event))
 
     def pop(self) -> T:
-        """Takes the next event out."""
-        return heappop(self.heap)[3]
+        """Takes the next event out; its time is the present."""
+        _, self.sum, _, event = heappop(self.heap)
+        return event
+
+    def take(self) -> tuple[int, float, T]:
+        """Takes the next event out, and returns its time [us], its priority, and itself."""
+        time, first, second, event = heappop(self.heap)
+        return time, -(first if self.first_come else second), event

@@ -49,6 +49,30 @@ def test_events_come_by_time_then_priority_then_order(events: list[tuple[int, in
     assert not queue.heap
 
 
+@given(st.lists(st.tuples(st.sampled_from([0.05, 0.1, 0.15, 0.3, 1.0]), st.integers(-2, 2)), min_size=1, max_size=30))
+def test_in_the_old_order_sums_of_delays_come_before_priorities(delays: list[tuple[float, int]]) -> None:
+    queue: EventQueue[tuple[float, int]] = EventQueue(first_come=False)
+    expected: list[tuple[float, int]] = []
+    now, time = 0.0, 0
+    for delay, priority in delays:
+        for part in (delay / 2, delay):
+            queue.push(time + microseconds(part), (now + part, -priority), priority, part)
+            expected.append((now + part, -priority))
+        now, time = now + delay, time + microseconds(delay)
+        queue.sum = now
+    assert [queue.pop() for _ in expected] == sorted(expected)
+    assert queue.sum == max(expected)[0]
+
+
+def test_a_sum_that_is_far_from_its_time_counts_no_more() -> None:
+    queue: EventQueue[int] = EventQueue(first_come=False)
+    queue.push(1_000, 1, 0, 0.0012)  # its time has been made a whole millisecond
+    queue.push(1_000, 2, 1, 0.0011)
+    assert queue.take() == (1_000, 1, 2)
+    queue.pop()
+    assert queue.sum == 0.001
+
+
 @given(
     st.lists(st.one_of(st.fractions(0, 2), st.floats(0, 2), st.sampled_from([1 / 30, 1 / 3, 0.01, 0.07])), max_size=60), st.integers(1, 40)
 )

@@ -9,6 +9,7 @@ import pytest
 from boxes import Ball, Box, names
 
 from actr3d.actr import ACTR, Buffer, Model
+from actr3d.actr.loading import load_text
 from actr3d.errors import SchedulerError
 
 
@@ -76,6 +77,35 @@ def test_children_come_in_alphabetical_order_then_as_they_were_added() -> None:
     world.m = Ball()
     world.b = Ball()
     assert names(world) == ["a", "z", "m", "b"]
+
+
+OLD_WORLD = """
+from python_actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('go')
+    def go(goal='go'):
+        goal.set('stop')
+class World(Model):
+    pass
+world = World()
+world.agent = Agent()
+world.ball = Model()
+"""
+
+
+def test_the_first_part_is_overlooked_in_models_for_python_actr_but_traced_as_any_other() -> None:
+    world: Any = load_text(OLD_WORLD).world
+    assert names(world) == ["ball"]
+    trace = world.traced()
+    world.run(1)
+    assert [event.source for event in trace if event.kind == "fire"] == ["agent"]
+    agent = world.agent
+    agent.parent = None
+    world.actor = agent
+    assert names(world) == ["ball", "actor"]
+    assert names(load_text(OLD_WORLD.replace("python_actr", "actr3d.actr")).world) == ["agent", "ball"]
 
 
 def test_deep_trees_have_one_clock_and_dotted_names() -> None:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from random import Random
+
+import pytest
 
 from actr3d.actr.limits import RunLimits
-from actr3d.actr.loading import run_text
+from actr3d.actr.loading import load_text, run_text
 from actr3d.trace import Trace
 
 ROOT = Path(__file__).parent.parent
@@ -70,6 +73,66 @@ def test_a_thousand_seeds_give_the_same_bytes_twice() -> None:
     again = [trace(seed) for seed in SEEDS]
     assert [seed for seed in SEEDS if once[seed] != again[seed]] == []
     assert len(set(once)) == len(SEEDS)  # noise leaves no two runs alike
+
+
+CLOCKED = """
+from python_actr import *
+
+class World(Model):
+    def start(self):
+        while True:
+            yield 0.1
+            self.tick = self.now()
+
+class Agent(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, latency=0.21, threshold=-2)
+    level = DMBaseLevel(memory)
+    noise = DMNoise(memory, noise=0.3)
+
+    def init():
+        for i in range(6):
+            memory.add('fact %d' % i)
+        goal.set('ask')
+
+    def ask(goal='ask'):
+        memory.request('fact ?', require_new=True)
+        goal.set('wait')
+
+    def found(goal='wait', retrieval='fact ?x', memory='busy:False'):
+        memory.add('fact ?x')
+        retrieval.clear()
+        goal.set('ask')
+
+    def lost(goal='wait', memory='error:True'):
+        goal.set('ask')
+"""
+
+
+@pytest.mark.parametrize("library", ["python_actr", "actr3d.actr"])
+def test_a_run_in_pieces_is_the_run_in_one(library: str) -> None:
+    module = load_text(CLOCKED.replace("python_actr", library))
+
+    def events(pieces: list[float]) -> list[tuple[int, str, str, str]]:
+        with RunLimits(seed=7):
+            world = module.World()
+            world.agent = module.Agent()
+            trace = world.traced()
+            for piece in pieces:
+                world.run(piece)
+        assert world.now() == 10.003
+        return [(event.time, event.source, event.kind, str(event.data)) for event in trace if event.kind not in ("run", "stop")]
+
+    once = events([10.003])
+    assert len(once) > 500
+    assert events([0.01] * 1000 + [0.003]) == once
+    for seed in range(5):
+        numbers = Random(seed)
+        pieces: list[int] = []
+        while (left := 10_003_000 - sum(pieces)) > 0:
+            pieces.append(min(left, numbers.choice([0, 1, 10_000, 333_333, numbers.randrange(1, 200_000)])))
+        assert events([piece / 1_000_000 for piece in pieces]) == once
 
 
 def test_the_command_prints_the_same_bytes_twice() -> None:

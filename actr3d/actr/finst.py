@@ -46,15 +46,15 @@ class Finst:
         if self.size == 0:
             return
         sch = self.parent.sch
-        end = sch.after(self.time)
         if sch.queue.first_come:
+            end = sch.after(self.time)
             self._bring_up_to_date()
             self._mark(obj)
             self._expect(obj, end)
             self._watch(end)
         else:
             self._mark(obj)
-            sch.call_at(end, self.remove, (obj,))
+            sch.call_after(self.time, self.remove, (obj,))
 
     def add_after(self, obj: Any) -> None:
         """Marks a thing once the present event is over: what a production still asks for does not see the mark.

@@ -241,7 +241,7 @@ def _body_of(agent: Model) -> Body:
     if isinstance(agent, Body):
         return agent
     given = agent.__dict__.get("body")
-    for part in (given, *agent.get_children()):
+    for part in (given, *agent._members()):
         if isinstance(part, Body):
             return part
     if given is not None:

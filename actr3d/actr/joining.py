@@ -23,13 +23,21 @@ class Joining(TracedPart):
         """Takes the model out of its parent's children; a trace knows it by its old path for as long as it has no new one."""
         self._keep_path()
         siblings = parent.__dict__.get("_children", {})
+        if parent.__dict__.get("_overlooked") is self:
+            del parent.__dict__["_overlooked"]
         for name in [name for name, part in siblings.items() if part is self]:
             del siblings[name]
             if parent._converted:
                 parent._trace_member("removed", name, self)
 
-    def _take_in(self, key: str, value: Model) -> bool:
-        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor; tells whether it did."""
+    def _take_in(self, key: str, value: Model, *, overlooked: bool = False) -> bool:
+        """Makes a model that was set as an attribute a child, unless it has a parent or is an ancestor; tells whether it did.
+
+        Args:
+            key: The attribute's name.
+            value: The model.
+            overlooked: Whether `get_children` is to leave it out, and chunks made of it the name it is set under.
+        """
         if value.__dict__.get("parent") is not None or any(above is value for above in self._line()):
             return False
         apart = value._converted and value.sch is not self.sch
@@ -37,8 +45,13 @@ class Joining(TracedPart):
         replaced = self.__dict__.get("_children", {}).get(key)
         value._note_move(self.sch)
         value.parent = cast("Model", self)
-        value._call_joined(key)
+        if not overlooked:
+            value._call_joined(key)
+        elif "name" not in value.__dict__:
+            value._call(key)
         self._adopted(key, value)
+        if overlooked:
+            self.__dict__["_overlooked"] = value
         value._forget_place()
         if replaced is not None:
             self._trace_member("removed", key, replaced)

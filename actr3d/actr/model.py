@@ -119,7 +119,7 @@ class Model(Joining):
             self.start()
         for key, value in list(own.items()):
             if key[0] != "_" and key != "parent" and isinstance(value, Model) and not value._converted:
-                self._take_in(key, value)
+                self._take_in(key, value, overlooked=not self.sch.queue.first_come)
         limits = RunLimits.current()
         if parent is None and limits is not None and limits.trace is not None:
             self._attach_trace(limits.trace)

@@ -97,17 +97,17 @@ class Scheduler:
             return None
         generator = func(*args, **(keys or {})) if makes_generator(func) else None
         event = Event(func, args, keys, priority, generator)
-        self.queue.push(self.after(delay, event), event, priority)
+        self.queue.push(self.after(delay, event), event, priority, float(delay))
         return event
 
     def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
         """Schedules a plain call of the library's own, which returns None."""
         event = Call(call, args)
-        self.queue.push(self.after(delay, event), event)
+        self.queue.push(self.after(delay, event), event, 0, delay)
 
     def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
         """Schedules such a call at a time [us] that `after` gave."""
-        self.queue.push(time, Call(call, args))
+        self.queue.push(time, Call(call, args), 0, (time - self.now_us) / MICROSECONDS)
 
     def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
@@ -152,9 +152,9 @@ class Scheduler:
     def take_over(self, other: Scheduler) -> None:
         """Takes everything over from another scheduler: its events, who waits there for a name, what other threads have added."""
         while other.queue.heap:
-            time, priority, _, event = other.queue.heap[0]
-            other.queue.pop()
-            self.queue.push(max(time, self.now_us), event, -priority)
+            time, priority, event = other.queue.take()
+            time = max(time, self.now_us)
+            self.queue.push(time, event, priority, seconds(time - self.now_us))
         for name, trigger in other._named.items():
             self.named(name).waiting += trigger.waiting
         self._incoming += other._incoming
@@ -176,13 +176,14 @@ class Scheduler:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
         """
         end = None if duration is None else self._ends.after(self.now_us, duration)
+        length = float(duration or 0)
         if self.limits is None:
-            self._run_until(end, end)
+            self._run_until(end, end, length)
             return
         self._spend(self.limits)
         bound = self.limits.clip(self.now_us)
         try:
-            self._run_until(end, end if bound is None else bound if end is None else min(bound, end))
+            self._run_until(end, end if bound is None else bound if end is None else min(bound, end), length)
         finally:
             self._spend(self.limits)
             if bound is not None and self.now_us >= bound and (end is None or end > bound):
@@ -193,18 +194,19 @@ class Scheduler:
         limits.spend(self.now_us - self._spent_us)
         self._spent_us = self.now_us
 
-    def _run_until(self, end: int | None, until: int | None) -> None:
-        """Runs up to a time [us], if any, that is the run's own end or comes before it."""
+    def _run_until(self, end: int | None, until: int | None, length: float) -> None:
+        """Runs up to a time [us], if any, that is the run's own end, `length` [s] from now, or comes before it."""
+        total = self.queue.sum + length
         self.stop_flag = False
         heap = self.queue.heap
         idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
         if end is not None and not self.queue.first_come:
             self._run_number += 1
-            self.queue.push(end, Call(self._end, (self._run_number,)), END)
+            self.queue.push(end, Call(self._end, (self._run_number,)), END, length)
             if idle:
                 self.queue.pop()
         if until is not None and idle:
-            self._advance(until)
+            self._advance(until, total)
             return
         if self._running:
             warn_modeller(
@@ -215,7 +217,7 @@ class Scheduler:
         try:
             self._run_events(until)
             if until is not None and not self.stop_flag and until > self.now_us:
-                self._advance(until)
+                self._advance(until, total)
         finally:
             self._running = before
 
@@ -226,7 +228,8 @@ class Scheduler:
 
     def _run_events(self, until: int | None) -> None:
         """Lets what is queued happen, until nothing is left up to then, or the run is stopped."""
-        heap = self.queue.heap
+        queue = self.queue
+        heap = queue.heap
         end = NEVER if until is None else until
         still = 0
         while not self.stop_flag:
@@ -242,7 +245,7 @@ class Scheduler:
                 if still > STANDSTILL:
                     raise self._standstill(heap[0][3])
             self.step += 1
-            event = heappop(heap)[3]
+            _, queue.sum, _, event = heappop(heap)
             if isinstance(event, Event):
                 self._happen(event)
             else:
@@ -268,7 +271,7 @@ class Scheduler:
             self.finish(event)
             return
         if type(result) is float:
-            self.queue.push(self.after(result, event), event, event.priority)
+            self.queue.push(self.after(result, event), event, event.priority, result)
         elif type(result) is Trigger:
             result.waiting.append(event)
         elif result is AGAIN:
@@ -301,8 +304,10 @@ class Scheduler:
             return False
         return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self._incoming
 
-    def _advance(self, time: int) -> None:
+    def _advance(self, time: int, total: float) -> None:
+        """Lets time pass without events, until then [us], which is also a sum of delays [s]."""
         self.now_us = time
+        self.queue.sum = total
         LOG.time_us = time
 
     def finish(self, event: Event) -> None:

@@ -48,7 +48,16 @@ class Part:
     _children: dict[str, Model]
 
     def get_children(self) -> list[Model]:
-        """Returns the models that are this one's parts, in the order they came."""
+        """Returns the models that are this one's parts, in the order they came.
+
+        For models written for python_actr, without the one that brought this one to life by joining it: python_actr 1.9.5
+        overlooks it, so its visions do too.
+        """
+        overlooked = self.__dict__.get("_overlooked")
+        return [part for part in self._members() if part is not overlooked]
+
+    def _members(self) -> list[Model]:
+        """Returns all models that are this one's parts, in the order they came."""
         return list(self.__dict__.get("_children", {}).values())
 
     def _adopted(self, name: str, child: Model) -> None:
@@ -66,7 +75,7 @@ class Part:
     def _tree(self) -> Iterator[Any]:
         """Yields the model and everything below it."""
         yield self
-        for child in self.get_children():
+        for child in self._members():
             yield from child._tree()
 
     @cached_property

@@ -27,7 +27,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         SchedulerError: If it cannot be waited for: it is of no such kind, nothing is in it, or its delay is no time.
     """
     if isinstance(result, (int, float)):
-        sch.queue.push(sch.after(result, event), event, event.priority)
+        sch.queue.push(sch.after(result, event), event, event.priority, result)
     elif isinstance(result, dict):
         _wait_as(sch, event, cast("dict[str, Any]", result))
     elif isinstance(result, (Trigger, str)):
@@ -48,7 +48,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
     elif hasattr(result, "default_trigger"):
         wait(sch, event, result.default_trigger)
     elif isinstance(result, Real):  # a number of another kind, such as numpy's
-        sch.queue.push(sch.after(float(result), event), event, event.priority)
+        sch.queue.push(sch.after(float(result), event), event, event.priority, float(result))
     else:
         raise SchedulerError(
             f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
@@ -80,7 +80,8 @@ def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
     if not isinstance(priority, (int, float)):
         raise SchedulerError(f"{event.describe()}: a priority must be a number (got {priority!r})")
     event.priority = priority
-    sch.queue.push(sch.after(how.get("delay", 0), event), event, priority)
+    delay = how.get("delay", 0)
+    sch.queue.push(sch.after(delay, event), event, priority, float(delay))
 
 
 def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:
