@@ -17,6 +17,8 @@ ROOT = GOLDEN.parent.parent
 MODELS = ROOT / "models"
 IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tutorial/parallel_system", "tutorial/two_agents"}
 """The models whose golden traces hold every event; those of the others, which are long, hold productions and buffers."""
+EMBODIED = {"doorway"}
+"""Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
 
 
 def model_names() -> list[str]:
@@ -31,7 +33,8 @@ def golden_names() -> list[str]:
 
 def options(name: str, seed: int = 1) -> tuple[str, ...]:
     """Returns how a model's golden trace is made."""
-    return ("--seed", str(seed), "--trace", "all" if name in IN_FULL else "buffer", "--json")
+    level = "all" if name in IN_FULL else "production" if name in EMBODIED else "buffer"
+    return ("--seed", str(seed), "--trace", level, "--json")
 
 
 def golden_file(name: str) -> Path:

@@ -1,0 +1,102 @@
+"""Walks through a doorway, and turns the shoulders where they would not fit otherwise.
+
+The mind walks its body towards a doorway 7 m away. Every 100 ms it looks: the view has the edges of what is visible, without
+names. Beside the middle of the screen it finds the nearest edge to the left and to the right, and from their distances
+and angles how wide the gap is. At 1.5 m it decides: a gap narrower than 1.3 times its shoulders is passed sideways (Warren
+and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it turns back and stops.
+
+Expect: with `width=0.5` it turns, and passes without a touch; with `width=0.8` it walks straight on. Try
+`--set width=0.6 --set speed=2`, or a width that is too narrow even for a body turned sideways.
+"""
+
+from dataclasses import dataclass
+from math import radians, sin
+from typing import Annotated
+
+from annotated_types import Gt, Le
+
+from actr3d.actr import *
+from actr3d.configuration import Configuration
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+SHOULDERS = 0.45
+SIDEWAYS = {"pelvis_yaw": 0.6, "torso_yaw": 0.75}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(Configuration):
+    """What may be set."""
+
+    width: Annotated[float, Gt(0), Le(3)] = 0.5
+    """The free width of the doorway [m]."""
+
+    speed: Annotated[float, Gt(0), Le(3)] = 1.2
+    """How fast it walks [m/s]."""
+
+
+class Walker(ACTR):
+    goal = Buffer()
+    seen = Buffer()
+    felt = Buffer()
+    eye = BodyPort(seen)
+    skin = BodyPort(felt)
+    speed = 1.2
+
+    def init():
+        goal.set("approach")
+        eye.set("walk", self.speed)
+
+    def look(goal="approach", seen=None, eye="busy:False"):
+        eye.request("view")
+
+    def judge(goal="approach", seen="view"):
+        gap = self.gap(seen["seen"])
+        seen.clear()
+        if gap is not None:
+            width, distance = gap
+            if distance < 1.5:
+                goal.set("turn" if width < 1.3 * SHOULDERS else "pass")
+                print(f"{self.now():.2f} s: a gap of {width:.2f} m")
+
+    def gap(self, view):
+        """Returns how wide the gap ahead is and how far away [m], as the middle row of the view tells; None without one."""
+        middle = view.as_array()[view.as_array()["row"] == view.rows // 2]
+        left, right = middle[middle["x2"] < 0.5], middle[middle["x1"] > 0.5]
+        if len(left) == 0 or len(right) == 0:
+            return None
+        _, distance, angle = max((x, d, a) for x, d, a in zip(left["x2"], left["d2"], left["a2"]))
+        _, further, wider = min((x, d, a) for x, d, a in zip(right["x1"], right["d1"], right["a1"]))
+        return distance * sin(radians(angle)) + further * sin(radians(wider)), min(distance, further)
+
+    def turn(goal="turn"):
+        print(f"{self.now():.2f} s: turns")
+        eye.set("posture", SIDEWAYS, speed=3.0)
+        goal.set("pass")
+
+    def feel(goal="pass", felt=None, skin="busy:False"):
+        skin.request("pose")
+
+    def walk_on(goal="pass", felt="pose x:?x"):
+        felt.clear()
+        if float(x) > 8:
+            goal.set("behind")
+
+    def stop_behind(goal="behind"):
+        eye.set("posture", {joint: 0.0 for joint in SIDEWAYS}, speed=3.0)
+        eye.set("stop")
+        print(f"{self.now():.2f} s: is through")
+        goal.set("done")
+        self.stop()
+
+
+def build(parameters: Parameters) -> Simulation:
+    """Puts a walker in front of a doorway."""
+
+    def mind():
+        walker = Walker()
+        walker.speed = parameters.speed
+        return walker
+
+    scene = Scene(parts=(Floor(), Aperture(width=parameters.width), Mannequin(name="walker", shoulder_width=SHOULDERS)))
+    return Simulation(scene, {"walker": mind})

@@ -1,0 +1,36 @@
+"""The model of a doorway: it sees how wide the gap is, turns where it must, and touches nothing."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+FILE = Path(__file__).parent.parent / "models" / "doorway.py"
+
+
+@pytest.fixture(scope="module")
+def doorway() -> Any:
+    spec = importlib.util.spec_from_file_location("doorway", FILE)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(("width", "turns"), [(0.4, True), (0.5, True), (0.58, True), (0.59, False), (0.8, False)])
+def test_it_turns_below_the_critical_ratio_and_passes_untouched(doorway: Any, capsys: Any, width: float, turns: bool) -> None:
+    simulation = doorway.build(doorway.Parameters(width=width))
+    walker = simulation.world.bodies["walker"]
+    touched = walker.get("contacts")  # from now on every physics step is watched
+    while simulation.time < 10 and not touched and walker.get("pose").x < 8:
+        simulation.step()
+        touched = walker.get("contacts")
+    said = capsys.readouterr().out
+    assert touched == ()
+    assert walker.get("pose").x > 7.9
+    assert f"a gap of {width:.2f} m" in said
+    assert ("turns" in said) == turns
