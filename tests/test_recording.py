@@ -9,6 +9,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -41,7 +42,7 @@ def program(path: Path, before: str = "") -> list[str]:
 
 
 def whole(path: Path) -> bool:
-    with sqlite3.connect(path) as file:
+    with closing(sqlite3.connect(path)) as file:
         return file.execute("PRAGMA integrity_check").fetchone() == ("ok",)
 
 
