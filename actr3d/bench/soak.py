@@ -1,4 +1,4 @@
-"""`actr3d bench soak`: a million ticks, without drift or growth in memory."""
+"""`actr3d soak`: a million ticks, without drift or growth in memory."""
 
 from __future__ import annotations
 
