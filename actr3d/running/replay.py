@@ -153,7 +153,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
         was = f"period {seconds(period):g} s, seed {recorded.facts['seed']}"
         return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
     simulation._journal.raise_level("all")
-    simulation.listen(events.take)
+    simulation._journal.listen(events.take)
     simulation._course.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
     difference: str | None = None
     try:
