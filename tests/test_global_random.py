@@ -87,11 +87,16 @@ def test_whoever_looks_on_may_draw_numbers_of_its_own() -> None:
 
 
 def test_a_mind_that_fails_gives_the_numbers_back() -> None:
-    failing: Any = load_text(
-        "import random\nfrom actr3d.actr import *\nclass Failing(Model):\n    def start(self):\n        yield 0.01\n        random.random()\n"
-        "        raise ValueError('no')\n",
-        "failing.py",
-    ).Failing
+    text = """
+import random
+from actr3d.actr import *
+class Failing(Model):
+    def start(self):
+        yield 0.01
+        random.random()
+        raise ValueError("no")
+"""
+    failing: Any = load_text(text, "failing.py").Failing
     simulation = Simulation(Scene(), bodiless={"mind": failing}, seed=1)
     random.seed(7)
     with pytest.raises(ValueError, match="no"):

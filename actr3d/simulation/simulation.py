@@ -16,8 +16,8 @@ from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.simulation.course import Course
-from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.journal import Journal, Listener
 from actr3d.simulation.lockstep import Lockstep, steps_of, whole_ticks
 from actr3d.simulation.minds import Factory, check_names
