@@ -44,6 +44,7 @@ class Journal:
         """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
+        self._preface: list[TraceEvent] = []
 
     def raise_level(self, level: str) -> None:
         """Lets the next trace record at least as much as a level.
@@ -89,7 +90,18 @@ class Journal:
         self.trace = None if self._level == "none" else Trace(self._level, keep=self._keep)
         if self.trace is not None and (self._listeners or self._recording is not None):
             self.trace.listen(self._hear)
+        if self.trace is not None and self.trace.production:
+            for event in self._preface:
+                self.trace.emit(*event)
         return self.trace
+
+    def output(self, time: int, text: str) -> None:
+        """Takes a line that the model prints at a time [us]; one from before the minds are made comes first in every trace."""
+        event = TraceEvent(time, "model", "output", {"text": text})
+        if self.trace is None:
+            self._preface.append(event)
+        elif self.trace.production:
+            self.trace.emit(*event)
 
     @contextmanager
     def holding(self) -> Generator[None]:
