@@ -8,8 +8,8 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
@@ -18,7 +18,8 @@ from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
-from actr3d.output import ModelOutput, all_written, standard_output
+from actr3d.output import all_written, standard_output
+from actr3d.printing import ModelOutput, printing_to
 from actr3d.running.run import run_model, settings_of
 from actr3d.saying import is_library
 from actr3d.trace import LEVELS, Trace, TraceEvent
@@ -46,11 +47,12 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         printed = ModelOutput(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
     if level != "none":
         show = TraceEvent.to_json if options.json else event_line
-        trace.listen(lambda event: None if out.closed else print(show(event), file=out), level)
+        # Lines that the model prints are shown as they are, or by `printed`.
+        trace.listen(lambda event: None if out.closed or event.kind == "output" else print(show(event), file=out), level)
     limits.last_resort = partial(_leave, out, printed)
     trouble: Exception | None = None
     try:
-        with warnings.catch_warnings(), _printing_to(printed or out):
+        with warnings.catch_warnings(), printing_to(printed or out):
             warnings.showwarning = _show_warning
             run_model(options.file, limits, settings=settings_of(options.set), record=options.record)
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
@@ -65,17 +67,6 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
     if unwritten:
         return _complain_of_output(unwritten)
     return 0 if trouble is None else 1
-
-
-@contextmanager
-def _printing_to(out: TextIO) -> Generator[None]:
-    """Lets `out` be what a model prints to inside the block."""
-    before = sys.stdout, sys.__stdout__
-    sys.stdout = sys.__dict__["__stdout__"] = out
-    try:
-        yield
-    finally:
-        sys.stdout, sys.__dict__["__stdout__"] = before
 
 
 def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:

@@ -5,66 +5,11 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import contextmanager, suppress
 from typing import Any, TextIO
 
-
-class _Lines(io.BufferedIOBase):
-    """Takes bytes of UTF-8, and hands on whole lines of text; closing it does nothing."""
-
-    def __init__(self, take: Callable[[str], None]) -> None:
-        self._take = take
-        self._rest = b""
-
-    name = "<stdout>"
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, data: Any, /) -> int:
-        *lines, self._rest = (self._rest + bytes(data)).split(b"\n")
-        for line in lines:
-            self._take(_text(line))
-        return len(data)
-
-    def fileno(self) -> int:
-        return 1
-
-    def close(self) -> None:
-        """Leaves it open: a wrapper that a model puts round it, and lets go, closes what it wraps."""
-
-    def finish(self) -> None:
-        """Hands on what was printed without an end of line."""
-        rest, self._rest = self._rest, b""
-        if rest:
-            self._take(_text(rest))
-
-
-class ModelOutput(io.TextIOWrapper):
-    """A `sys.stdout` that hands on what a model prints line by line, also what it writes through `.buffer`.
-
-    Args:
-        take: Called with each line.
-    """
-
-    def __init__(self, take: Callable[[str], None]) -> None:
-        self.lines = _Lines(take)
-        super().__init__(self.lines, encoding="utf-8", errors="surrogatepass", newline="\n", write_through=True)
-
-    def reconfigure(self, **options: Any) -> None:
-        """Takes what a model says of its output's form; lines of JSON have one form only."""
-
-    def finish(self) -> None:
-        """Hands on what was printed without an end of line."""
-        self.lines.finish()
-
-
-def _text(line: bytes) -> str:
-    try:
-        return line.decode("utf-8", "surrogatepass")
-    except UnicodeDecodeError:
-        return line.decode("utf-8", "backslashreplace")
+from actr3d.printing import ModelOutput
 
 
 class StandardOutput(io.TextIOWrapper):

@@ -16,7 +16,7 @@ A trace that begins in the middle of a run begins with what everything is like: 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from actr3d.clock import seconds
@@ -119,6 +119,11 @@ class Trace:
         """Takes in a run that begins to be traced; returns its number, counted from 1."""
         self._runs.append(run)
         return len(self._runs)
+
+    @property
+    def runs(self) -> Sequence[Run]:
+        """The runs that it records, in the order in which that began."""
+        return self._runs
 
     def emit(self, time_us: int, source: str, kind: str, data: Data) -> None:
         """Appends one event; the caller has looked at the level and gives `data` away."""

@@ -109,14 +109,13 @@ def test_a_killed_run_leaves_all_but_the_last_second(wait: float, tmp_path: Path
     path = tmp_path / "run"
     with subprocess.Popen(program(path), stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        said = [(time.monotonic(), int(process.stdout.readline()))]
-        start = time.monotonic()
-        while time.monotonic() - start < wait:
-            said.append((time.monotonic(), int(process.stdout.readline())))
+        said: list[tuple[int, float]] = []
+        while not said or time.monotonic() - said[0][1] < wait:
+            said.append((int(process.stdout.readline()), time.monotonic()))
         os.kill(process.pid, signal.SIGKILL)
         killed = time.monotonic()
         process.wait()
-    due = max([tick for when, tick in said if when < killed - 1], default=0)
+    due = max([tick for tick, when in said if when < killed - 1], default=0)
     with Recorded(path) as recorded:
         assert recorded.ticks >= due
         states = list(recorded.states())

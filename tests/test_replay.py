@@ -170,7 +170,7 @@ def test_fewer_events_can_be_shown_than_are_recorded(file: Path, capsys: pytest.
 
 def test_events_can_be_shown_while_they_are_recorded(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file, "--json")
-    shown = [line for line in capsys.readouterr().out.splitlines() if '"output"' not in line]
+    shown = capsys.readouterr().out.splitlines()
     with Recorded(path) as recorded:
         assert [event.to_json() for event in recorded.events()] == shown
 
@@ -234,7 +234,7 @@ def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[s
 
 def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "noisy.py"
-    file.write_text(NOISY, encoding="utf-8")
+    file.write_text(NOISY.replace("python_actr", "actr3d.actr"), encoding="utf-8")
     path = recorded_run(file)
     alter(path, in_fact("sources", "range(2)", "range(1)"))
     assert main(["replay", str(path)]) == 1
@@ -349,3 +349,45 @@ def test_other_functions_called_build_are_none(text: str) -> None:
 def test_settings_are_values_or_texts() -> None:
     given: dict[str, Any] = settings_of(["a=1", "b=0.5", "c=None", "d=(1, 2)", "e=box", "f=x=y", "g="])
     assert given == {"a": 1, "b": 0.5, "c": None, "d": (1, 2), "e": "box", "f": "x=y", "g": ""}
+
+
+PRINTING = BUILT + "print('loaded', end=' ')\nprint('and ready')\n"
+
+
+def printed_lines(path: Path) -> list[tuple[float, str]]:
+    with Recorded(path) as recorded:
+        return [(event.time, event.data["text"]) for event in recorded.events() if event.kind == "output"]
+
+
+def test_lines_that_a_model_prints_are_recorded_where_they_come(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file.write_text(PRINTING.replace("print(side, self.times)", "print(self.times); print('end', end='')"), encoding="utf-8")
+    path = recorded_run(file)
+    assert capsys.readouterr().out == "loaded and ready\n1\nend2\nend3\nend"
+    assert printed_lines(path) == [(0.0, "loaded and ready"), (0.05, "1"), (0.1, "end2"), (0.15, "end3"), (0.15, "end")]
+    assert main(["replay", str(path)]) == 0
+    alter(path, "UPDATE events SET data = replace(data, 'end2', 'end7')")
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 1
+    assert '"text": "end7"' in capsys.readouterr().out
+
+
+def test_lines_that_a_program_prints_are_recorded_where_they_come(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "talking.py"
+    text = NOISY + "import sys\nsys.stdout.buffer.write('größe\\n'.encode())\nsys.stdout.writelines(['a', 'b\\n'])\nprint('c', end='')\n"
+    file.write_text("print('first')\n" + text.replace("Noisy().run()", "Noisy().run(0.22)\n    print('run')"), encoding="utf-8")
+    path = recorded_run(file)
+    expected = [(0.0, "first"), (0.22, "run"), (0.22, "run"), (0.22, "größe"), (0.22, "ab"), (0.22, "cend...")]
+    assert printed_lines(path) == expected
+    assert main(["replay", str(path)]) == 0
+    assert "every byte agrees" in capsys.readouterr().out
+
+
+def test_shown_events_hold_each_printed_line_once(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file, "--json")
+    shown = capsys.readouterr().out.splitlines()
+    assert sum('"output"' in line for line in shown) == 3 == len(printed_lines(path))
+    (file.parent / "run").unlink()
+    recorded_run(file, "--trace", "production")
+    shown = capsys.readouterr().out.splitlines()
+    assert sum("left" in line.split()[:1] or "right" in line.split()[:1] for line in shown) == 3
+    assert not any(" output " in line for line in shown)

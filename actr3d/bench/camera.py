@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from actr3d.bench.figures import Figure, ratio, report, seconds_of
+from actr3d.bench.figures import Figure, little_garbage, ratio, report, seconds_of
 from actr3d.camera import GeometricCamera
 
 RAYS = 10_000
@@ -99,21 +99,28 @@ def _in_rays(scenes: list[tuple[Any, Any]]) -> float:
     return median(ratio(_view_cost(*scene), _ray_cost(*scene)) for scene in scenes)
 
 
+def _more(many: list[tuple[Any, Any]], few: list[tuple[Any, Any]]) -> float:
+    """Returns what a view of scenes with many objects costs, in views of those with few."""
+    return median(ratio(_view_cost(*large), _view_cost(*small)) for large, small in zip(many, few, strict=True))
+
+
 def measure() -> list[Figure]:
     """Measures everything."""
-    few = [_scene(APERTURE + _loose(10, seed)) for seed in range(SCENES)]
-    many = [_scene(APERTURE + _loose(100, seed)) for seed in range(SCENES)]
+    few, many = ([_scene(APERTURE + _loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
+    open_few, open_many = ([_scene(_loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
     body = [_scene(_mannequin(seed)) for seed in range(SCENES)]
     mesh = [_scene('<geom type="mesh" mesh="ring" pos="2 0 1.5" euler="30 50 0"/>', _ring())]
-    more = median(ratio(_view_cost(*large), _view_cost(*small)) for large, small in zip(many, few, strict=True))
-    what = "single rays of mj_multiRay for a default view"
-    return [
-        Figure(name="aperture, 10 objects", value=_in_rays(few), sense="at most", bar=RAYS, what=what),
-        Figure(name="aperture, 100 objects", value=_in_rays(many), sense="at most", bar=RAYS, what=what),
-        Figure(name="body of 20 parts", value=_in_rays(body), sense="at most", bar=RAYS, what=what),
-        Figure(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", bar=RAYS, what=what),
-        Figure(name="100 objects", value=more, sense="at most", bar=3, what="times a view of 10"),
-    ]
+    what, more = "single rays of mj_multiRay for a default view", "times a view of 10"
+    with little_garbage():
+        return [
+            Figure(name="aperture, 10 objects", value=_in_rays(few), sense="at most", bar=RAYS, what=what),
+            Figure(name="aperture, 100 objects", value=_in_rays(many), sense="at most", bar=RAYS, what=what),
+            Figure(name="crowd without walls, 100 objects", value=_in_rays(open_many), sense="at most", bar=RAYS, what=what),
+            Figure(name="body of 20 parts", value=_in_rays(body), sense="at most", bar=RAYS, what=what),
+            Figure(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", bar=RAYS, what=what),
+            Figure(name="100 objects", value=_more(many, few), sense="at most", bar=3, what=more),
+            Figure(name="100 objects without walls", value=_more(open_many, open_few), sense="at most", bar=3, what=more),
+        ]
 
 
 def main(*, json_output: bool) -> int:

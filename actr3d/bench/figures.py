@@ -5,7 +5,8 @@ from __future__ import annotations
 import gc
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from statistics import median
 from typing import Literal
@@ -38,6 +39,17 @@ def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.per
         return clock() - start
     finally:
         gc.enable()
+
+
+@contextmanager
+def little_garbage() -> Generator[None]:
+    """Lets what there is already be no concern of the garbage collector inside the block: it runs before each measurement."""
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
 
 
 def processor_time_of(work: Callable[[], object]) -> float:

@@ -1,6 +1,7 @@
-"""`actr3d bench lockstep`: what lockstep and recording cost, as ratios to the bare physics of the same scene on the same states.
+"""`actr3d bench lockstep`: what lockstep, vision and recording cost, as ratios to the bare physics of the same scene on the same
+states; and what a view costs, as `actr3d bench camera` has it.
 
-All is processor time, of all threads together: a recording has one of its own, which must not hide what it costs.
+Of lockstep, all is processor time, of all threads together: a recording has one of its own, which must not hide what it costs.
 """
 
 from __future__ import annotations
@@ -9,11 +10,13 @@ import gc
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import mujoco
 
 from actr3d.actr.loading import load_text
+from actr3d.bench import camera
 from actr3d.bench.figures import Figure, processor_time_of, report
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, WorldState
@@ -71,15 +74,31 @@ class Agent(ACTR):
         goal.set("look")
 """
 """Walks 7 m to a doorway and through it, looking each 100 ms, and turns the trunk when something is near."""
+WATCHING = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+
+class Agent(Model):
+    body = BodyPort()
+    def start(self):
+        self.body.set("walk", 1.3)
+        while True:
+            reading = self.body.get("view")
+            yield reading
+            if len(reading.value.extents) and reading.value.extents["d1"].min() < 1.5:
+                self.body.set("posture", {"torso_yaw": 0.6}, speed=2.0)
+            yield 0.01
+"""
+"""The same, looking at every tick."""
 TRIAL = 600
 """Ticks of a trial: 6 s for 7.8 m."""
 
 
-def trial() -> Simulation:
+def trial(agent: str = SEEING) -> Simulation:
     """Returns a walker who sees, 7 m in front of a doorway in a furnished room."""
     things = [Loose(name=f"thing{n}", position=(2.0 + n, 2.0 - 4.0 * (n % 2), 0.4), size=(0.4, 0.4, 0.8)) for n in range(4)]
     scene = Scene(parts=(Floor(), Aperture(width=0.9), *things, Mannequin(name="walker")))
-    return Simulation(scene, {"walker": load_text(SEEING, "seeing.py").Agent}, seed=1)
+    return Simulation(scene, {"walker": load_text(agent, "seeing.py").Agent}, seed=1)
 
 
 def typical() -> Simulation:
@@ -137,16 +156,24 @@ def measure() -> list[Figure]:
     times = "times the bare physics"
     plain, bare, recorded = _best(typical)
     _cost(trial, 0, 10)  # compiles the camera, where it never was
-    rounds = [(_cost(trial, 0, TRIAL), _bare_cost(trial, 0, TRIAL)) for _ in range(ROUNDS)]
-    seeing, walking = (min(costs) for costs in zip(*rounds, strict=True))
+    watching = partial(trial, WATCHING)
     return [
         Figure(name="tick and tock, no vision", value=plain / bare, sense="at most", bar=3, what=times),
         Figure(
             name="cognition and lockstep", value=(plain - bare) * 1e6, sense="at most", bar=40, what="us a tick beyond the bare physics"
         ),
-        Figure(name="an aperture trial with vision", value=seeing / walking, sense="at most", bar=10, what=times),
+        Figure(name="an aperture trial with vision", value=_seeing(trial), sense="at most", bar=10, what=times),
+        Figure(name="a trial that looks at every tick", value=_seeing(watching), sense="at most", bar=10, what=times),
         Figure(name="recording everything", value=recorded / plain, sense="at most", bar=1.5, what="times the unrecorded run"),
+        *camera.measure(),
     ]
+
+
+def _seeing(make: Callable[[], Simulation]) -> float:
+    """Returns what a whole trial costs, in times its bare physics: the best of rounds in turn."""
+    rounds = [(_cost(make, 0, TRIAL), _bare_cost(make, 0, TRIAL)) for _ in range(ROUNDS)]
+    seeing, walking = (min(costs) for costs in zip(*rounds, strict=True))
+    return seeing / walking
 
 
 def _best(make: Callable[[], Simulation]) -> tuple[float, float, float]:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import random
 from collections.abc import Callable
-from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,9 +14,11 @@ from actr3d.actr.limits import EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import RecordingError
+from actr3d.printing import ModelOutput, ToldOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.recording.form import versions
 from actr3d.running.building import build
+from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace, TraceEvent
 
@@ -102,14 +102,19 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
     """
     if not any_version:
         _check_versions(recorded.facts["versions"])
-    with redirect_stdout(io.StringIO()):
+    with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
             return _replay_program(recorded)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
         with RunLimits(seed=recorded.facts.get("program_seed", recorded.facts["seed"])) as limits:
             random.seed(limits.program_seed)
-            return _replay_simulation(recorded, make() if make is not None else _built(recorded.facts))
+            if make is not None:
+                return _replay_simulation(recorded, make())
+            with BuiltOutput(limits) as output:
+                simulation = _built(recorded.facts)
+                output.lead_to(simulation)
+                return _replay_simulation(recorded, simulation, output)
 
 
 def _check_versions(then: dict[str, str]) -> None:
@@ -134,7 +139,12 @@ def _replay_program(recorded: Recorded) -> Comparison:
     file = facts["file"]
     trouble = ""
     try:
-        run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent)
+        with ProgramOutput(limits) as output:
+            run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent)
+            if "ended" in facts:
+                output.finish()
+    except _Differs:  # in the last line of a log, when the program itself was over
+        pass
     except Exception as error:  # noqa: BLE001 - the recorded run may have ended so, too
         trouble = f" ({type(error).__name__}: {error})"
     left = events.rest()
@@ -144,8 +154,8 @@ def _replay_program(recorded: Recorded) -> Comparison:
     return Comparison(ticks=0, events=events.count, difference=difference)
 
 
-def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison:
-    """Runs a simulation beside its recording."""
+def _replay_simulation(recorded: Recorded, simulation: Simulation, output: ToldOutput | None = None) -> Comparison:
+    """Runs a simulation beside its recording, which tells of its output, too, where that is given."""
     ticks = recorded.ticks
     events = _Events(recorded, ticks)
     period = recorded.facts["period_us"]
@@ -153,7 +163,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
         was = f"period {seconds(period):g} s, seed {recorded.facts['seed']}"
         return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
     simulation._journal.raise_level("all")
-    simulation.listen(events.take)
+    simulation._journal.listen(events.take)
     simulation._course.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
     difference: str | None = None
     try:
@@ -170,6 +180,8 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
                 break
         else:
             simulation._course.repeat_commands()
+            if output is not None and "ended" in recorded.facts:
+                output.finish()
             simulation._journal.check()
     except _Differs:
         pass

@@ -15,6 +15,7 @@ from actr3d.actr.reading import read_source
 from actr3d.actr.sources import syntax_tree
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ConfigurationError, ParameterError
+from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.trace import Trace
 
 
@@ -81,9 +82,10 @@ def run_model(path: Path | str, limits: RunLimits, *, settings: Mapping[str, Any
 def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str, Any], record: Path | str | None) -> None:
     from actr3d.running.building import build  # a program does without the world that this loads
 
-    with limits, suppress(EndOfRun):
+    with limits, suppress(EndOfRun), BuiltOutput(limits) as output:
         random.seed(limits.program_seed)
         simulation, parameters = build(source, str(path), settings, path.parent)
+        output.lead_to(simulation)
         end = None
         if limits.until is not None:  # down to the end of a tick
             period = microseconds(simulation.period)
@@ -94,6 +96,7 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str
         facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
         with simulation.record(record, **facts, program_seed=limits.program_seed) as recording:
             report = simulation.run(end)
+            output.finish()
             recording.fact("ended", {"by": report.ended_by})
 
 
@@ -107,5 +110,7 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
     facts = {"kind": "program", "file": str(path), "sources": {str(path): source}, "seed": limits.seed, "until": limits.until}
     with Recording(record, facts) as recording:
         limits.trace.listen(recording.event_alone)
-        run_text(source, str(path), limits=limits, folder=path.parent)
+        with ProgramOutput(limits) as output:
+            run_text(source, str(path), limits=limits, folder=path.parent)
+            output.finish()
         recording.fact("ended", {"by": "end"})

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from typing import Any
+from weakref import ref
 
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
-from actr3d.kinds import KINDS, LEVELS
+from actr3d.kinds import LEVELS
 from actr3d.recording import Recording
 from actr3d.simulation.commands import Command
-from actr3d.trace import Trace, TraceEvent
+from actr3d.simulation.program_run import ProgramRun
+from actr3d.trace import Run, Trace, TraceEvent
 from actr3d.world import World
 
 Listener = Callable[[TraceEvent], object]
@@ -42,6 +44,7 @@ class Journal:
         """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
+        self._preface: list[TraceEvent] = []
 
     def raise_level(self, level: str) -> None:
         """Lets the next trace record at least as much as a level.
@@ -66,14 +69,14 @@ class Journal:
     def tell_program(self, trace: Trace) -> None:
         """Hands on to the trace of the whole program as much as that one records."""
         self.raise_level(trace.level)
-        rank = LEVELS.index(trace.level)
+        if trace.level != "none":
+            journal = ref(self)  # the program's trace does not keep the simulation alive
+            self.listen(ProgramRun(trace, lambda: (here := journal()) and here.run).take)
 
-        def hand_on(event: TraceEvent) -> None:
-            if LEVELS.index(KINDS[event.kind].level) <= rank:
-                trace.emit(*event)
-
-        if rank:
-            self.listen(hand_on)
+    @property
+    def run(self) -> Run | None:
+        """The run as its own trace has it at present; None where nothing is traced."""
+        return None if self.trace is None or not self.trace.runs else self.trace.runs[-1]
 
     def record(self, recording: Recording) -> None:
         """Lets everything be recorded."""
@@ -87,7 +90,18 @@ class Journal:
         self.trace = None if self._level == "none" else Trace(self._level, keep=self._keep)
         if self.trace is not None and (self._listeners or self._recording is not None):
             self.trace.listen(self._hear)
+        if self.trace is not None and self.trace.production:
+            for event in self._preface:
+                self.trace.emit(*event)
         return self.trace
+
+    def output(self, time: int, text: str) -> None:
+        """Takes a line that the model prints at a time [us]; one from before the minds are made comes first in every trace."""
+        event = TraceEvent(time, "model", "output", {"text": text})
+        if self.trace is None:
+            self._preface.append(event)
+        elif self.trace.production:
+            self.trace.emit(*event)
 
     @contextmanager
     def holding(self) -> Generator[None]:

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.global_random import GlobalRandom
 
 Observer = Callable[[Glimpse], object]
 
 
 class Onlookers:
-    """Shows the present to all observers, who cannot change anything meanwhile."""
+    """Shows the present to all observers, who cannot change anything meanwhile.
 
-    def __init__(self) -> None:
+    Args:
+        random: The module `random` as the minds have it, which observers are to leave as it is.
+    """
+
+    def __init__(self, random: GlobalRandom) -> None:
+        self._random = random
         self._observers: list[Observer] = []
         self.looking = False
         """Whether one of them is looking now."""
@@ -32,7 +38,8 @@ class Onlookers:
         self.looking = True
         try:
             glimpse = make()
-            for observer in self._observers:
-                observer(glimpse)
+            with self._random.aside():
+                for observer in self._observers:
+                    observer(glimpse)
         finally:
             self.looking = False

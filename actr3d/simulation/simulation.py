@@ -17,13 +17,14 @@ from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.simulation.course import Course
 from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.journal import Journal, Listener
 from actr3d.simulation.lockstep import Lockstep, steps_of, whole_ticks
 from actr3d.simulation.minds import Factory, check_names
 from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
 from actr3d.simulation.sources import sources_of
-from actr3d.trace import Trace
+from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
 
 
@@ -73,13 +74,15 @@ class Simulation:
         if limits is not None and limits.trace is not None:
             self._journal.tell_program(limits.trace)
         self._course = Course(self.world, self._begin, self._journal)
-        self._onlookers = Onlookers()
+        self._random = GlobalRandom()
+        self._onlookers = Onlookers(self._random)
         self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
         self._owner = threading.get_ident()
 
     def _begin(self) -> Lockstep:
         minds = {**self._minds, **self._bodiless}
-        return Lockstep(self.world, minds, frozenset(self._minds), self.seed, self._steps, self._period, self._journal)
+        with self._random:
+            return Lockstep(self.world, minds, frozenset(self._minds), self.seed, self._steps, self._period, self._journal)
 
     # -- where it stands
 
@@ -130,7 +133,8 @@ class Simulation:
         self._enter()
         if self._submitted:
             self.carry_out_submitted()
-        self._course.tick()
+        with self._random:
+            self._course.tick()
 
     def tock(self) -> None:
         """Lets the bodies do what they were told, simulates the physics of the same period, and lets them answer.
@@ -152,9 +156,10 @@ class Simulation:
             SimulationError: As `tick` does.
             Exception: As `tick` and `tock` do.
         """
-        for _ in range(n):
-            self.tick()
-            self.tock()
+        with self._random:
+            for _ in range(n):
+                self.tick()
+                self.tock()
 
     def run(
         self, seconds: float | None = None, *, until: Callable[[Glimpse], bool] | None = None, real_time: float | None = None
@@ -179,19 +184,26 @@ class Simulation:
         if real_time is not None and not real_time > 0:
             raise SimulationError(f"run(real_time): must be above 0 (got {real_time!r})")
         end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
-        open_end = end is None and until is None
         pace = Pace(self._period, real_time)
+        with self._random:
+            return pace.report(self._go_on(pace, end, until, open_end=end is None and until is None))
+
+    def _go_on(self, pace: Pace, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> Ending:
+        """Goes on until something ends the run; says what."""
         minds = self._course.lockstep.minds
         while end is None or self.ticks < end:
             if open_end and minds.done and not self._submitted and self.ticks >= self._course.furthest:
-                return pace.report("done")
+                return "done"
             self.tick()
             self.tock()
             pace.tick()
-            ending: Ending | None = "stop" if minds.stopped else "until" if until is not None and until(self._glimpse()) else None
-            if ending is not None:
-                return pace.report(ending)
-        return pace.report("seconds")
+            if minds.stopped:
+                return "stop"
+            if until is not None:
+                with self._random.aside():
+                    if until(self._glimpse()):
+                        return "until"
+        return "seconds"
 
     def _enter(self) -> None:
         if threading.get_ident() != self._owner:
@@ -220,7 +232,8 @@ class Simulation:
             Exception: What the world or the body raises; then nothing was done.
         """
         self._enter()
-        self._course.command(word, values, named, body)
+        with self._random:
+            self._course.command(word, values, named, body)
         self._journal.check()
 
     def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
@@ -258,7 +271,12 @@ class Simulation:
         Raises:
             ParameterError: If nothing is traced.
         """
-        self._journal.listen(listener)
+
+        def listen_aside(event: TraceEvent) -> None:
+            with self._random.aside():
+                listener(event)
+
+        self._journal.listen(listen_aside)
 
     def record(self, path: Path | str, **facts: Any) -> Recording:
         """Records the whole run to a new file, with every event, state, command and answer; to be closed by who asks for it.
@@ -299,6 +317,7 @@ class Simulation:
         to = whole_ticks(time, self._period, "seek")
         if to > self._course.furthest:
             raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
-        self._course.seek(to)
+        with self._random:
+            self._course.seek(to)
         self._journal.check()
         self._onlookers.show(self._glimpse)

@@ -1,0 +1,142 @@
+"""What a model prints, line by line."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Callable, Generator, Iterable
+from contextlib import ExitStack, contextmanager
+from types import TracebackType
+from typing import Any, Self, TextIO, cast
+
+
+class _Lines(io.BufferedIOBase):
+    """Takes bytes of UTF-8, and hands on whole lines of text; closing it does nothing."""
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self._take = take
+        self._rest = b""
+
+    name = "<stdout>"
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any, /) -> int:
+        *lines, self._rest = (self._rest + bytes(data)).split(b"\n")
+        for line in lines:
+            self._take(_text(line))
+        return len(data)
+
+    def fileno(self) -> int:
+        return 1
+
+    def close(self) -> None:
+        """Leaves it open: a wrapper that a model puts round it, and lets go, closes what it wraps."""
+
+    def finish(self) -> None:
+        """Hands on what was printed without an end of line."""
+        rest, self._rest = self._rest, b""
+        if rest:
+            self._take(_text(rest))
+
+
+class ModelOutput(io.TextIOWrapper):
+    """A `sys.stdout` that hands on what a model prints line by line, also what it writes through `.buffer`.
+
+    Args:
+        take: Called with each line.
+    """
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self.lines = _Lines(take)
+        super().__init__(self.lines, encoding="utf-8", errors="surrogatepass", newline="\n", write_through=True)
+
+    def reconfigure(self, **options: Any) -> None:
+        """Takes what a model says of its output's form; lines of JSON have one form only."""
+
+    def finish(self) -> None:
+        """Hands on what was printed without an end of line."""
+        self.lines.finish()
+
+
+class _BothBytes(io.BufferedIOBase):
+    """Takes bytes for the output and for who is told of its lines."""
+
+    def __init__(self, out: Any, lines: _Lines) -> None:
+        self._out = out
+        self._lines = lines
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any, /) -> int:
+        self._out.write(data)
+        return self._lines.write(data)
+
+    def flush(self) -> None:
+        self._out.flush()
+
+    def close(self) -> None:
+        """Leaves it open, as `_Lines` does."""
+
+
+class ToldOutput:
+    """A `sys.stdout` for a `with` block, which writes where it went before, and hands on each line as well.
+
+    Args:
+        take: Called with each line.
+    """
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self._lines = _Lines(take)
+        self._out = sys.stdout
+        self._stack = ExitStack()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._out, name)
+
+    @property
+    def buffer(self) -> Any:
+        """What takes bytes."""
+        return _BothBytes(self._out.buffer, self._lines)
+
+    def write(self, text: str, /) -> int:
+        """Writes a text."""
+        count = self._out.write(text)
+        self._lines.write(text.encode("utf-8", "surrogatepass"))
+        return count
+
+    def writelines(self, texts: Iterable[str], /) -> None:
+        """Writes several texts."""
+        for text in texts:
+            self.write(text)
+
+    def finish(self) -> None:
+        """Hands on what was printed without an end of line."""
+        self._lines.finish()
+
+    def __enter__(self) -> Self:
+        self._stack.enter_context(printing_to(cast("TextIO", self)))
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        self._stack.close()
+
+
+@contextmanager
+def printing_to(out: TextIO) -> Generator[None]:
+    """Lets `out` be what a model prints to inside the block."""
+    before = sys.stdout, sys.__stdout__
+    sys.stdout = sys.__dict__["__stdout__"] = out
+    try:
+        yield
+    finally:
+        sys.stdout, sys.__dict__["__stdout__"] = before
+
+
+def _text(line: bytes) -> str:
+    try:
+        return line.decode("utf-8", "surrogatepass")
+    except UnicodeDecodeError:
+        return line.decode("utf-8", "backslashreplace")
