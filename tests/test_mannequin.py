@@ -176,6 +176,20 @@ def test_nothing_gets_through_a_wall(
     assert reached > near_face
 
 
+@pytest.mark.parametrize("thickness", [0.02, 0.05])
+@pytest.mark.parametrize("mass", [2.0, 30.0])
+@pytest.mark.parametrize("heading", [0.68, 0.85])
+def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: float, mass: float, heading: float) -> None:
+    """The wall turns bar and trunk back as fast as the legs go on: stopped alone, the legs would fling the bar into the wall."""
+    wall = Wall(name="wall", start=(3.0, -20.0), end=(3.0, 20.0), thickness=thickness)
+    world, body = living(wall, load=Load(size=(5.0, 0.03), mass=mass), heading=heading)
+    for tick in range(180):
+        body.set("stop")
+        body.set("walk", 3.0)
+        world.step(5)
+        assert body.bounding_box().upper[0] < 3.02, f"at tick {tick}"
+
+
 def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> None:
     world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), push=250)
     body.set("walk", 2.0)
@@ -314,6 +328,7 @@ def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way()
         ({"trunk": "bx"}, r"must be one of 'ellipsoid', 'box' \(got 'bx'\); did you mean 'box'"),
         ({"mass": -1}, r"Mannequin\.mass: must be > 0"),
         ({"noise": (("poze", 1.0),)}, r"walker has no sensor 'poze'; did you mean 'pose'"),
+        ({"noise": (("pose", -1.0),)}, r"walker: noise of pose: must be at least 0 \(got -1\.0\)"),
     ],
 )
 def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], message: str) -> None:

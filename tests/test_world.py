@@ -88,6 +88,8 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().set_aperture_width(-1), r"Aperture\.width: must be >= 0 \(got -1\.0\)"),
         (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
         (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
+        (lambda: doorway().step(-1), r"the physics goes on by a whole number of steps \(got -1\)"),
+        (lambda: World(Scene(), seed=-1), r"the seed of a world must be a whole number from 0 on \(got -1\)"),
     ],
 )
 def test_wrong_scenes_are_refused_with_a_reason(wrong: Callable[[], object], message: str) -> None:
@@ -100,3 +102,17 @@ def test_physics_that_diverges_says_so() -> None:
     world.mj_data.qvel[0] = 1e20
     with pytest.raises(Actr3dError, match="the physics diverged near"):
         world.step()
+
+
+def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
+    world = doorway()
+    world.step(10)
+    state = world.state()
+    world.step(10)
+    expected = world.state()
+    world.mj_data.qvel[0] = 1e20
+    with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
+    world.restore(state)
+    world.step(10)
+    assert world.state().mj_state.tobytes() == expected.mj_state.tobytes()

@@ -10,7 +10,7 @@ import numpy as np
 from mujoco import mjtJoint
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError
 from actr3d.world.actuators import ACTUATORS
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.bounding_box import BoundingBox, Extent
@@ -21,6 +21,7 @@ from actr3d.world.noise import Noise, Sd
 from actr3d.world.running import Running
 from actr3d.world.sensors import SENSORS
 from actr3d.world.sensors.touch import Touch
+from actr3d.world.words import known, number
 
 if TYPE_CHECKING:
     from actr3d.world.world import World
@@ -83,10 +84,10 @@ class Body:
         model = world.mj_model
         self.members = np.zeros(model.nbody, dtype=bool)
         """By MuJoCo body: whether it is part of this one."""
-        for number in range(self.root, model.nbody):
-            self.members[number] = number == self.root or self.members[model.body_parentid[number]]
+        for member in range(self.root, model.nbody):
+            self.members[member] = member == self.root or self.members[model.body_parentid[member]]
         self.geoms: NDArray[np.intp] = np.flatnonzero(self.members[model.geom_bodyid])
-        self.parts: tuple[str, ...] = tuple(self.part_name(int(number)) for number in np.flatnonzero(self.members))
+        self.parts: tuple[str, ...] = tuple(self.part_name(int(member)) for member in np.flatnonzero(self.members))
         self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(world, self.root, self.anatomy)
         self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints()}
@@ -107,8 +108,9 @@ class Body:
         self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
         self.sensors: tuple[str, ...] = tuple(name for name, word in SENSORS.items() if word.fits(self))
         self._noise: Mapping[str, float] = dict(self.anatomy.noise)
-        for word in self._noise:
-            self._known("sensor", word, self.sensors)
+        for word, sd in self._noise.items():
+            known(word, self.sensors, self.name, "sensor")
+            number(sd, f"{self.name}: noise of {word}", 0)
 
     def bounding_box(self, frame: str = "world") -> BoundingBox:
         """Returns the smallest box around all of the body and what it holds, exactly, in its present posture.
@@ -135,7 +137,7 @@ class Body:
         Raises:
             WorldError: If this body has no such actuator or joint, or a value is not what it takes.
         """
-        self._known("actuator", word, self.actuators)
+        known(word, self.actuators, self.name, "actuator")
         ACTUATORS[word](self, *values, **named)
 
     def get(self, word: str, *values: Any, noise: Sd = None, **options: Any) -> Any:
@@ -154,7 +156,7 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is not what it takes.
         """
-        self._known("sensor", word, self.sensors)
+        known(word, self.sensors, self.name, "sensor")
         reading = SENSORS[word](self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
@@ -170,11 +172,11 @@ class Body:
         self.running.restore(state.running)
         self.noise.restore(state.noise)
         self.touched = state.touched
-        known = dict(state.senses)
-        for make, parameters in known:
+        remembered = dict(state.senses)
+        for make, parameters in remembered:
             self.sense(make, parameters)
         for key, sense in self._senses.items():
-            sense.restore(known.get(key))
+            sense.restore(remembered.get(key))
         held = dict(state.held)
         for side, hand in self.hands.items():
             hand.restore(held.get(side))
@@ -197,8 +199,7 @@ class Body:
         Raises:
             WorldError: If it has no such joint.
         """
-        self._known("joint", name, self.joints)
-        return self.joints[name]
+        return self.joints[known(name, self.joints, self.name, "joint")]
 
     def control(self, name: str) -> int:
         """Returns where the control of one of its actuators is in MuJoCo's `ctrl`.
@@ -206,8 +207,7 @@ class Body:
         Raises:
             WorldError: If it has no such actuator.
         """
-        self._known("control", name, self.controls)
-        return self.controls[name]
+        return self.controls[known(name, self.controls, self.name, "control")]
 
     def free(self) -> bool:
         """Returns whether neither it nor what it holds touches anything else, at the present positions."""
@@ -268,8 +268,3 @@ class Body:
             return int(getattr(self.world.mj_model, kind)(name).id)
         except KeyError as error:
             raise WorldError(f"body '{self.name}': the compiled model has no {kind} '{name}'") from error
-
-    def _known(self, kind: str, word: str, words: Any) -> None:
-        if word not in words:
-            has = f"it has {', '.join(words)}" if words else f"it has no {kind}s"
-            raise WorldError(f"{self.name} has no {kind} '{word}'{did_you_mean(word, words)}; {has}")

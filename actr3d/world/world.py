@@ -47,10 +47,12 @@ class World:
         seed: Where the noise of sensors comes from.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene; says what MuJoCo said.
+        WorldError: If MuJoCo cannot compile the scene, and says what MuJoCo said; or if the seed is not a whole number from 0 on.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
+        if not isinstance(seed, int) or seed < 0:  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a file
+            raise WorldError(f"the seed of a world must be a whole number from 0 on (got {seed!r})")
         self.scene = scene
         self.seed = seed
         try:
@@ -88,8 +90,10 @@ class World:
         once, before it.
 
         Raises:
-            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset).
+            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is not one.
         """
+        if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"the physics goes on by a whole number of steps (got {steps!r})")
         running = [body.running for body in self.bodies.values() if body.running]
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
@@ -162,6 +166,7 @@ class World:
         if state.mj_state.shape != (self._state_size,):
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        self._warnings[:] = 0
         self._steps = state.steps
         for name, body_state in state.bodies:
             self.bodies[name].restore(body_state)
@@ -198,8 +203,8 @@ class World:
         free = {
             str(model.body(int(model.jnt_bodyid[n])).name): int(model.jnt_bodyid[n]) for n in range(model.njnt) if model.jnt_type[n] == 0
         }
-        if name not in free:
-            raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(name, free)}")
+        if str(name) not in free:
+            raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
         return free[name]
 
     def _owner(self, geom: int) -> str:
