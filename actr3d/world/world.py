@@ -22,6 +22,10 @@ from actr3d.world.servo import fit_servos
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
 
+PRESSED = 0.01
+"""How deep the walls of an aperture may come into something when its width is set [m]: contacts as stiff as theirs push that out
+at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Ours."""
+
 _INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
@@ -182,16 +186,35 @@ class World:
         return aperture.width_of(tuple(self.mj_data.mocap_pos[self._mocap(f"{name}_left")]))
 
     def set_aperture_width(self, width: float, name: str = "aperture") -> None:
-        """Sets the free width of an aperture [m], at once.
+        """Sets the free width of an aperture [m], at once; no closer than what stands in it lets it.
 
         Raises:
-            WorldError: If there is no such aperture.
+            WorldError: If there is no such aperture, or something that can move is in the way of its segments; they stay then.
             ConfigurationError: If the width is not a number of at least 0.
         """
         aperture = replace(self._aperture(name), width=width)
-        for side, position in aperture.segment_positions(aperture.width).items():
-            self.mj_data.mocap_pos[self._mocap(f"{name}_{side}")] = position
+        sides = [self._mocap(f"{name}_{side}") for side in ("left", "right")]
+        before, depths = self.mj_data.mocap_pos[sides].copy(), self._pressed_by(sides)
+        self.mj_data.mocap_pos[sides] = list(aperture.segment_positions(aperture.width).values())
         self.changed()
+        deep = {other: depth for other, depth in self._pressed_by(sides).items() if depth > max(PRESSED, depths.get(other, 0))}
+        if deep:
+            self.mj_data.mocap_pos[sides] = before
+            self.changed()
+            raise WorldError(f"aperture '{name}' cannot be {aperture.width:g} m wide now: {', '.join(deep)} would be inside its walls")
+
+    def _pressed_by(self, mocaps: list[int]) -> dict[str, float]:
+        """Returns how deep some mocap bodies are in each object that can move [m], by its name."""
+        self.refresh()
+        model, contacts = self.mj_model, self.mj_data.contact
+        depths: dict[str, float] = {}
+        for pair, distance in zip(contacts.geom.tolist(), contacts.dist.tolist(), strict=True):
+            bodies = [int(model.geom_bodyid[geom]) if geom >= 0 else 0 for geom in pair]
+            for one, other in ((0, 1), (1, 0)):
+                if int(model.body_mocapid[bodies[one]]) in mocaps and model.body_treeid[bodies[other]] >= 0:
+                    name = self.owners[pair[other]]
+                    depths[name] = max(depths.get(name, 0.0), -distance)
+        return depths
 
     def loose(self, name: str) -> int:
         """Returns the MuJoCo body of an object that lies loose.
