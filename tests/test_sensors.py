@@ -6,6 +6,7 @@ import math
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import FrozenInstanceError, dataclass, replace
 from typing import Any
 
@@ -225,6 +226,16 @@ def test_pictures_show_what_the_eye_sees_or_say_what_is_missing() -> None:
     noisy = body.get("depth", 80, 60, noise=0.1).as_array() - body.get("depth", 80, 60).as_array()
     assert noisy.std() == near(0.1, rel=0.05)
     assert (noisy.dtype, body.get("image", noise=3.0).as_array().dtype) == (np.float32, np.uint8)
+
+
+def test_pictures_are_drawn_in_one_thread() -> None:
+    if not can_draw():
+        pytest.skip("there is no EGL here")
+    _, body = living(WALL)
+    first = body.get("depth", 8, 6)
+    with ThreadPoolExecutor() as others, pytest.raises(Actr3dError, match="drawn in one thread, that of the first picture"):
+        others.submit(body.get, "depth", 8, 6).result()
+    assert body.get("depth", 8, 6) == first
 
 
 def test_a_picture_s_noise_is_one_number() -> None:

@@ -64,8 +64,6 @@ def _noisy(word: str, value: Any, sd: Any, random: Generator) -> Any:
             raise WorldError(f"noise of {word}: its readings have no fields; give one number")
         return value + float(sd) * random.standard_normal()
     if hasattr(value, "with_noise"):
-        if isinstance(sd, Mapping):
-            raise WorldError(f"noise of {word}: a picture has no fields; give one number")
         return value.with_noise(sd, random)
     if isinstance(value, tuple):
         return tuple(_noisy(word, item, sd, random) for item in value)  # pyright: ignore[reportUnknownVariableType]

@@ -208,7 +208,8 @@ class World:
         self.refresh()
         model, contacts = self.mj_model, self.mj_data.contact
         depths: dict[str, float] = {}
-        for pair, distance in zip(contacts.geom.tolist(), contacts.dist.tolist(), strict=True):
+        pairs: list[list[int]] = contacts.geom.tolist()
+        for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
             bodies = [int(model.geom_bodyid[geom]) if geom >= 0 else 0 for geom in pair]
             for one, other in ((0, 1), (1, 0)):
                 if int(model.body_mocapid[bodies[one]]) in mocaps and model.body_treeid[bodies[other]] >= 0:
