@@ -48,6 +48,15 @@ def test_it_has_the_size_it_is_given(trunk: str, shoulder_width: float, depth: f
     assert box.lower[2] == near(0.005, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("height", "shoulder_width", "depth", "eye_height"), [(1.75, 0.27, 0.25, None), (1.75, 1.6, 1.7, None), (0.3, 0.1, 0.1, 0.295)]
+)
+def test_unusual_sizes_are_kept_too(height: float, shoulder_width: float, depth: float, eye_height: float | None) -> None:
+    _, body = living(height=height, shoulder_width=shoulder_width, depth=depth, eye_height=eye_height)
+    box = body.bounding_box("body")
+    assert (box.width, box.depth, box.upper[2]) == near((shoulder_width, depth, height), abs=1e-9)
+
+
 def test_eye_and_hands_are_where_the_sizes_say() -> None:
     world, body = living(height=1.8, eye_height=1.7, arm_length=0.8)
     assert world.mj_data.site("walker_eye").xpos[2] == near(1.7)
@@ -325,6 +334,9 @@ def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way()
         ({"eye_height": 1.0}, r"Mannequin\.eye_height: must be in the head, 1\.52 to 1\.73 m here \(got 1\.0\)"),
         ({"shoulder_width": 0.2}, r"Mannequin\.shoulder_width: must be at least 0\.15 of the height"),
         ({"arm_length": 1.5}, r"Mannequin\.arm_length: hands would touch the floor"),
+        ({"shoulder_width": 1.8}, r"Mannequin\.shoulder_width: must be at most the height \(got 1\.8\)"),
+        ({"depth": 2}, r"Mannequin\.depth: must be at most the height \(got 2\.0\)"),
+        ({"load": Load(shape="box", size=(0.3, 0.4, 2.3))}, r"Mannequin\.load: would touch the floor; it can be 2\.21 m high \(got 2\.3\)"),
         ({"trunk": "bx"}, r"must be one of 'ellipsoid', 'box' \(got 'bx'\); did you mean 'box'"),
         ({"mass": -1}, r"Mannequin\.mass: must be > 0"),
         ({"noise": (("poze", 1.0),)}, r"walker has no sensor 'poze'; did you mean 'pose'"),

@@ -21,6 +21,7 @@ from actr3d.world.noise import Noise, Sd
 from actr3d.world.running import Running
 from actr3d.world.sensors import SENSORS
 from actr3d.world.sensors.touch import Touch
+from actr3d.world.servo import moved_by
 from actr3d.world.words import known, number
 
 if TYPE_CHECKING:
@@ -215,8 +216,14 @@ class Body:
         data = self.world.mj_data
         if data.ncon == 0:
             return True
-        ours = self.own()[data.contact.geom]
+        ours = self.sides(self.own())
         return not np.any(ours[:, 0] != ours[:, 1])
+
+    def sides(self, own: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Returns for each contact which of its two sides (n, 2) are its own, given which geoms are; soft things have none."""
+        geoms = self.world.mj_data.contact.geom
+        soft = self.members[self.world.soft][self.world.mj_data.contact.flex] if len(self.world.soft) else False
+        return np.where(geoms >= 0, own[geoms], soft)
 
     def own(self) -> NDArray[np.bool_]:
         """Returns for each geom of the world whether it is part of the body or held by it."""
@@ -258,10 +265,10 @@ class Body:
         return [Joint(self.world, n, self.short(model.joint(n).name) or f"joint_{n}") for n in numbers if n not in self.base.joints]
 
     def _controls(self) -> dict[str, int]:
-        """Returns where the controls are of the actuators that are named as its own."""
+        """Returns where the controls are of the actuators that move it; a name alone may be that of `arm` or of `arm_2`."""
         model: Any = self.world.mj_model
-        names = [str(model.actuator(n).name) for n in range(model.nactuator)]
-        return {self.short(name): int(model.actuator_ctrladr[n]) for n, name in enumerate(names) if name.startswith(self.anatomy.prefix)}
+        own = [n for n in range(model.nactuator) if self.members[moved_by(model, n)].any()]
+        return {self.short(str(model.actuator(n).name)): int(model.actuator_ctrladr[n]) for n in own}
 
     def _id(self, kind: str, name: str) -> int:
         try:

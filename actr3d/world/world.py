@@ -77,6 +77,8 @@ class World:
         mujoco.mj_forward(self.mj_model, self.mj_data)
         self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
         """By geom: what the object is called that it belongs to; a geom that lies in the world itself has its own name."""
+        self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
+        """By flex, MuJoCo's soft thing: the MuJoCo body of its first vertex; its contacts have no geom."""
         described = [part for part in scene.parts if isinstance(part, Embodied)]
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
@@ -231,9 +233,17 @@ class World:
             raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
         return free[name]
 
+    def other_side(self, contact: int, side: int) -> str:
+        """Returns what the object is called that is on one side (0 or 1) of a contact."""
+        geom = int(self.mj_data.contact.geom[contact, side])
+        return self.owners[geom] if geom >= 0 else self._root_name(int(self.soft[self.mj_data.contact.flex[contact, side]]))
+
+    def _root_name(self, body: int) -> str:
+        return str(self.mj_model.body(int(self.mj_model.body_rootid[body])).name)
+
     def _owner(self, geom: int) -> str:
-        root = int(self.mj_model.body_rootid[self.mj_model.geom_bodyid[geom]])
-        return str(self.mj_model.body(root).name if root else self.mj_model.geom(geom).name)
+        body = int(self.mj_model.geom_bodyid[geom])
+        return self._root_name(body) if body else str(self.mj_model.geom(geom).name)
 
     def _aperture(self, name: str) -> Aperture:
         if name not in self._apertures:
