@@ -79,7 +79,8 @@ DRIVES = """<mujoco><worldbody><body name="base"><geom size="0.1"/><site name="h
   <tendon><spatial name="cord"><site site="hook"/><site site="hand"/></spatial>
     <fixed name="sum"><joint joint="slide" coef="1"/></fixed></tendon>
   <actuator><motor name="joint" joint="slide"/><motor name="site" site="hand"/><motor name="cord" tendon="cord"/>
-    <motor name="sum" tendon="sum"/><orientation name="turn" site="hand" refsite="hook"/><adhesion name="stick" body="base" ctrlrange="0 1"/></actuator></mujoco>"""
+    <motor name="sum" tendon="sum"/><orientation name="turn" site="hand" refsite="hook"/>
+    <adhesion name="stick" body="base" ctrlrange="0 1"/></actuator></mujoco>"""
 
 
 def test_whatever_an_actuator_pulls_at_it_is_the_body_s_that_it_moves() -> None:
