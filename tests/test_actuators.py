@@ -235,10 +235,24 @@ def test_an_imported_body_shows_its_joints_and_takes_controls() -> None:
         ("grasp", ("cup", "middle"), "walker has no hand 'middle'; it has left, right"),
         ("release", ("middle",), "walker has no hand 'middle'"),
         ("teleport", (1, math.nan), "teleport: y: must be a finite number"),
+        (["walk"], (1,), r"walker has no actuator \['walk'\]; it has walk"),
+        ("walk", (10**400,), "walk: speed: must be a finite number"),
+        ("heading", (math.nan,), "heading: angle: must be a finite number"),
+        ("waypoint", (1, 2, math.nan), "waypoint: speed: must be a finite number"),
+        ("joint", ("torso_yaw", math.nan), "joint: speed: must be a finite number"),
+        ("joint", (["torso_yaw"], 1), r"walker has no joint \['torso_yaw'\]"),
+        ("position", (5, 1), "walker has no joint 5"),
+        ("posture", (5,), r"posture: angles: must be angles by joint \(got 5\)"),
+        ("posture", ({"torso_yaw": 1, "head_yaw": math.nan},), "position: angle: must be a finite number"),
+        ("grasp", (5,), "no loose object '5' in this scene"),
+        ("grasp", ("cup", ["left"]), r"walker has no hand \['left'\]"),
+        ("release", (0,), "walker has no hand 0"),
     ],
 )
-def test_wrong_commands_are_refused_with_a_reason_and_do_nothing(word: str, values: tuple[Any, ...], message: str) -> None:
+def test_wrong_commands_are_refused_with_a_reason_and_do_nothing(word: Any, values: tuple[Any, ...], message: str) -> None:
     world, body = living(CUP)
+    body.set("waypoint", 3.0, 0.0)
+    body.set("position", "torso_yaw", 0.5)
     before = world.state()
     with pytest.raises(Actr3dError, match=message):
         body.set(word, *values)

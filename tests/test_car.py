@@ -128,3 +128,15 @@ def test_wrong_commands_are_refused_with_a_reason(word: str, values: tuple[Any, 
     _, car = driving()
     with pytest.raises(Actr3dError, match=message):
         car.set(word, *values)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"rear": 2.665}, r"Car\.rear: must be less than the wheelbase of 2\.665 m \(got 2\.665\)"),
+        ({"size": (4.0, 1.7, 0.2)}, r"Car\.size: its height must be more than 0\.24 m"),
+    ],
+)
+def test_wrong_cars_are_refused_with_a_reason(wrong: dict[str, Any], message: str) -> None:
+    with pytest.raises(Actr3dError, match=message):
+        Car(**wrong)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from living import near
 from mujoco import MjModel, MjSpec
 
 from actr3d.errors import Actr3dError, ModelWarning, WorldError
-from actr3d.world import Floor, Imported, Loose, Scene, World
+from actr3d.world import Floor, Imported, Loose, Mannequin, Scene, World
 from actr3d.world.scene import Part
 
 creation: Any = trimesh.creation
@@ -392,6 +393,28 @@ def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, t
 def test_names_that_clash_in_a_scene_are_refused() -> None:
     with pytest.raises(WorldError, match="repeated name 'a_base'"):
         World(Scene(parts=(Imported(name="a", text=ARM), Loose(name="a_base"))))
+
+
+ROOM = """<mujoco><worldbody><geom type="box" size=".05 2 1" pos="0.6 0 1"/><geom name="geom_0" pos="9 9 9" size="1"/>
+  <body pos="0 -0.6 1"><geom type="box" size="2 .05 1"/></body></worldbody></mujoco>"""
+CLOTH = """<mujoco><worldbody><body name="cloth" pos="0.5 0 1.2"><flexcomp name="cloth" type="grid" count="6 6 2" spacing=".1 .1 .1"
+  mass="2" dim="3" radius=".01"><contact selfcollide="none"/><edge equality="true"/></flexcomp></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("text", "direction", "feels"),
+    [(ROOM, 0.0, "i_geom_1"), (ROOM, -math.pi / 2, "i_body_0"), (CLOTH, 0.0, "i_cloth")],
+    ids=["fixed", "body", "soft"],
+)
+def test_what_has_no_name_or_is_soft_is_felt_too(text: str, direction: float, feels: str) -> None:
+    world = World(Scene(parts=(Imported(name="i", text=text), Mannequin(name="walker"))))
+    body = world.bodies["walker"]
+    body.set("walk", 1.0, direction=direction)
+    touches: set[str] = set()
+    for _ in range(60):
+        world.step(5)
+        touches |= {touch.other for touch in body.get("contacts")}
+    assert touches == {feels}
 
 
 def test_no_text_crashes_the_process(tmp_path: Path) -> None:

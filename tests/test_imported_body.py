@@ -64,3 +64,26 @@ def test_scenery_is_no_body() -> None:
         ImportedBody(name="s", text="<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
     with pytest.raises(WorldError, match="there is one without a name"):
         ImportedBody(name="s", text="<mujoco><worldbody><body><geom size='1'/></body></worldbody></mujoco>")
+
+
+def test_each_of_two_has_its_own_controls_though_one_s_name_begins_with_the_other_s() -> None:
+    parts = [ImportedBody(name=name, text=ARM, position=(x, 0, 0)) for name, x in (("arm", 0), ("arm_2", 3))]
+    one, two = World(Scene(parts=tuple(parts))).bodies.values()
+    assert list(one.controls) == list(two.controls) == ["turn"]
+    with pytest.raises(WorldError, match="arm has no control '2_turn'"):
+        one.set("control", "2_turn", 0.5)
+
+
+DRIVES = """<mujoco><worldbody><body name="base"><geom size="0.1"/><site name="hand"/>
+  <joint name="slide" type="slide" axis="1 0 0"/></body></worldbody>
+  <tendon><spatial name="cord"><site site="hook"/><site site="hand"/></spatial>
+    <fixed name="sum"><joint joint="slide" coef="1"/></fixed></tendon>
+  <actuator><motor name="joint" joint="slide"/><motor name="site" site="hand"/><motor name="cord" tendon="cord"/>
+    <motor name="sum" tendon="sum"/><orientation name="turn" site="hand" refsite="hook"/>
+    <adhesion name="stick" body="base" ctrlrange="0 1"/></actuator></mujoco>"""
+
+
+def test_whatever_an_actuator_pulls_at_it_is_the_body_s_that_it_moves() -> None:
+    text = DRIVES.replace("<worldbody>", '<worldbody><site name="hook" pos="1 0 0"/>')
+    body = World(Scene(parts=(ImportedBody(name="r", text=text),))).bodies["r"]
+    assert list(body.controls) == ["joint", "site", "cord", "sum", "turn", "stick"]

@@ -48,6 +48,15 @@ def test_it_has_the_size_it_is_given(trunk: str, shoulder_width: float, depth: f
     assert box.lower[2] == near(0.005, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("height", "shoulder_width", "depth", "eye_height"), [(1.75, 0.27, 0.25, None), (1.75, 1.6, 1.7, None), (0.3, 0.1, 0.1, 0.295)]
+)
+def test_unusual_sizes_are_kept_too(height: float, shoulder_width: float, depth: float, eye_height: float | None) -> None:
+    _, body = living(height=height, shoulder_width=shoulder_width, depth=depth, eye_height=eye_height)
+    box = body.bounding_box("body")
+    assert (box.width, box.depth, box.upper[2]) == near((shoulder_width, depth, height), abs=1e-9)
+
+
 def test_eye_and_hands_are_where_the_sizes_say() -> None:
     world, body = living(height=1.8, eye_height=1.7, arm_length=0.8)
     assert world.mj_data.site("walker_eye").xpos[2] == near(1.7)
@@ -174,6 +183,20 @@ def test_nothing_gets_through_a_wall(
         assert front < near_face + 0.03, f"at tick {tick}"
         reached = max(reached, front)
     assert reached > near_face
+
+
+@pytest.mark.parametrize("thickness", [0.02, 0.05])
+@pytest.mark.parametrize("mass", [2.0, 30.0])
+@pytest.mark.parametrize("heading", [0.68, 0.85])
+def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: float, mass: float, heading: float) -> None:
+    """The wall turns bar and trunk back as fast as the legs go on: stopped alone, the legs would fling the bar into the wall."""
+    wall = Wall(name="wall", start=(3.0, -20.0), end=(3.0, 20.0), thickness=thickness)
+    world, body = living(wall, load=Load(size=(5.0, 0.03), mass=mass), heading=heading)
+    for tick in range(180):
+        body.set("stop")
+        body.set("walk", 3.0)
+        world.step(5)
+        assert body.bounding_box().upper[0] < 3.02, f"at tick {tick}"
 
 
 def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> None:
@@ -311,9 +334,13 @@ def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way()
         ({"eye_height": 1.0}, r"Mannequin\.eye_height: must be in the head, 1\.52 to 1\.73 m here \(got 1\.0\)"),
         ({"shoulder_width": 0.2}, r"Mannequin\.shoulder_width: must be at least 0\.15 of the height"),
         ({"arm_length": 1.5}, r"Mannequin\.arm_length: hands would touch the floor"),
+        ({"shoulder_width": 1.8}, r"Mannequin\.shoulder_width: must be at most the height \(got 1\.8\)"),
+        ({"depth": 2}, r"Mannequin\.depth: must be at most the height \(got 2\.0\)"),
+        ({"load": Load(shape="box", size=(0.3, 0.4, 2.3))}, r"Mannequin\.load: would touch the floor; it can be 2\.21 m high \(got 2\.3\)"),
         ({"trunk": "bx"}, r"must be one of 'ellipsoid', 'box' \(got 'bx'\); did you mean 'box'"),
         ({"mass": -1}, r"Mannequin\.mass: must be > 0"),
         ({"noise": (("poze", 1.0),)}, r"walker has no sensor 'poze'; did you mean 'pose'"),
+        ({"noise": (("pose", -1.0),)}, r"walker: noise of pose: must be at least 0 \(got -1\.0\)"),
     ],
 )
 def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], message: str) -> None:

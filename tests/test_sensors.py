@@ -6,6 +6,7 @@ import math
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import FrozenInstanceError, dataclass, replace
 from typing import Any
 
@@ -17,6 +18,8 @@ from mujoco import MjSpec, mjtGeom
 from actr3d.errors import Actr3dError
 from actr3d.world import Aperture, Body, Floor, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
+from actr3d.world.noise import Noise
+from actr3d.world.sensors.picture import Picture
 from actr3d.world.sensors.touch import present
 
 
@@ -225,6 +228,22 @@ def test_pictures_show_what_the_eye_sees_or_say_what_is_missing() -> None:
     assert (noisy.dtype, body.get("image", noise=3.0).as_array().dtype) == (np.float32, np.uint8)
 
 
+def test_pictures_are_drawn_in_one_thread() -> None:
+    if not can_draw():
+        pytest.skip("there is no EGL here")
+    _, body = living(WALL)
+    first = body.get("depth", 8, 6)
+    with ThreadPoolExecutor() as others, pytest.raises(Actr3dError, match="drawn in one thread, that of the first picture"):
+        others.submit(body.get, "depth", 8, 6).result()
+    assert body.get("depth", 8, 6) == first
+
+
+def test_a_picture_s_noise_is_one_number() -> None:
+    picture = Picture(kind="depth", width=1, height=1, pixels=bytes(4))
+    with pytest.raises(Actr3dError, match="noise of depth: a picture has no fields; give one number"):
+        Noise(0, "walker").added("depth", picture, {"x": 1.0})
+
+
 def test_without_egl_pictures_are_refused_with_a_reason() -> None:
     code = (
         "from actr3d.world import *\n"
@@ -315,9 +334,12 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
         ("pose", {"noise": {"xx": 1}}, "noise of pose: its readings have no 'xx'"),
         ("rangefinder", {"noise": {"x": 1}, "elevation": -1.0}, "its readings have no fields; give one number"),
         ("image", {"width": 0}, "image: width: must be 1 to 4096"),
+        (["pose"], {}, r"walker has no sensor \['pose'\]; it has pose"),
+        ("pose", {"part": []}, r"walker has no part \[\]; it has legs"),
+        ("rangefinder", {"at": 3}, r"walker: a frame is named by text \(got 3\)"),
     ],
 )
-def test_wrong_readings_are_refused_with_a_reason(word: str, options: dict[str, Any], message: str) -> None:
+def test_wrong_readings_are_refused_with_a_reason(word: Any, options: dict[str, Any], message: str) -> None:
     _, body = living()
     with pytest.raises(Actr3dError, match=message.replace("?;", r"\?;")):
         body.get(word, **options)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import mujoco
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from living import near
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Aperture, Floor, Loose, Scene, Track, Wall, World
+from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Track, Wall, World
 
 
 def doorway(width: float = 0.7, heading: float = 0.0) -> World:
@@ -88,6 +89,8 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().set_aperture_width(-1), r"Aperture\.width: must be >= 0 \(got -1\.0\)"),
         (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
         (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
+        (lambda: doorway().step(-1), r"the physics goes on by a whole number of steps \(got -1\)"),
+        (lambda: World(Scene(), seed=-1), r"the seed of a world must be a whole number from 0 on \(got -1\)"),
     ],
 )
 def test_wrong_scenes_are_refused_with_a_reason(wrong: Callable[[], object], message: str) -> None:
@@ -100,3 +103,44 @@ def test_physics_that_diverges_says_so() -> None:
     world.mj_data.qvel[0] = 1e20
     with pytest.raises(Actr3dError, match="the physics diverged near"):
         world.step()
+
+
+def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
+    world = doorway()
+    world.step(10)
+    state = world.state()
+    world.step(10)
+    expected = world.state()
+    world.mj_data.qvel[0] = 1e20
+    with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
+    world.restore(state)
+    world.step(10)
+    assert world.state().mj_state.tobytes() == expected.mj_state.tobytes()
+
+
+def test_an_aperture_does_not_close_on_what_stands_in_it() -> None:
+    parts = (Floor(), Aperture(position=(0.0, 0.0)), Mannequin(name="walker"), Wall(name="beside", start=(-1, 2.5), end=(1, 2.5)))
+    world = World(Scene(parts=parts))
+    before = world.state()
+    with pytest.raises(Actr3dError, match=r"aperture 'aperture' cannot be 0\.3 m wide now: walker would be inside its walls"):
+        world.set_aperture_width(0.3)
+    assert world.state().mj_state.tobytes() == before.mj_state.tobytes()
+    world.set_aperture_width(0.44)
+    world.step(100)
+    assert world.aperture_width() == near(0.44)
+    assert np.abs(world.mj_data.qvel).max() < 0.1
+    assert world.bodies["walker"].get("pose").x == near(0, abs=0.02)
+
+
+@pytest.mark.parametrize("rate", [0.001, 0.005, 0.02])
+def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_who_stands_in_it(rate: float) -> None:
+    world = World(Scene(parts=(Floor(), Aperture(position=(0.0, 0.0), width=0.6), Mannequin(name="walker"))))
+    for _ in range(round(0.6 / rate) + 100):
+        with suppress(Actr3dError):
+            world.set_aperture_width(max(0.0, world.aperture_width() - rate))
+        world.step(5)
+        assert np.abs(world.mj_data.qvel).max() < 100  # 500 rad/s where walls were closed on it at once
+    pose = world.bodies["walker"].get("pose")
+    assert abs(pose.x) < 3
+    assert abs(pose.y) < 0.5

@@ -10,9 +10,9 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError
 from actr3d.world.running import HEADING
-from actr3d.world.words import Word, adder, number
+from actr3d.world.words import Word, adder, known, number
 
 if TYPE_CHECKING:
     from actr3d.world.anatomy import Steering
@@ -37,33 +37,35 @@ _foreign = adder(ACTUATORS, lambda body: bool(body.controls) and not body.anatom
 def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) -> None:
     """Walks at a speed [m/s], turning [rad/s, left is positive], in a direction against where it faces [rad, 0 forward]."""
     speed, turn, direction = number(speed, "walk: speed"), number(turn, "walk: turn"), number(direction, "walk: direction")
-    _keep_walking(body)
+    _forget_the_way(body)
     left = speed * math.sin(direction) if direction else 0.0
-    body.base.drive((speed * math.cos(direction), left, turn), body.free)
+    body.base.drive((speed * math.cos(direction), left, turn), body)
     body.world.changed()
 
 
 @_walks
 def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body to a heading [rad, in the world's frame] at a speed [rad/s], the shorter way round."""
+    angle, speed = number(angle, "heading: angle"), number(speed, "heading: speed", 1e-6)
     body.running.waypoint = None
-    body.running.targets[HEADING] = (number(angle, "heading: angle"), number(speed, "heading: speed", 1e-6))
+    body.running.targets[HEADING] = (angle, speed)
 
 
 @_walks
 def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = MODERATE) -> None:
     """Turns to a point [m], walks to it at a speed [m/s], and stands there. Source of the speed: Warren & Whang (1987), normal walking."""
     x, y = number(x, "waypoint: x"), number(y, "waypoint: y")
-    _keep_walking(body)
-    body.running.waypoint = (x, y, number(speed, "waypoint: speed", 1e-6), number(turn, "waypoint: turn", 1e-6))
+    speed, turn = number(speed, "waypoint: speed", 1e-6), number(turn, "waypoint: turn", 1e-6)
+    _forget_the_way(body)
+    body.running.waypoint = (x, y, speed, turn)
 
 
 @_walks
 def stop(body: Body) -> None:
     """Stops dead: legs and all joints, whatever they were doing."""
-    _keep_walking(body)
+    _forget_the_way(body)
     body.running.targets.clear()
-    body.base.drive((0.0, 0.0, 0.0), body.free)
+    body.base.drive((0.0, 0.0, 0.0), body)
     for joint in body.joints.values():
         joint.drive(0.0, body.free)
     body.world.changed()
@@ -72,27 +74,24 @@ def stop(body: Body) -> None:
 @_joints
 def joint(body: Body, name: str, speed: float) -> None:
     """Turns a joint at a constant speed [rad/s] until told otherwise or at its limit."""
-    turned = _servoed(body, name)
+    turned, speed = _servoed(body, name), number(speed, "joint: speed")
     body.running.targets.pop(name, None)
-    turned.drive(number(speed, "joint: speed"), body.free)
+    turned.drive(speed, body.free)
     body.world.changed()
 
 
 @_joints
 def position(body: Body, name: str, angle: float, speed: float = MODERATE) -> None:
     """Turns a joint to an angle [rad], or to its limit where that is nearer, at a constant speed [rad/s], and holds it there."""
-    turned = _servoed(body, name)
-    angle = max(turned.lower, min(turned.upper, number(angle, "position: angle")))
-    body.running.targets[name] = (angle, number(speed, "position: speed", 1e-6))
+    body.running.targets[name] = _target(body, name, angle, speed)
 
 
 @_joints
 def posture(body: Body, angles: Mapping[str, float], speed: float = MODERATE) -> None:
     """Turns several joints to angles [rad], as `position` does."""
-    for name in angles:
-        _servoed(body, name)
-    for name, angle in angles.items():
-        position(body, name, angle, speed)
+    if not isinstance(angles, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a mind
+        raise WorldError(f"posture: angles: must be angles by joint (got {angles!r})")
+    body.running.targets |= {name: _target(body, name, angle, speed) for name, angle in angles.items()}
 
 
 @_driven
@@ -133,9 +132,7 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
 @_holds
 def grasp(body: Body, object: str, hand: str = "right") -> None:
     """Holds a loose object with a hand, if the hand is empty and reaches it; the sensor `grasp` says whether it does."""
-    holds = body.hands.get(hand)
-    if holds is None:
-        raise WorldError(f"{body.name} has no hand '{hand}'{did_you_mean(hand, body.hands)}; it has {', '.join(body.hands)}")
+    holds = body.hands[known(hand, body.hands, body.name, "hand")]
     number = body.world.loose(object)
     body.world.refresh()
     if holds.held is None and holds.reaches(number):
@@ -146,8 +143,8 @@ def grasp(body: Body, object: str, hand: str = "right") -> None:
 @_holds
 def release(body: Body, hand: str | None = None) -> None:
     """Lets go of what a hand holds, or both hands."""
-    if hand is not None and hand not in body.hands:
-        raise WorldError(f"{body.name} has no hand '{hand}'{did_you_mean(hand, body.hands)}; it has {', '.join(body.hands)}")
+    if hand is not None:
+        known(hand, body.hands, body.name, "hand")
     for side, holds in body.hands.items():
         if hand in (None, side):
             holds.release()
@@ -161,7 +158,7 @@ def control(body: Body, name: str, value: float) -> None:
     body.world.changed()
 
 
-def _keep_walking(body: Body) -> None:
+def _forget_the_way(body: Body) -> None:
     """Forgets where the body was going, for another command moves it now."""
     body.running.waypoint = None
     body.running.targets.pop(HEADING, None)
@@ -172,6 +169,13 @@ def _servoed(body: Body, name: str) -> Joint:
     if not turned.driven:
         raise WorldError(f"{body.name}: joint '{name}' has no servo that could move it")
     return turned
+
+
+def _target(body: Body, name: str, angle: float, speed: float) -> tuple[float, float]:
+    """Returns where a joint is to go, within its limits, and how fast."""
+    turned = _servoed(body, name)
+    angle = max(turned.lower, min(turned.upper, number(angle, "position: angle")))
+    return angle, number(speed, "position: speed", 1e-6)
 
 
 def _car(body: Body) -> Steering:

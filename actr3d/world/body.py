@@ -10,7 +10,7 @@ import numpy as np
 from mujoco import mjtJoint
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError
 from actr3d.world.actuators import ACTUATORS
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.bounding_box import BoundingBox, Extent
@@ -21,6 +21,8 @@ from actr3d.world.noise import Noise, Sd
 from actr3d.world.running import Running
 from actr3d.world.sensors import SENSORS
 from actr3d.world.sensors.touch import Touch
+from actr3d.world.servo import moved_by
+from actr3d.world.words import known, number
 
 if TYPE_CHECKING:
     from actr3d.world.world import World
@@ -83,10 +85,10 @@ class Body:
         model = world.mj_model
         self.members = np.zeros(model.nbody, dtype=bool)
         """By MuJoCo body: whether it is part of this one."""
-        for number in range(self.root, model.nbody):
-            self.members[number] = number == self.root or self.members[model.body_parentid[number]]
+        for member in range(self.root, model.nbody):
+            self.members[member] = member == self.root or self.members[model.body_parentid[member]]
         self.geoms: NDArray[np.intp] = np.flatnonzero(self.members[model.geom_bodyid])
-        self.parts: tuple[str, ...] = tuple(self.part_name(int(number)) for number in np.flatnonzero(self.members))
+        self.parts: tuple[str, ...] = tuple(self.part_name(int(member)) for member in np.flatnonzero(self.members))
         self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(world, self.root, self.anatomy)
         self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints()}
@@ -107,8 +109,9 @@ class Body:
         self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
         self.sensors: tuple[str, ...] = tuple(name for name, word in SENSORS.items() if word.fits(self))
         self._noise: Mapping[str, float] = dict(self.anatomy.noise)
-        for word in self._noise:
-            self._known("sensor", word, self.sensors)
+        for word, sd in self._noise.items():
+            known(word, self.sensors, self.name, "sensor")
+            number(sd, f"{self.name}: noise of {word}", 0)
 
     def bounding_box(self, frame: str = "world") -> BoundingBox:
         """Returns the smallest box around all of the body and what it holds, exactly, in its present posture.
@@ -135,7 +138,7 @@ class Body:
         Raises:
             WorldError: If this body has no such actuator or joint, or a value is not what it takes.
         """
-        self._known("actuator", word, self.actuators)
+        known(word, self.actuators, self.name, "actuator")
         ACTUATORS[word](self, *values, **named)
 
     def get(self, word: str, *values: Any, noise: Sd = None, **options: Any) -> Any:
@@ -154,7 +157,7 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is not what it takes.
         """
-        self._known("sensor", word, self.sensors)
+        known(word, self.sensors, self.name, "sensor")
         reading = SENSORS[word](self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
@@ -170,11 +173,11 @@ class Body:
         self.running.restore(state.running)
         self.noise.restore(state.noise)
         self.touched = state.touched
-        known = dict(state.senses)
-        for make, parameters in known:
+        remembered = dict(state.senses)
+        for make, parameters in remembered:
             self.sense(make, parameters)
         for key, sense in self._senses.items():
-            sense.restore(known.get(key))
+            sense.restore(remembered.get(key))
         held = dict(state.held)
         for side, hand in self.hands.items():
             hand.restore(held.get(side))
@@ -197,8 +200,7 @@ class Body:
         Raises:
             WorldError: If it has no such joint.
         """
-        self._known("joint", name, self.joints)
-        return self.joints[name]
+        return self.joints[known(name, self.joints, self.name, "joint")]
 
     def control(self, name: str) -> int:
         """Returns where the control of one of its actuators is in MuJoCo's `ctrl`.
@@ -206,8 +208,7 @@ class Body:
         Raises:
             WorldError: If it has no such actuator.
         """
-        self._known("control", name, self.controls)
-        return self.controls[name]
+        return self.controls[known(name, self.controls, self.name, "control")]
 
     def free(self) -> bool:
         """Returns whether neither it nor what it holds touches anything else, at the present positions."""
@@ -215,8 +216,14 @@ class Body:
         data = self.world.mj_data
         if data.ncon == 0:
             return True
-        ours = self.own()[data.contact.geom]
+        ours = self.sides(self.own())
         return not np.any(ours[:, 0] != ours[:, 1])
+
+    def sides(self, own: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Returns for each contact which of its two sides (n, 2) are its own, given which geoms are; soft things have none."""
+        geoms = self.world.mj_data.contact.geom
+        soft = self.members[self.world.soft][self.world.mj_data.contact.flex] if len(self.world.soft) else False
+        return np.where(geoms >= 0, own[geoms], soft)
 
     def own(self) -> NDArray[np.bool_]:
         """Returns for each geom of the world whether it is part of the body or held by it."""
@@ -258,18 +265,13 @@ class Body:
         return [Joint(self.world, n, self.short(model.joint(n).name) or f"joint_{n}") for n in numbers if n not in self.base.joints]
 
     def _controls(self) -> dict[str, int]:
-        """Returns where the controls are of the actuators that are named as its own."""
+        """Returns where the controls are of the actuators that move it; a name alone may be that of `arm` or of `arm_2`."""
         model: Any = self.world.mj_model
-        names = [str(model.actuator(n).name) for n in range(model.nactuator)]
-        return {self.short(name): int(model.actuator_ctrladr[n]) for n, name in enumerate(names) if name.startswith(self.anatomy.prefix)}
+        own = [n for n in range(model.nactuator) if self.members[moved_by(model, n)].any()]
+        return {self.short(str(model.actuator(n).name)): int(model.actuator_ctrladr[n]) for n in own}
 
     def _id(self, kind: str, name: str) -> int:
         try:
             return int(getattr(self.world.mj_model, kind)(name).id)
         except KeyError as error:
             raise WorldError(f"body '{self.name}': the compiled model has no {kind} '{name}'") from error
-
-    def _known(self, kind: str, word: str, words: Any) -> None:
-        if word not in words:
-            has = f"it has {', '.join(words)}" if words else f"it has no {kind}s"
-            raise WorldError(f"{self.name} has no {kind} '{word}'{did_you_mean(word, words)}; {has}")

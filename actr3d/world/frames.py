@@ -31,6 +31,8 @@ def frame_of(body: Body, name: str) -> Frame:
     Raises:
         WorldError: If nothing is called so.
     """
+    if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a mind
+        raise WorldError(f"{body.name}: a frame is named by text (got {name!r})")
     data = body.world.mj_data
     if name == "world":
         return _WORLD

@@ -6,6 +6,7 @@ import re
 import warnings
 from dataclasses import dataclass, field
 from functools import lru_cache
+from itertools import count
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -101,7 +102,9 @@ class Imported(Configuration):
     def add_to(self, mj_spec: MjSpec) -> None:
         """Attaches it, turned and placed."""
         frame = mj_spec.worldbody.add_frame(pos=self.position, quat=orientation("", self.heading, self.quaternion))
-        mj_spec.attach(_specification(_document(self.files or ()), self.free), prefix=self.prefix, frame=frame)
+        described = _specification(_document(self.files or ()), self.free)
+        _name_what_has_none(described)
+        mj_spec.attach(described, prefix=self.prefix, frame=frame)
 
     def _read(self) -> Files:
         if (self.path is None) == (self.text is None):
@@ -167,6 +170,15 @@ def _specification(document: Document, free: bool) -> MjSpec:
             raise WorldError(f"free=True needs one root body without a joint (there are {len(roots)})")
         roots[0].add_freejoint(name="free")
     return mj_spec
+
+
+def _name_what_has_none(mj_spec: MjSpec) -> None:
+    """Names what stands in the world itself, so that who touches it can say what it is: `body_0`, `geom_0`, `geom_1`, …"""
+    for kind, things, all_things in (("body", mj_spec.worldbody.bodies, mj_spec.bodies), ("geom", mj_spec.worldbody.geoms, mj_spec.geoms)):
+        taken = {thing.name for thing in all_things}
+        free = (name for name in (f"{kind}_{number}" for number in count()) if name not in taken)
+        for thing in things:
+            thing.name = thing.name or next(free)
 
 
 def _hide(geoms: list[Any], urdf: bool) -> None:

@@ -13,6 +13,7 @@ from actr3d.world.parts import yaw_quaternion
 
 if TYPE_CHECKING:
     from actr3d.world.anatomy import Anatomy
+    from actr3d.world.body import Body
     from actr3d.world.world import World
 
 
@@ -62,6 +63,11 @@ class Joint:
         self._ctrl[self._servo] = speed
         if speed == 0 or free():
             self._qvel[self.v] = speed
+
+    def rest(self) -> None:
+        """Stops it at once if it is told to stand still."""
+        if self._servo is not None and self._ctrl[self._servo] == 0:
+            self._qvel[self.v] = 0
 
     def put(self, position: float) -> None:
         """Puts it at a position [rad] or [m], at once."""
@@ -133,13 +139,21 @@ class Base:
         forward, left, turn = (float(ctrl[n]) for n in self._push)
         return (forward, left, turn)
 
-    def drive(self, speed: tuple[float, float, float], free: Callable[[], bool]) -> None:
-        """Tells its servos to keep a speed (forward, left, turn), as `Joint.drive` does."""
+    def drive(self, speed: tuple[float, float, float], body: Body) -> None:
+        """Tells its servos to keep a speed (forward, left, turn), as `Joint.drive` does.
+
+        When it stops, the joints of its body that are told to stand still stop with it: what is in the way may just have
+        turned them as fast as the base moved, and would be struck by a limb that goes on without it.
+        """
         if speed == self.commanded:
             return
         for servo, value in zip(self._push, speed, strict=True):
             self._world.mj_data.ctrl[servo] = value
-        if speed == (0, 0, 0) or free():
+        if speed == (0, 0, 0):
+            self.speed = speed
+            for joint in body.joints.values():
+                joint.rest()
+        elif body.free():
             self.speed = speed
 
     def put(self, x: float, y: float, heading: float | None) -> None:

@@ -61,7 +61,7 @@ class Running:
                 if abs(rest) <= THERE:
                     del self.targets[name]
                     base.place = (x, y, heading + rest)
-                    base.drive((*base.commanded[:2], 0.0), body.free)
+                    base.drive((*base.commanded[:2], 0.0), body)
             elif abs(target - body.joints[name].position) <= THERE:
                 del self.targets[name]
                 body.joints[name].put(target)
@@ -70,7 +70,7 @@ class Running:
             x, y, _, _ = self.waypoint
             self.waypoint = None
             base.place = (x, y, base.place[2])
-            base.drive((0.0, 0.0, 0.0), body.free)
+            base.drive((0.0, 0.0, 0.0), body)
 
     def state(self) -> tuple[Any, ...]:
         """Returns all commands as plain values."""
@@ -93,7 +93,7 @@ class Running:
         target, speed = self.targets[HEADING]
         forward, left, _ = base.commanded
         rest = _wrapped(target - base.place[2])
-        base.drive((forward, left, _bounded(rest / duration, speed)), self._body.free)
+        base.drive((forward, left, _bounded(rest / duration, speed)), self._body)
 
     def _walk(self, x: float, y: float, speed: float, turn: float, duration: float) -> None:
         """Turns towards the point and walks straight to it."""
@@ -104,7 +104,7 @@ class Running:
         # Near the point its direction means little, and turning to it would only swing the body.
         spin = _bounded(off / duration, turn) if way > speed * duration else 0.0
         pace = min(speed, way / duration) if spin == 0 or abs(off) < ASTRAY else 0.0
-        base.drive((pace * math.cos(off), pace * math.sin(off), spin), self._body.free)
+        base.drive((pace * math.cos(off), pace * math.sin(off), spin), self._body)
 
     def _brake(self, duration: float) -> None:
         """Holds back with what the pressed brake can, and with no more than stops the car in this tick."""

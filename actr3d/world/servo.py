@@ -7,7 +7,7 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from mujoco import MjData, MjModel, MjSpec, mjtBias, mjtGain, mjtTrn
+from mujoco import MjData, MjModel, MjSpec, mjtBias, mjtGain, mjtTrn, mjtWrap
 
 
 def add_servo(mj_spec: MjSpec, name: str, target: str, force: float, gear: tuple[float, ...] | None = None) -> None:
@@ -50,6 +50,20 @@ def fit_servos(mj_model: MjModel, mj_data: MjData, names: Iterable[str]) -> None
         mujoco.mj_mulM(mj_model, mj_data, product, moment)
         inertia = float(moment @ product) / float(moment @ moment) ** 2
         _tune(actuator, inertia / mj_model.opt.timestep)
+
+
+def moved_by(mj_model: Any, actuator: int) -> list[int]:
+    """Returns the MuJoCo bodies that an actuator acts on: one, or all that a tendon joins."""
+    kind, target = int(mj_model.actuator_trntype[actuator]), int(mj_model.actuator_trnid[actuator, 0])
+    of_joint, of_site = mj_model.jnt_bodyid, mj_model.site_bodyid
+    if kind == int(mjtTrn.mjTRN_TENDON):
+        wraps = range(mj_model.tendon_adr[target], mj_model.tendon_adr[target] + mj_model.tendon_num[target])
+        ends = {int(mjtWrap.mjWRAP_JOINT): of_joint, int(mjtWrap.mjWRAP_SITE): of_site}
+        along = [(int(mj_model.wrap_type[wrap]), int(mj_model.wrap_objid[wrap])) for wrap in wraps]
+        return [int(ends[type][number]) for type, number in along if type in ends]
+    if kind in (int(mjtTrn.mjTRN_SITE), int(mjtTrn.mjTRN_SLIDERCRANK), int(mjtTrn.mjTRN_SO3)):
+        return [int(of_site[target])]
+    return [target if kind == int(mjtTrn.mjTRN_BODY) else int(of_joint[target])]
 
 
 def _tune(actuator: Any, gain: float) -> None:

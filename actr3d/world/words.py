@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
-from actr3d.errors import WorldError
+from actr3d.errors import WorldError, did_you_mean
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
@@ -55,6 +55,29 @@ def adder(words: dict[str, Word], fits: Callable[[Body], bool] = lambda _: True)
     return add
 
 
+def known(word: Any, words: Collection[str], whose: str, kind: str) -> str:
+    """Returns a word that is one of those that there are; it may come from a mind, so it may be anything.
+
+    Args:
+        word: What was given.
+        words: Those that there are.
+        whose: Who has them, for the message.
+        kind: What they are called, for the message.
+
+    Raises:
+        WorldError: If it is not one of them; says which there are.
+    """
+    if isinstance(word, str) and word in words:
+        return word
+    has = f"it has {', '.join(words)}" if words else f"it has no {kind}s"
+    near = did_you_mean(word, words) if isinstance(word, str) else ""
+    raise WorldError(f"{whose} has no {kind} {_quoted(word)}{near}; {has}")
+
+
+def _quoted(word: Any) -> str:
+    return f"'{word}'" if isinstance(word, str) else repr(word)
+
+
 def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
     """Returns a finite number within bounds.
 
@@ -63,6 +86,8 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
     """
     try:
         given = float(value)
+    except OverflowError:  # a whole number beyond what floats hold
+        given = math.inf
     except (TypeError, ValueError) as error:
         raise WorldError(f"{what}: must be a number (got {value!r})") from error
     if not math.isfinite(given):

@@ -22,6 +22,10 @@ from actr3d.world.servo import fit_servos
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
 
+PRESSED = 0.01
+"""How deep the walls of an aperture may come into something when its width is set [m]: contacts as stiff as theirs push that out
+at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Ours."""
+
 _INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
@@ -47,10 +51,12 @@ class World:
         seed: Where the noise of sensors comes from.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene; says what MuJoCo said.
+        WorldError: If MuJoCo cannot compile the scene, and says what MuJoCo said; or if the seed is not a whole number from 0 on.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
+        if not isinstance(seed, int) or seed < 0:  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a file
+            raise WorldError(f"the seed of a world must be a whole number from 0 on (got {seed!r})")
         self.scene = scene
         self.seed = seed
         try:
@@ -71,6 +77,8 @@ class World:
         mujoco.mj_forward(self.mj_model, self.mj_data)
         self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
         """By geom: what the object is called that it belongs to; a geom that lies in the world itself has its own name."""
+        self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
+        """By flex, MuJoCo's soft thing: the MuJoCo body of its first vertex; its contacts have no geom."""
         described = [part for part in scene.parts if isinstance(part, Embodied)]
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
@@ -88,8 +96,10 @@ class World:
         once, before it.
 
         Raises:
-            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset).
+            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is not one.
         """
+        if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"the physics goes on by a whole number of steps (got {steps!r})")
         running = [body.running for body in self.bodies.values() if body.running]
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
@@ -162,6 +172,7 @@ class World:
         if state.mj_state.shape != (self._state_size,):
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        self._warnings[:] = 0
         self._steps = state.steps
         for name, body_state in state.bodies:
             self.bodies[name].restore(body_state)
@@ -177,16 +188,36 @@ class World:
         return aperture.width_of(tuple(self.mj_data.mocap_pos[self._mocap(f"{name}_left")]))
 
     def set_aperture_width(self, width: float, name: str = "aperture") -> None:
-        """Sets the free width of an aperture [m], at once.
+        """Sets the free width of an aperture [m], at once; no closer than what stands in it lets it.
 
         Raises:
-            WorldError: If there is no such aperture.
+            WorldError: If there is no such aperture, or something that can move is in the way of its segments; they stay then.
             ConfigurationError: If the width is not a number of at least 0.
         """
         aperture = replace(self._aperture(name), width=width)
-        for side, position in aperture.segment_positions(aperture.width).items():
-            self.mj_data.mocap_pos[self._mocap(f"{name}_{side}")] = position
+        sides = [self._mocap(f"{name}_{side}") for side in ("left", "right")]
+        before, depths = self.mj_data.mocap_pos[sides].copy(), self._pressed_by(sides)
+        self.mj_data.mocap_pos[sides] = list(aperture.segment_positions(aperture.width).values())
         self.changed()
+        deep = {other: depth for other, depth in self._pressed_by(sides).items() if depth > max(PRESSED, depths.get(other, 0))}
+        if deep:
+            self.mj_data.mocap_pos[sides] = before
+            self.changed()
+            raise WorldError(f"aperture '{name}' cannot be {aperture.width:g} m wide now: {', '.join(deep)} would be inside its walls")
+
+    def _pressed_by(self, mocaps: list[int]) -> dict[str, float]:
+        """Returns how deep some mocap bodies are in each object that can move [m], by its name."""
+        self.refresh()
+        model, contacts = self.mj_model, self.mj_data.contact
+        depths: dict[str, float] = {}
+        pairs: list[list[int]] = contacts.geom.tolist()
+        for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
+            bodies = [int(model.geom_bodyid[geom]) if geom >= 0 else 0 for geom in pair]
+            for one, other in ((0, 1), (1, 0)):
+                if int(model.body_mocapid[bodies[one]]) in mocaps and model.body_treeid[bodies[other]] >= 0:
+                    name = self.owners[pair[other]]
+                    depths[name] = max(depths.get(name, 0.0), -distance)
+        return depths
 
     def loose(self, name: str) -> int:
         """Returns the MuJoCo body of an object that lies loose.
@@ -198,13 +229,21 @@ class World:
         free = {
             str(model.body(int(model.jnt_bodyid[n])).name): int(model.jnt_bodyid[n]) for n in range(model.njnt) if model.jnt_type[n] == 0
         }
-        if name not in free:
-            raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(name, free)}")
+        if str(name) not in free:
+            raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
         return free[name]
 
+    def other_side(self, contact: int, side: int) -> str:
+        """Returns what the object is called that is on one side (0 or 1) of a contact."""
+        geom = int(self.mj_data.contact.geom[contact, side])
+        return self.owners[geom] if geom >= 0 else self._root_name(int(self.soft[self.mj_data.contact.flex[contact, side]]))
+
+    def _root_name(self, body: int) -> str:
+        return str(self.mj_model.body(int(self.mj_model.body_rootid[body])).name)
+
     def _owner(self, geom: int) -> str:
-        root = int(self.mj_model.body_rootid[self.mj_model.geom_bodyid[geom]])
-        return str(self.mj_model.body(root).name if root else self.mj_model.geom(geom).name)
+        body = int(self.mj_model.geom_bodyid[geom])
+        return self._root_name(body) if body else str(self.mj_model.geom(geom).name)
 
     def _aperture(self, name: str) -> Aperture:
         if name not in self._apertures:

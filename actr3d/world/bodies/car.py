@@ -10,6 +10,7 @@ from annotated_types import Gt, Lt
 from mujoco import MjSpec, mjtBias, mjtGain, mjtGeom, mjtJoint, mjtTrn
 
 from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy, Steering
 from actr3d.world.bodies.base import add_base
 from actr3d.world.parts import WALL_SOLREF, Colour, Length, Name
@@ -20,6 +21,9 @@ GRAVITY = 9.81
 
 CLEARANCE = 0.15
 """Below the car's floor [m]. Ours."""
+
+WAIST = 0.62
+"""Where the cabin begins, as a part of the height. Ours."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +88,18 @@ class Car(Configuration):
     colour: Colour = (0.70, 0.25, 0.22, 1.0)
     """Red, green, blue, alpha in 0 to 1."""
 
+    def __post_init__(self) -> None:
+        """Checks the fields.
+
+        Raises:
+            ConfigurationError: If a field is wrong, the centre of mass is not between the axles, or the car is too low.
+        """
+        super().__post_init__()
+        if self.rear >= self.wheelbase:
+            raise ConfigurationError(f"Car.rear: must be less than the wheelbase of {self.wheelbase:g} m (got {self.rear!r})")
+        if WAIST * self.size[2] <= CLEARANCE:
+            raise ConfigurationError(f"Car.size: its height must be more than {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
+
     def anatomy(self) -> Anatomy:
         """Returns what a `Body` needs to know of it."""
         prefix = f"{self.name}_"
@@ -118,7 +134,7 @@ class Car(Configuration):
         """Adds the hull and the cabin, and the rear wheels. The hull has all the mass."""
         long, wide, high = self.size
         middle = self.wheelbase / 2
-        waist = 0.62 * high
+        waist = WAIST * high
         hull = {"solref": WALL_SOLREF, "friction": [0.4, 0.005, 0.0001], "priority": 1, "mass": 0}
         body.add_geom(
             name=self._name("hull"),

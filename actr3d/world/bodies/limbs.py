@@ -39,6 +39,9 @@ AHEAD = 0.002
 TURN = 150.0
 """The most the legs turn the body with [N m]. Ours, of the order of a trunk's rotation."""
 
+SHOULDER, UPPER_ARM = 0.818, 0.186 / 0.44
+"""How high the shoulder joints are, as a part of the height, and how long the upper arm is, as one of the arm."""
+
 Point = tuple[float, float, float]
 _AXES = {"yaw": (0, 0, 1), "pitch": (0, 1, 0), "roll": (1, 0, 0)}
 
@@ -53,15 +56,15 @@ class Limbs:
         tall = person.height
         self.deltoid = min(0.035 * tall, person.shoulder_width / 4)
         self.shoulder_y = person.shoulder_width / 2 - self.deltoid
-        self.shoulder_z = 0.818 * tall
-        self.upper, self.fore, self.hand = (person.arms * part / 0.44 for part in (0.186, 0.146, 0.108))
+        self.shoulder_z = SHOULDER * tall
+        self.upper, self.fore, self.hand = (person.arms * part for part in (UPPER_ARM, 0.146 / 0.44, 0.108 / 0.44))
 
     def build(self) -> None:
         """Adds everything to the specification."""
         person, tall = self.person, self.person.height
         self._base()
         self._segment("pelvis", "legs", (0, 0, 0.53 * tall))
-        self._trunk("pelvis", 0.50, 0.64, 0.191 * tall, 0.142)
+        self._trunk("pelvis", 0.50, 0.64, min(0.191 * tall, person.shoulder_width), 0.142)
         self._segment("torso", "pelvis", (0, 0, 0.60 * tall))
         width = 0.191 * tall if person.trunk == "ellipsoid" else 2 * self.shoulder_y
         self._trunk("torso", 0.58, 0.85, min(width, 2 * self.shoulder_y), 0.325)
@@ -164,7 +167,7 @@ class Limbs:
         self._geom("head", "head", mjtGeom.mjGEOM_ELLIPSOID, (0, 0, low + half[2]), half, 0.075)
         self._capsule("head", "neck", (0, 0, 0.84 * tall), (0, 0, low + half[2]), 0.03 * tall, 0.0059)
         front = half[0] * math.sqrt(1 - ((person.eyes - low - half[2]) / half[2]) ** 2)
-        r = min(0.012, front)
+        r = min(0.012, front, tall - person.eyes)
         self._segment("eye", "head", (front - r, 0, person.eyes))
         self._geom("eye", "eye", mjtGeom.mjGEOM_SPHERE, (front - r, 0, person.eyes), (r, 0, 0), 0.0001, touches=False)
         body, _ = self.bodies["eye"]

@@ -47,6 +47,11 @@ class Load(Configuration):
         return self.size[0] if self.shape == "bar" else self.size[1]
 
     @property
+    def height(self) -> float:
+        """How high it is [m]."""
+        return self.size[1] if self.shape == "bar" else self.size[2]
+
+    @property
     def depth(self) -> float:
         """How deep it is [m]."""
         return self.size[1] if self.shape == "bar" else self.size[0]

@@ -11,7 +11,7 @@ from mujoco import MjSpec
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy
-from actr3d.world.bodies.limbs import HINGED, HINGES, SIDES, Limbs
+from actr3d.world.bodies.limbs import HINGED, HINGES, SHOULDER, SIDES, UPPER_ARM, Limbs
 from actr3d.world.bodies.load import Load
 from actr3d.world.parts import Colour, Length, Name
 
@@ -41,10 +41,12 @@ class Mannequin(Configuration):
     """[m]. Source: about the mean of adult men, e.g. 1.756 m in ANSUR II (2012)."""
 
     shoulder_width: Length = 0.444
-    """Across both shoulders at their widest [m]. Source: mean of the small (0.404) and large (0.484) groups of Warren & Whang (1987)."""
+    """Across both shoulders at their widest [m], at most the height; the hips are no wider.
+    Source: mean of the small (0.404) and large (0.484) groups of Warren & Whang (1987)."""
 
     depth: Length = 0.25
-    """Of the trunk, front to back [m]. Source: chest depth of about 0.25 m in ANSUR II (2012)."""
+    """Of the trunk, front to back [m], at most the height; the head, 0.11 of the height, may be deeper.
+    Source: chest depth of about 0.25 m in ANSUR II (2012)."""
 
     eye_height: Length | None = None
     """[m]; None is 0.936 of the height."""
@@ -82,6 +84,12 @@ class Mannequin(Configuration):
             raise ConfigurationError(f"Mannequin.eye_height: must be in the head, {low:.2f} to {high:.2f} m here (got {self.eyes!r})")
         if self.shoulder_width < 0.15 * self.height:
             raise ConfigurationError(f"Mannequin.shoulder_width: must be at least 0.15 of the height (got {self.shoulder_width!r})")
+        for name in ("shoulder_width", "depth"):
+            if getattr(self, name) > self.height:
+                raise ConfigurationError(f"Mannequin.{name}: must be at most the height (got {getattr(self, name)!r})")
+        if self.load is not None and self.load.height / 2 >= self.grip_height:
+            most = 2 * self.grip_height
+            raise ConfigurationError(f"Mannequin.load: would touch the floor; it can be {most:.2f} m high (got {self.load.height!r})")
         if self.arms > 0.75 * self.height:
             raise ConfigurationError(f"Mannequin.arm_length: hands would touch the floor (got {self.arms!r})")
 
@@ -94,6 +102,11 @@ class Mannequin(Configuration):
     def arms(self) -> float:
         """Length of an arm from the shoulder joint to the finger tips [m]."""
         return 0.44 * self.height if self.arm_length is None else self.arm_length
+
+    @property
+    def grip_height(self) -> float:
+        """Height of the hands that hold a load, with square elbows [m]."""
+        return SHOULDER * self.height - self.arms * UPPER_ARM
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds all segments, joints and servos, and what its hands can hold things with."""

@@ -15,9 +15,9 @@ import numpy as np
 from mujoco import mjtObj
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError
 from actr3d.world.sensors.registry import SENSORS, sensor
-from actr3d.world.words import adder
+from actr3d.world.words import adder, known
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
@@ -155,6 +155,4 @@ def _head(body: Body, part: str | None) -> int:
 def _part(body: Body, part: str | None) -> int:
     if part is None or part == body.anatomy.base:
         return body.root
-    if part not in body.parts:
-        raise WorldError(f"{body.name} has no part '{part}'{did_you_mean(part, body.parts)}; it has {', '.join(body.parts)}")
-    return body.part_number(part)
+    return body.part_number(known(part, body.parts, body.name, "part"))

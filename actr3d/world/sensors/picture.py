@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -42,7 +43,13 @@ class Picture:
         return np.frombuffer(self.pixels, dtype=np.float32).reshape(self.height, self.width)
 
     def with_noise(self, sd: Any, random: np.random.Generator) -> Picture:
-        """Returns the same picture with noise on every pixel: of `sd` steps of 255, or [m]."""
+        """Returns the same picture with noise on every pixel: of `sd` steps of 255, or [m].
+
+        Raises:
+            WorldError: If `sd` is not one number.
+        """
+        if isinstance(sd, Mapping):
+            raise WorldError(f"noise of {self.kind}: a picture has no fields; give one number")
         noisy = self.as_array() + float(sd) * random.standard_normal(self.as_array().shape)
         noisy = np.clip(np.rint(noisy), 0, 255).astype(np.uint8) if self.kind == "image" else noisy.astype(np.float32)
         return Picture(kind=self.kind, width=self.width, height=self.height, pixels=noisy.tobytes())
@@ -91,13 +98,13 @@ class _Drawing:
         self._world = world
         try:
             egl: Any = importlib.import_module("mujoco.egl")
-            gl_error: Any = importlib.import_module("OpenGL.error").Error
+            self._gl_error: Any = importlib.import_module("OpenGL.error").Error
         except (ImportError, AttributeError, OSError) as error:
             raise WorldError(f"pictures need EGL, which is not installed here or cannot be used: {error}") from error
         try:
             self._context = egl.GLContext(MOST, MOST)
             self._context.make_current()
-        except (gl_error, ImportError, RuntimeError, AttributeError, OSError) as error:
+        except (self._gl_error, ImportError, RuntimeError, AttributeError, OSError) as error:
             raise WorldError(f"pictures need EGL, which has no device here that could draw: {error}") from error
         self._scene = mujoco.MjvScene(model=world.mj_model, maxgeom=world.mj_model.ngeom + 1000)
         self._option = mujoco.MjvOption()
@@ -107,7 +114,10 @@ class _Drawing:
     def draw(self, camera: str | None, kind: str, width: int, height: int) -> NDArray[Any]:
         """Returns a picture from a camera: (height, width, 3) bytes, or (height, width) depths [m]."""
         model, data = self._world.mj_model, self._world.mj_data
-        self._context.make_current()
+        try:
+            self._context.make_current()
+        except self._gl_error as error:
+            raise WorldError("a world's pictures are drawn in one thread, that of the first picture") from error
         if self._size != (width, height):
             if self._resources is not None:
                 self._resources.free()

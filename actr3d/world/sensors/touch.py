@@ -71,12 +71,13 @@ def _touches(body: Body) -> tuple[Touch, ...]:
     if data.ncon == 0:
         return ()
     pairs: NDArray[np.int32] = data.contact.geom
-    ours = body.members[model.geom_bodyid[pairs]]
+    ours = body.sides(body.members[model.geom_bodyid])
     forces: defaultdict[tuple[str, str], float] = defaultdict(float)
     wrench: NDArray[np.float64] = np.zeros(6)
     for number in np.flatnonzero(ours[:, 0] != ours[:, 1]).tolist():
-        mine, other = pairs[number] if ours[number, 0] else pairs[number][::-1]
-        if int(mine) in body.feels and data.contact.dist[number] <= 0:
+        side = 0 if ours[number, 0] else 1
+        mine = int(pairs[number, side])
+        if mine in body.feels and data.contact.dist[number] <= 0:
             mujoco.mj_contactForce(model, data, number, wrench)
-            forces[body.geom_name(int(mine)), body.world.owners[int(other)]] += float(wrench[0])
+            forces[body.geom_name(mine), body.world.other_side(number, 1 - side)] += float(wrench[0])
     return tuple(Touch(part=part, other=other, force=force) for (part, other), force in sorted(forces.items()))
