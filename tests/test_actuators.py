@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pytest
 from living import near
 from mujoco import MjSpec
@@ -49,6 +50,17 @@ def test_a_posture_moves_several_joints_while_walking() -> None:
     ticks(world, 40)
     assert {name: body.joints[name].position for name in targets} == near(targets, abs=1e-3)
     assert body.get("pose").x == near(0.56, abs=0.01)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_posture_of_all_joints_is_reached_by_all_though_some_are_there_first(seed: int) -> None:
+    world, body = living()
+    random = np.random.default_rng(seed)
+    targets = {name: random.uniform(joint.lower, joint.upper) for name, joint in body.joints.items() if not name.startswith("pelvis")}
+    body.set("posture", targets, speed=3.0)
+    ticks(world, 250)
+    assert not body.running
+    assert {name: body.joints[name].position for name in targets} == near(targets, abs=2e-3)
 
 
 def test_a_position_beyond_a_limit_ends_at_the_limit() -> None:

@@ -289,3 +289,16 @@ def test_old_code_is_not_used_after_any_file_has_changed(tmp_path: Path) -> None
     with (tmp_path / "roots.py").open("a") as file:
         file.write("# changed\n")
     assert digest() != before
+
+
+@pytest.mark.parametrize(("shape", "size"), [("cylinder", 2), ("capsule", 2), ("ellipsoid", 3), ("box", 3), ("sphere", 1)])
+def test_of_two_things_that_coincide_the_same_one_is_seen_everywhere(shape: str, size: int) -> None:
+    random = np.random.default_rng(1)
+    for _ in range(40):
+        sizes = " ".join(str(value) for value in random.uniform(0.1, 0.5, size))
+        twin = f'<geom type="{shape}" size="{sizes}" pos="3 {random.uniform(-1, 1)} 1.5" euler="{random.uniform(0, 90)} 50 0"/>'
+        crowd = [f'<geom type="sphere" size=".4" pos="{random.uniform(3, 5)} {random.uniform(-2, 2)} 1.5"/>' for _ in range(4)]
+        _, one = seen(twin + "".join(crowd) + twin, rows=20)
+        _, other = seen("".join(reversed(crowd)) + twin + twin, rows=20)
+        _, alone = seen(twin + "".join(crowd), rows=20)
+        assert one.as_dict() == other.as_dict() == alone.as_dict()

@@ -51,21 +51,15 @@ class Running:
             self._brake(duration)
 
     def after_step(self) -> None:
-        """Ends the commands that are done: puts what is there exactly there, and stops it."""
+        """Ends the commands that are done: puts what is there exactly there, and stops it.
+
+        A joint that is there keeps its target until all are: those that still move would push it away from there.
+        """
         body = self._body
         base = body.base
-        for name, (target, _) in tuple(self.targets.items()):
-            if name == HEADING:
-                x, y, heading = base.place
-                rest = _wrapped(target - heading)
-                if abs(rest) <= THERE:
-                    del self.targets[name]
-                    base.place = (x, y, heading + rest)
-                    base.drive((*base.commanded[:2], 0.0), body)
-            elif abs(target - body.joints[name].position) <= THERE:
-                del self.targets[name]
-                body.joints[name].put(target)
-                body.joints[name].drive(0.0, body.free)
+        there = [name for name in self.targets if self._arrived(name)]
+        if len(there) == len(self.targets):
+            self.targets.clear()
         if self.waypoint is not None and math.dist(self.waypoint[:2], base.place[:2]) <= THERE:
             x, y, _, _ = self.waypoint
             self.waypoint = None
@@ -80,6 +74,23 @@ class Running:
         """Brings commands back."""
         targets, self.waypoint, self.brake = state
         self.targets = dict(targets)
+
+    def _arrived(self, name: str) -> bool:
+        """Returns whether a joint or the heading is at its target; then puts it exactly there and stops it."""
+        body, base = self._body, self._body.base
+        target, _ = self.targets[name]
+        if name == HEADING:
+            x, y, heading = base.place
+            rest = _wrapped(target - heading)
+            if abs(rest) <= THERE:
+                base.place = (x, y, heading + rest)
+                base.drive((*base.commanded[:2], 0.0), body)
+                return True
+        elif abs(target - body.joints[name].position) <= THERE:
+            body.joints[name].put(target)
+            body.joints[name].drive(0.0, body.free)
+            return True
+        return False
 
     def _move(self, name: str, duration: float) -> None:
         """Moves one joint on."""

@@ -179,12 +179,18 @@ def _winner(u: float, row: Row, present: int) -> tuple[int, bool]:
 
 @compiled
 def _goes_first(places: Array, one: int, other: int) -> bool:
-    """Tells whether a geom's centre is nearer than another's, or else further to the left or down; never by their order."""
+    """Tells whether a geom's centre is nearer than another's, or else further to the left or down.
+
+    Only of two at one place does the number decide: which of two things that look alike is seen cannot be told from a view,
+    but that it is the same one everywhere can.
+    """
     a, b = places[one], places[other]
     near, far = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], b[0] * b[0] + b[1] * b[1] + b[2] * b[2]
     if near != far:
         return near < far
-    return a[0] < b[0] or (a[0] == b[0] and a[1] < b[1])
+    if a[0] != b[0]:
+        return a[0] < b[0]
+    return a[1] < b[1] or (a[1] == b[1] and one < other)
 
 
 @compiled
