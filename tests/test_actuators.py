@@ -14,6 +14,7 @@ from mujoco import MjSpec
 from actr3d.errors import Actr3dError
 from actr3d.world import Body, Floor, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
+from actr3d.world.sensors.touch import present
 
 
 def living(*parts: Any, **of: Any) -> tuple[World, Body]:
@@ -148,6 +149,17 @@ def test_what_is_grasped_comes_along_until_released() -> None:
     world.refresh()
     assert body.get("grasp")["right"] is None
     assert cup.xpos[2] < 0.2
+
+
+def test_what_is_held_feels_what_it_touches() -> None:
+    stick = Loose(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
+    _, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
+    body.set("grasp", "stick")
+    body.set("walk", 0.3)
+    ticks(body.world, 100)
+    assert {(touch.part, touch.other) for touch in body.get("contacts")} >= {("stick", "wall")}
+    body.set("release")
+    assert "stick" not in {touch.part for touch in present(body)}
 
 
 def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:

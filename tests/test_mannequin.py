@@ -293,6 +293,20 @@ def test_the_load_is_felt_and_keeps_it_out_of_a_gap() -> None:
     assert body.get("pose").x < 1.4
 
 
+@pytest.mark.parametrize("load", [BAR, Load(shape="box", size=(0.3, 1.2, 0.3), mass=5)])
+@pytest.mark.parametrize("speed", [1.0, 3.0])
+def test_it_does_not_walk_through_its_own_load(load: Load, speed: float) -> None:
+    """Arms give way where the load is stopped; then it lies against the trunk, and the legs push with all they have."""
+    gap = (Wall(name="left", start=(1.5, 0.4), end=(1.5, 3)), Wall(name="right", start=(1.5, -3), end=(1.5, -0.4)))
+    world, body = living(*gap, load=load)
+    body.set("walk", speed)
+    ticks(world, 400)
+    world.refresh()
+    assert world.mj_data.body("walker_load").xpos[0] - body.get("pose").x > 0.12
+    assert np.abs(world.mj_data.qvel).max() < 0.05
+    assert sum(touch.force for touch in body.get("contacts")) == near(300, rel=0.02)
+
+
 def test_a_box_in_front_makes_it_deeper() -> None:
     _, plain = living()
     _, laden = living(load=Load(shape="box", size=(0.4, 0.5, 0.3), mass=5))

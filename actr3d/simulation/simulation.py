@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from functools import partial
@@ -24,6 +23,7 @@ from actr3d.simulation.minds import Factory, check_names
 from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
 from actr3d.simulation.sources import sources_of
+from actr3d.simulation.submissions import Submissions
 from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
 
@@ -76,7 +76,7 @@ class Simulation:
         self._course = Course(self.world, self._begin, self._journal)
         self._random = GlobalRandom()
         self._onlookers = Onlookers(self._random)
-        self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
+        self._submitted = Submissions()
         self._owner = threading.get_ident()
 
     def _begin(self) -> Lockstep:
@@ -242,22 +242,11 @@ class Simulation:
         Returns:
             What tells when it is done, or raises what went wrong with it.
         """
-        future: Future[None] = Future()
-        self._submitted.append((future, partial(self.command, word, *values, body=body, **named)))
-        return future
+        return self._submitted.add(partial(self.command, word, *values, body=body, **named))
 
     def carry_out_submitted(self) -> None:
         """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
-        while self._submitted:
-            future, command = self._submitted.popleft()
-            if not future.set_running_or_notify_cancel():
-                continue
-            try:
-                command()
-            except Exception as error:  # noqa: BLE001 - it is told to who asked
-                future.set_exception(error)
-            else:
-                future.set_result(None)
+        self._submitted.carry_out()
 
     # -- looking on
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 
@@ -37,12 +38,19 @@ class Word:
         try:
             self._signature.bind(body, *values, **named)
         except TypeError as error:
-            takes = ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in self._parameters())
-            raise WorldError(f"{body.name}: {self.name} takes ({takes}): {error}") from error
+            raise WorldError(f"{body.name}: {self.name} takes ({self.takes}): {error}") from error
         return self._does(body, *values, **named)
 
-    def _parameters(self) -> list[inspect.Parameter]:
-        return list(self._signature.parameters.values())[1:]
+    @property
+    def takes(self) -> str:
+        """What it takes, as Python writes it."""
+        parameters = list(self._signature.parameters.values())[1:]
+        return ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in parameters)
+
+    @property
+    def meaning(self) -> str:
+        """What it does, in one sentence."""
+        return re.split(r"(?<=\.)\s", inspect.getdoc(self._does) or "")[0]
 
 
 def adder(words: dict[str, Word], fits: Callable[[Body], bool] = lambda _: True) -> Callable[[Callable[..., Any]], Callable[..., Any]]:

@@ -74,9 +74,10 @@ class Limbs:
         self._head()
         if person.load is not None:
             self._load()
-        names = [body.name for body, _ in self.bodies.values()]
-        for one, other in combinations(names, 2):
-            self.mj_spec.add_exclude(bodyname1=one, bodyname2=other)
+        for one, other in combinations(self.bodies, 2):
+            # Its limbs are not in each other's way, but the trunk stops what presses the load back.
+            if (one, other) not in (("pelvis", "load"), ("torso", "load")):
+                self.mj_spec.add_exclude(bodyname1=self.bodies[one][0].name, bodyname2=self.bodies[other][0].name)
         self._servos()
 
     def _name(self, part: str) -> str:

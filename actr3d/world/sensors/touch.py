@@ -28,7 +28,7 @@ class Touch:
     """One part of the skin that something touches."""
 
     part: str
-    """Which: the name of a geom of the body."""
+    """Which: the name of a geom of the body, or of an object that it holds."""
     other: str
     """With what: the object's name in the scene."""
     force: float
@@ -71,13 +71,18 @@ def _touches(body: Body) -> tuple[Touch, ...]:
     if data.ncon == 0:
         return ()
     pairs: NDArray[np.int32] = data.contact.geom
-    ours = body.sides(body.members[model.geom_bodyid])
+    own = body.members[model.geom_bodyid]
+    ours = body.sides(own)
+    held = {geom for hand in body.hands.values() for geom in hand.geoms}
+    if held:  # what it holds feels for it, but not what holds it
+        ours = np.where(ours.any(axis=1, keepdims=True), ours, body.sides(body.own() & ~own))
     forces: defaultdict[tuple[str, str], float] = defaultdict(float)
     wrench: NDArray[np.float64] = np.zeros(6)
     for number in np.flatnonzero(ours[:, 0] != ours[:, 1]).tolist():
         side = 0 if ours[number, 0] else 1
         mine = int(pairs[number, side])
-        if mine in body.feels and data.contact.dist[number] <= 0:
+        if (mine in body.feels or mine in held) and data.contact.dist[number] <= 0:
             mujoco.mj_contactForce(model, data, number, wrench)
-            forces[body.geom_name(mine), body.world.other_side(number, 1 - side)] += float(wrench[0])
+            part = body.world.owners[mine] if mine in held else body.geom_name(mine)
+            forces[part, body.world.other_side(number, 1 - side)] += float(wrench[0])
     return tuple(Touch(part=part, other=other, force=force) for (part, other), force in sorted(forces.items()))
