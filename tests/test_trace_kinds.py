@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from moving import moving
 from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
@@ -74,7 +75,11 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     printed = [TraceEvent(0, line["source"], line["kind"], line["data"]) for line in map(json.loads, done.stdout.splitlines())]
     simulation = driving("all")
     simulation.run(0.1)
-    return [*trace, *printed, *(simulation.trace or ())]
+    mover, motor = moving(trace="all")
+    motor.rotate_torso(2)
+    motor.rotate_torso(1)
+    mover.step(5)
+    return [*trace, *printed, *(simulation.trace or ()), *(mover.trace or ())]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:
