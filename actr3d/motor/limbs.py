@@ -70,6 +70,10 @@ class Limbs:
         self.joints: dict[str, JointPlan] = {joint.name: joint for part in plan.parts for joint in part.joints}
         self.order = tuple(self.joints)
         """The joints in the order in which the body feels them."""
+        self.number = {joint: number for number, joint in enumerate(self.order)}
+        """By joint, its place there."""
+        self.shown_as = {name: f"{name}_{'angle' if joint.kind == 'hinge' else 'position'}" for name, joint in self.joints.items()}
+        """By joint, the motor module's attribute that shows where it is felt to be."""
         self.group_of: dict[str, str] = {joint.name: part.name for part in plan.parts for joint in part.joints}
         """By joint, the muscle group that moves it: that of its part."""
         self.walks = "walk" in plan.actuators
@@ -84,10 +88,8 @@ class Limbs:
     def feel(self, joint: str, position: float) -> None:
         """Takes in where a joint is felt to be [rad] or [m]."""
         self.felt[joint] = position
-        if position < self.least.get(joint, position + 1):
-            self.least[joint] = position
-        if position > self.most.get(joint, position - 1):
-            self.most[joint] = position
+        self.least[joint] = min(position, self.least.get(joint, position))
+        self.most[joint] = max(position, self.most.get(joint, position))
 
     def freedom(self, joint: str) -> Freedom:
         """Returns a joint as it is known now.

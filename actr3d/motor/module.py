@@ -260,9 +260,9 @@ class Motor(Muscles):
                 return
             ways.setdefault(limbs.group_of[joint], {})[joint] = target
         speed = abs(pace) * limbs.unit(next(iter(joints)))
-        movements: dict[str, Movement] = {
-            group: JointMovement(name, group, speed, place, ways=targets, to_limit=to is None) for group, targets in ways.items()
-        }
+        movements: dict[str, Movement] = {}
+        for group, targets in ways.items():
+            movements[group] = JointMovement(name, group, speed, place, ways=targets, order=limbs.order, to_limit=to is None)
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:

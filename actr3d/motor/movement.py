@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from actr3d.motor.limbs import BASE_GROUP
 from actr3d.world.sensors.motion import AT_LIMIT
@@ -21,17 +20,15 @@ Order = tuple[str, tuple[Any, ...], Mapping[str, Any]]
 """What the body is told: a word, its values, and more by name."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Step:
+class Step(NamedTuple):
     """What has happened since the body was last felt."""
 
     duration: float
     """How long that is [s]."""
-    before: Mapping[str, float]
-    """Where each joint was [rad] or [m]."""
-    now: Mapping[str, float]
-    """Where it is."""
+    before: tuple[float, ...]
+    """Where the joints were, in the order of the body [rad] or [m]."""
     reading: Proprioception
+    """How the body stands now."""
 
 
 class Movement:
@@ -99,13 +96,17 @@ class JointMovement(Movement):
         pace: How fast [rad/s] or [m/s].
         place: `file:line` where it was asked for.
         ways: By joint, where it goes [rad] or [m]; infinite where there is no end.
+        order: The joints of the body in its order.
         to_limit: Whether it was to go on until its limit.
     """
 
-    def __init__(self, name: str, group: str, pace: float, place: str, *, ways: Mapping[str, float], to_limit: bool) -> None:
+    def __init__(
+        self, name: str, group: str, pace: float, place: str, *, ways: Mapping[str, float], order: Sequence[str], to_limit: bool
+    ) -> None:
         super().__init__(name, group, pace, place)
         self.ways = ways
         self.to_limit = to_limit
+        self._number = {joint: order.index(joint) for joint in ways}
         self._left = set(ways)
 
     def begin(self) -> Iterable[Order]:
@@ -130,12 +131,13 @@ class JointMovement(Movement):
         self._left.intersection_update(step.reading.moving)
         if self._left:
             return None
-        if any(abs(step.now[joint] - target) > AT_LIMIT for joint, target in self.ways.items()):
+        if any(abs(step.reading.positions[self._number[joint]] - target) > AT_LIMIT for joint, target in self.ways.items()):
             return "stopped"  # by someone else, such as the user
         return "limit" if self.to_limit else "done"
 
     def _way(self, step: Step) -> float:
-        return max(abs(step.now[joint] - step.before[joint]) for joint in self._left)
+        before, now = step.before, step.reading.positions
+        return max([abs(now[n] - before[n]) for n in (self._number[joint] for joint in self._left)])
 
 
 INFINITE = float("inf")

@@ -63,13 +63,23 @@ class Joint:
         Raises:
             WorldError: If no servo moves it.
         """
-        if self._servo is None:
-            raise WorldError(f"joint '{self.name}' has no servo that could move it")
-        if self._ctrl[self._servo] == speed:
+        servo = self.control
+        if self._ctrl[servo] == speed:
             return
-        self._ctrl[self._servo] = speed
+        self._ctrl[servo] = speed
         if speed == 0 or free():
             self._qvel[self.v] = speed
+
+    @property
+    def control(self) -> int:
+        """Where the control of its servo is in MuJoCo's `ctrl`.
+
+        Raises:
+            WorldError: If no servo moves it.
+        """
+        if self._servo is None:
+            raise WorldError(f"joint '{self.name}' has no servo that could move it")
+        return self._servo
 
     def rest(self) -> None:
         """Stops it at once if it is told to stand still."""

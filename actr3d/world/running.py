@@ -5,8 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from mujoco import mjtObj
+
 if TYPE_CHECKING:
     from actr3d.world.body import Body
+
+GIVES = 1e-3
+"""What a joint that stands still may give way in a tick when other limbs swing, and is put back from [rad]. Muscles hold a posture;
+servos that hold a speed of 0 would drift, arms by some degrees in ten swings of the trunk. What is pushed gives way faster."""
 
 THERE = 3e-4
 """What is nearer to its target than this [m] or [rad] after a tick is put there exactly: more than what the pull of other limbs
@@ -37,6 +44,12 @@ class Running:
         """Where the body walks: x, y, speed, speed of turning, [m] [m] [m/s] [rad/s]."""
         self.brake = 0.0
         """How far the brake is pressed, 0 to 1."""
+        model = body.world.mj_model
+        driven = [joint for joint in body.joints.values() if joint.driven and body.anatomy.servos]
+        self._q = np.array([joint.q for joint in driven], dtype=np.intp)
+        self._ctrl = np.array([joint.control for joint in driven], dtype=np.intp)
+        self._ties = np.array([n for n in range(model.neq) if _ties(model, n, body)], dtype=np.intp)
+        self._stood = np.zeros(len(driven))
 
     def __bool__(self) -> bool:
         return bool(self.targets) or self.waypoint is not None or self.brake > 0
@@ -52,6 +65,7 @@ class Running:
             self._walk(*self.waypoint, duration)
         if self.brake > 0:
             self._brake(duration)
+        self._stood = self._body.world.mj_data.qpos[self._q]
 
     def after_step(self) -> None:
         """Ends the commands that are done: puts what is there exactly there, and stops it.
@@ -60,6 +74,7 @@ class Running:
         """
         body = self._body
         base = body.base
+        self._hold()
         there = [name for name in self.targets if self._arrived(name)]
         if len(there) == len(self.targets):
             self.targets.clear()
@@ -82,6 +97,14 @@ class Running:
         """Brings commands back."""
         targets, self.waypoint, self.brake = state
         self.targets = dict(targets)
+
+    def _hold(self) -> None:
+        """Puts joints that stand still back where they were, unless the body touches something, or its hands are tied to something."""
+        data = self._body.world.mj_data
+        gone = np.abs(data.qpos[self._q] - self._stood)
+        give = (data.ctrl[self._ctrl] == 0) & (gone > 0) & (gone < GIVES)
+        if give.any() and not data.eq_active[self._ties].any() and self._body.free():
+            data.qpos[self._q[give]] = self._stood[give]
 
     def _arrived(self, name: str) -> bool:
         """Returns whether a joint or the heading is at its target; then puts it exactly there and stops it."""
@@ -136,6 +159,13 @@ class Running:
         most = self.brake * body.anatomy.steering.brake
         mass = float(body.world.mj_model.body_subtreemass[body.root])
         body.world.mj_data.ctrl[body.control("brake")] = -_bounded(mass * speed / duration, most)
+
+
+def _ties(model: Any, number: int, body: Body) -> bool:
+    """Returns whether an equality ties a part of a body to something."""
+    sides = (int(model.eq_obj1id[number]), int(model.eq_obj2id[number]))
+    is_body = int(model.eq_objtype[number]) == int(mjtObj.mjOBJ_BODY)
+    return is_body and any(bool(body.members[side]) for side in sides if side >= 0)
 
 
 def _bounded(value: float, bound: float) -> float:
