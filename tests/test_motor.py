@@ -10,18 +10,22 @@ from living import near
 from moving import during, motor_of, mover, moving, until
 
 from actr3d.actr import ACTR
-from actr3d.errors import ParameterError, SimulationError, WorldError
+from actr3d.actr.loading import load_text
+from actr3d.errors import ModelWarning, ParameterError, SimulationError, WorldError
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation
 from actr3d.world import Car, Floor, ImportedBody, Mannequin, Scene, Wall
+from actr3d.world.anatomy import NamedMovement
 
 ARM = """<mujoco><worldbody><body name="base"><geom size="0.1"/>
-  <body name="upper" pos="0 0 0.2"><joint name="shoulder" axis="0 0 1" range="-60 60"/><geom size="0.05" pos="0.3 0 0"/>
-    <body name="fore" pos="0.5 0 0"><joint name="elbow" axis="0 1 0"/><joint name="wrist" axis="1 0 0"/><geom size="0.04" pos="0.2 0 0"/>
-      <body name="finger" pos="0.4 0 0"><joint name="grip" type="slide" axis="1 0 0" range="0 0.05"/><geom size="0.02"/></body>
+  <body name="upper" gravcomp="1" pos="0 0 0.2"><joint name="shoulder" axis="0 0 1" range="-60 60"/>
+    <geom size="0.05" pos="0.3 0 0"/>
+    <body name="fore" gravcomp="1" pos="0.5 0 0"><joint name="elbow" axis="0 1 0"/><joint name="wrist" axis="1 0 0"/>
+      <geom size="0.04" pos="0.2 0 0"/>
+      <body name="finger" gravcomp="1" pos="0.4 0 0"><joint name="grip" type="slide" axis="1 0 0" range="0 0.05"/><geom size="0.02"/></body>
     </body></body></body></worldbody>
-  <actuator><velocity name="a" joint="shoulder" kv="100"/><velocity name="b" joint="elbow" kv="100"/>
-    <velocity name="c" joint="grip" kv="100"/></actuator></mujoco>"""
+  <actuator><velocity name="a" joint="shoulder" kv="200"/><velocity name="b" joint="elbow" kv="200"/>
+    <velocity name="c" joint="grip" kv="200"/></actuator></mujoco>"""
 """An arm on a pedestal, as a robot's description may have it; nothing moves its wrist."""
 
 
@@ -360,6 +364,64 @@ def test_an_imported_arm_is_known_and_moved() -> None:
     assert motor.fore_end == "stopped"
     assert motor.elbow_angle == near(15, abs=2)
     assert {"shoulder", "elbow", "wrist", "grip"} <= motor.parent.posture.chunk.keys()
+
+
+def test_a_joint_that_slides_needs_a_speed() -> None:
+    _, motor = moving(body=ImportedBody(name="arm", text=ARM))
+    with pytest.raises(WorldError, match=r"joint 'grip' slides; say how fast \[m/s\]"):
+        motor.rotate("grip")
+
+
+def test_a_weak_limb_that_comes_as_near_as_it_can_is_done_and_one_that_cannot_is_blocked() -> None:
+    text = ARM.replace('gravcomp="1"', "")
+    simulation, motor = moving(body=ImportedBody(name="arm", text=text))
+    motor.rotate("elbow", angle=40)
+    until(simulation, lambda: not motor.busy)
+    assert motor.fore_end == "done"
+    assert angle(simulation, "elbow", "arm") == near(40, abs=1)
+    simulation, motor = moving(body=ImportedBody(name="arm", text=text.replace('kv="200"', 'kv="0.2"')))
+    motor.rotate("elbow", angle=-60, speed=50)
+    until(simulation, lambda: not motor.busy)
+    assert motor.fore_end == "blocked"
+
+
+def test_an_imported_body_may_have_names_for_movements() -> None:
+    reach = NamedMovement(name="reach", joints=(("shoulder", -1), ("elbow", 1)))
+    fold = NamedMovement(name="fold", joints=(("shoulder", 1), ("elbow", 1)), to=math.radians(45))
+    simulation, motor = moving(body=ImportedBody(name="arm", text=ARM, movements=(reach, fold)))
+    motor.move("reach", angle=20, speed=60)
+    assert (motor.upper_busy, motor.fore_busy, motor.finger_busy) == (True, True, False)
+    until(simulation, lambda: not motor.busy)
+    assert (motor.shoulder_angle, motor.elbow_angle) == near((-20, 20), abs=0.5)
+    motor.move("fold")
+    until(simulation, lambda: not motor.busy)
+    assert (motor.shoulder_angle, motor.elbow_angle) == near((45, 45), abs=0.5)
+
+
+def test_a_pattern_that_names_no_muscle_group_is_told_once_the_body_is_known() -> None:
+    text = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+
+class Slip(ACTR):
+    goal = Buffer()
+    motor = Motor()
+    def go(goal="go", motor="torso_bussy:False legs_busy:False width:?w"):
+        pass
+"""
+    simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": load_text(text, "slip.py").Slip})
+    with pytest.warns(
+        ModelWarning, match=r"'go' can never match: 'motor' has no attribute 'torso_bussy'; did you mean 'torso_busy'\?"
+    ) as told:
+        simulation.step(3)
+    assert len(told) == 1
+    simulation.seek(0)
+    simulation.step(3)
+
+
+def test_proprioception_takes_no_noise() -> None:
+    with pytest.raises(WorldError, match="give it to the motor module instead"):
+        moving(body=Mannequin(name="walker", noise=(("proprioception", 0.1),)))
 
 
 def test_two_agents_move_their_own_bodies() -> None:

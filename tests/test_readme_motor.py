@@ -36,7 +36,7 @@ def test_the_table_has_all_commands() -> None:
 
 
 def test_productions_can_match_all_that_is_told() -> None:
-    simulation, motor = moving()
+    _, motor = moving()
     named = re.findall(r"`(\w+|<\w+>_\w+)`", SECTION.split("| productions match |")[1].split("\n\n")[0])
     told = {word.replace("<group>", "torso").replace("<joint>", "torso_yaw") for word in named}
     ends = {"done", "stopped", "limit", "blocked", "none"}

@@ -33,7 +33,8 @@ class Motor(Muscles):
 
     Args:
         buffer: Where each posture goes that is stored; None for nowhere.
-        memory: The declarative memory that keeps postures; None for none.
+        memory: The declarative memory that keeps postures; None for none. (By the rules of ACT-R 7 a memory collects what leaves
+            buffers; there a buffer alone is enough.)
         speed: How fast joints and the whole body turn unless told otherwise [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (human-data).
         angle_grid: What felt angles are rounded to [degrees].
@@ -183,14 +184,16 @@ class Motor(Muscles):
             joint: A joint, or a part and `axis`.
             axis: Of a part's joints, the one that turns about it: `yaw`, `pitch` or `roll`, or slides along `x`, `y` or `z`.
             angle: To which angle [degrees], or position of one that slides [m]; None until its limit, or until told to stop.
-            speed: How fast [degrees/s] or [m/s]; negative for towards smaller angles where there is no angle.
+            speed: How fast [degrees/s], negative for towards smaller angles where there is no angle; [m/s] where it slides, and
+                needed there.
 
         Raises:
             WorldError: If there is no such joint, it has no muscles, or a value is not what it should be.
         """
         pace = self._speed("rotate", speed, angle is not None)
+        usual = speed is None
         to = None if angle is None else number(angle, "rotate: angle")
-        self._command(partial(self._rotate, joint, axis, to, pace), "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
+        self._command(partial(self._rotate, joint, axis, to, pace, usual), "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
 
     def move(self, movement: Any, side: Any = None, angle: Any = None, speed: Any = None) -> None:
         """Makes a movement that the body has a name for.
@@ -232,8 +235,10 @@ class Motor(Muscles):
         self._wanted.append(str(name))
         self._ask()
 
-    def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, place: str) -> None:
+    def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, place: str) -> None:
         name = self._known().joint(joint, axis)
+        if usual and self._known().joints[name].kind == "slide":
+            raise WorldError(f"{self._known().plan.name}: joint '{name}' slides; say how fast [m/s]: rotate('{name}', speed=…)")
         self._turn_joints(name, {name: 1.0}, to, pace, place)
 
     def _move(self, movement: Any, side: Any, to: float | None, pace: float, place: str) -> None:

@@ -16,6 +16,8 @@ about a tenth, and legs that something touches take some 0.2 s to get going. Our
 FASTER = 1.2
 """How many times more than before is more. Ours."""
 
+INFINITE = float("inf")
+
 Order = tuple[str, tuple[Any, ...], Mapping[str, Any]]
 """What the body is told: a word, its values, and more by name."""
 
@@ -72,7 +74,9 @@ class Movement:
             return None
         slow = self._gone < HELD * self.pace * self._time and self._gone <= FASTER * self._before
         self._before, self._gone, self._time = self._gone, 0.0, 0.0
-        return "blocked" if slow else None
+        if not slow:
+            return None
+        return "done" if self._rest(step) <= self.pace * step.duration else "blocked"
 
     def told(self) -> dict[str, Any]:
         """Returns what a trace keeps of it."""
@@ -85,6 +89,10 @@ class Movement:
     def _way(self, step: Step) -> float:
         """Returns how far it has come in a step [rad] or [m]."""
         raise NotImplementedError
+
+    def _rest(self, step: Step) -> float:
+        """Returns how far it still has to go [rad] or [m]; who is as near as a tick's way, and weak, is there."""
+        return INFINITE
 
 
 class JointMovement(Movement):
@@ -139,8 +147,8 @@ class JointMovement(Movement):
         before, now = step.before, step.reading.positions
         return max([abs(now[n] - before[n]) for n in (self._number[joint] for joint in self._left)])
 
-
-INFINITE = float("inf")
+    def _rest(self, step: Step) -> float:
+        return max(abs(step.reading.positions[self._number[joint]] - self.ways[joint]) for joint in self._left)
 
 
 class Walk(Movement):

@@ -11,6 +11,7 @@ from actr3d.actr.modules.port import Port, Request, place_of_caller
 from actr3d.actr.parameters import WithParameters
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
+from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, Limbs
 from actr3d.motor.movement import JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import BodySchema
@@ -188,6 +189,7 @@ class Muscles(WithParameters, Port):
         self._felt_us = now
         if self._schema is None:
             self._update(limbs, reading, limbs.order)
+            check_patterns(self)
         elif before != reading.positions:
             gone = [joint for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at]
             self._update(limbs, reading, gone)
@@ -228,14 +230,14 @@ class Muscles(WithParameters, Port):
         """Stores the posture where movements have ended, where a joint has gone further than ever, and where it was asked for."""
         if self._ended:
             ended, self._ended = [*self._ended, *ended], []
+        if self._further is not None:
+            passing = self._under_way.get(limbs.group_of[self._further])
+            if passing is not None:  # else it has just ended, or was pushed
+                self._store(passing.name, "passing", self._further)
+            self._further = None
         for movement, end in ended:
             if isinstance(movement, JointMovement):
                 self._store(movement.name, end, next(joint for joint in limbs.order if joint in movement.ways))
-        if self._further is not None:
-            movement = self._under_way.get(limbs.group_of[self._further])
-            if movement is not None:  # else it has just ended, or was pushed
-                self._store(movement.name, "passing", self._further)
-            self._further = None
         if self._wanted:
             wanted, self._wanted = self._wanted, []
             for name in wanted:

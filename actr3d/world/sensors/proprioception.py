@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from actr3d.errors import WorldError
 from actr3d.world.sensors.registry import sensor
 
 if TYPE_CHECKING:
@@ -41,6 +42,14 @@ class Proprioception:
     """Of that box, front to back [m]."""
     height: float
     """Of that box [m]."""
+
+    def with_noise(self, sd: Any, random: Any) -> Proprioception:
+        """Refuses noise: by these numbers a motor module knows when a movement is over, and it has parameters for noise of its own.
+
+        Raises:
+            WorldError: Always.
+        """
+        raise WorldError("proprioception: takes no noise; give it to the motor module instead (angle_noise, size_noise)")
 
 
 @sensor
