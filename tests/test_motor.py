@@ -14,7 +14,7 @@ from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning, ParameterError, SimulationError, WorldError
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation
-from actr3d.world import Car, Floor, ImportedBody, Mannequin, Scene, Wall
+from actr3d.world import Car, Floor, ImportedBody, Load, Mannequin, Scene, Wall
 from actr3d.world.anatomy import NamedMovement
 
 ARM = """<mujoco><worldbody><body name="base"><geom size="0.1"/>
@@ -181,6 +181,44 @@ def test_lowering_the_arms_brings_both_to_where_they_hang() -> None:
     assert motor.left_upper_arm_pitch_angle == motor.right_upper_arm_roll_angle == 0
 
 
+def test_several_groups_are_stopped_at_once_and_the_rest_goes_on() -> None:
+    simulation, motor = moving()
+    motor.walk(1.0)
+    motor.rotate_torso()
+    motor.extend_shoulder("left", speed=30)
+    simulation.step(10)
+    motor.stop("torso", "left_shoulder")
+    assert (motor.torso_end, motor.left_shoulder_end, motor.walking) == ("stopped", "stopped", True)
+    simulation.step(10)
+    assert angle(simulation, "torso_yaw") == near(12, abs=0.3)
+    assert simulation.world.bodies["walker"].get("pose").x == near(0.2, abs=0.01)
+
+
+@pytest.mark.parametrize("given", ["chunk", "buffer", "text"])
+def test_a_posture_is_assumed_again(given: str) -> None:
+    simulation, motor = moving()
+    motor.rotate_torso(50)
+    motor.extend_shoulder("left", 15)
+    until(simulation, lambda: not motor.busy)
+    posture = motor.parent.posture
+    known: Any = {"chunk": posture.chunk.copy(), "buffer": posture, "text": "posture:any torso_yaw:50 left_shoulder_yaw:-15 width:9"}[given]
+    motor.rotate_torso(-10)
+    motor.compress_shoulder("left")
+    until(simulation, lambda: not motor.busy)
+    if given == "buffer":
+        posture.set({"torso_yaw": 50, "left_shoulder_yaw": -15})
+    motor.assume(known, "60")
+    assert until(simulation, lambda: not motor.torso_busy) == 101
+    assert (motor.torso_yaw_angle, motor.left_shoulder_yaw_angle) == (50, -15)
+    assert motor.torso_end == "done"
+    motor.assume("torso_yaw:91")
+    assert motor.refusal == "limit"
+    with pytest.raises(WorldError, match="'width:1' names no joint of walker; it has pelvis_yaw"):
+        motor.assume("width:1")
+    with pytest.raises(WorldError, match="assume: torso_yaw: must be a number"):
+        motor.assume("torso_yaw:left")
+
+
 def test_a_movement_is_prepared_for_as_long_as_a_parameter_says_and_can_be_stopped_meanwhile() -> None:
     simulation, motor = moving(preparation=0.25, initiation=0.05)
     motor.rotate_torso(12)
@@ -332,10 +370,11 @@ def test_with_endless_patience_it_pushes_on() -> None:
     assert motor.walking
 
 
-def test_a_movement_that_a_user_ends_is_over() -> None:
+@pytest.mark.parametrize("legs", [("walk", 1.0), ("turn", 90, 90), ("turn", None, 90)])
+def test_a_movement_that_a_user_ends_is_over(legs: tuple[Any, ...]) -> None:
     simulation, motor = moving()
     motor.rotate_torso()
-    motor.turn(90, 90)
+    getattr(motor, legs[0])(*legs[1:])
     simulation.step(10)
     simulation.command("stop")
     simulation.step(2)
@@ -344,6 +383,36 @@ def test_a_movement_that_a_user_ends_is_over() -> None:
 
 
 # -- any body with joints
+
+
+BODIES = {
+    "person": Mannequin(name="walker"),
+    "with a bar": Mannequin(name="walker", load=Load(shape="bar", size=(1.0, 0.03)), trunk="box"),
+    "car": Car(name="walker"),
+    "arm": ImportedBody(name="walker", text=ARM),
+    "stone": ImportedBody(name="walker", text="<mujoco><worldbody><body name='stone'><geom size='0.1'/></body></worldbody></mujoco>"),
+}
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_every_body_tells_what_it_is_in_the_order_in_which_it_feels(kind: str) -> None:
+    simulation, motor = moving(body=BODIES[kind])
+    body = simulation.world.bodies["walker"]
+    plan, felt = body.get("anatomy"), body.get("proprioception")
+    joints = [joint for part in plan.parts for joint in part.joints]
+    assert [joint.name for joint in joints] == list(body.joints) == list(motor._limbs.order)
+    assert felt.positions == tuple(joint.position for joint in body.joints.values())
+    assert [part.name for part in plan.parts] == [part.name for part in motor.body.line()] == list(body.parts)
+    for joint in joints:
+        limits = body.joints[joint.name].limits
+        assert limits == (-math.inf if joint.lower is None else joint.lower, math.inf if joint.upper is None else joint.upper)
+        assert joint.driven == body.joints[joint.name].driven
+    for movement in plan.movements:
+        assert {joint for joint, _ in movement.joints} <= {joint.name for joint in joints if joint.driven}
+    box = body.bounding_box("body")
+    size = body.get("bounding_box")
+    assert (size.width, size.depth, size.height) == (box.width, box.depth, box.height) == (felt.width, felt.depth, felt.height)
+    assert motor.width == near(box.width, abs=0.0051)
 
 
 def test_an_imported_arm_is_known_and_moved() -> None:

@@ -15,7 +15,7 @@ from actr3d.motor import Motor
 SECTION = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8").split("## Limbs under command\n")[1].split("\n## ")[0]
 COMMANDS = (
     *(Motor.walk, Motor.turn, Motor.rotate, Motor.rotate_torso, Motor.extend_shoulder, Motor.compress_shoulder, Motor.lower_arms),
-    *(Motor.move, Motor.stop, Motor.feel),
+    *(Motor.move, Motor.assume, Motor.stop, Motor.feel),
 )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from math import copysign, radians
 from typing import Any
 
+from actr3d.actr.chunk import Chunk
 from actr3d.actr.parameters import named_parameters
 from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.limbs import BodyPart, Freedom, Limbs
@@ -133,13 +134,13 @@ class Motor(Muscles):
         rate = radians(self._speed("turn", speed, by is not None))
         self._command(partial(self._turn, by, rate), "turn", angle=angle, speed=speed)
 
-    def stop(self, group: Any = None) -> None:
-        """Stops what a muscle group does, at once, or all of the body.
+    def stop(self, *groups: Any) -> None:
+        """Stops what some muscle groups do, at once, or all of the body.
 
         Raises:
             WorldError: If there is no such muscle group.
         """
-        self._command(partial(self._stop, group), "stop", group=group)
+        self._command(partial(self._stop, groups), "stop", groups=list(groups))
 
     def _walk(self, speed: float, place: str) -> None:
         self._need("walk")
@@ -156,14 +157,13 @@ class Motor(Muscles):
         self._need("walk")
         self._begin({"turn": Turn(angle, rate, place)})
 
-    def _stop(self, group: Any, place: str) -> None:
-        if group is None:
-            self._halt(list(self._under_way), place)
-            if "stop" in self._known().plan.actuators:
-                self._tell("stop", place=place)
-        else:
-            known(group, self._known().groups, self._known().plan.name, "muscle group")
-            self._halt([key for key, movement in self._under_way.items() if movement.group == group], place)
+    def _stop(self, groups: Sequence[Any], place: str) -> None:
+        plan = self._known().plan
+        for group in groups:
+            known(group, self._known().groups, plan.name, "muscle group")
+        self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], place)
+        if not groups and "stop" in plan.actuators:
+            self._tell("stop", place=place)
 
     def _need(self, word: str) -> None:
         """Checks that the body can do something.
@@ -227,6 +227,21 @@ class Motor(Muscles):
         """Lowers both arms to where they hang; see `move`."""
         self.move("lower_arms", None, None, speed)
 
+    def assume(self, posture: Any, speed: Any = None) -> None:
+        """Brings joints to where they are in a posture, such as one that was retrieved; other slots do not matter.
+
+        Args:
+            posture: A buffer that holds it, a chunk, a mapping, or text: joints with angles [degrees], or positions [m].
+            speed: How fast each joint moves [degrees/s] or [m/s].
+
+        Raises:
+            ChunkError: If it is no posture.
+            WorldError: If it names no joint of the body, or a value is not what it should be.
+        """
+        pace = self._speed("assume", speed, True)
+        wanted = Chunk(posture, self.sch.bound)
+        self._command(partial(self._assume, wanted, pace), "assume", posture=wanted, speed=speed)
+
     def feel(self, name: str = "felt") -> None:
         """Feels the body at the end of this tick, and stores that posture under a name."""
         self._command(partial(self._want, name), "feel", name=name)
@@ -236,38 +251,48 @@ class Motor(Muscles):
         self._ask()
 
     def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, place: str) -> None:
-        name = self._known().joint(joint, axis)
-        if usual and self._known().joints[name].kind == "slide":
-            raise WorldError(f"{self._known().plan.name}: joint '{name}' slides; say how fast [m/s]: rotate('{name}', speed=…)")
-        self._turn_joints(name, {name: 1.0}, to, pace, place)
+        limbs = self._known()
+        name = limbs.joint(joint, axis)
+        if usual and limbs.joints[name].kind == "slide":
+            raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; say how fast [m/s]: rotate('{name}', speed=…)")
+        target = limbs.limit(name, pace) if to is None else to * limbs.unit(name)
+        self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, place)
 
     def _move(self, movement: Any, side: Any, to: float | None, pace: float, place: str) -> None:
-        named = self._known().movement(movement, side)
-        name = movement if named.side is None else f"{movement}_{named.side}"
-        if named.to is not None:
-            if to is not None or pace < 0:
-                raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed above 0")
-            to = named.to / radians(1)
-        self._turn_joints(name, dict(named.joints), to, pace, place)
-
-    def _turn_joints(self, name: str, joints: Mapping[str, float], to: float | None, pace: float, place: str) -> None:
-        """Turns joints, each in its own way, together: one movement for each muscle group."""
         limbs = self._known()
-        ways: dict[str, dict[str, float]] = {}
-        for joint, way in joints.items():
+        named = limbs.movement(movement, side)
+        if named.to is not None and (to is not None or pace < 0):
+            raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed above 0")
+        ways: dict[str, float] = {}
+        for joint, way in named.joints:
+            limit = limbs.limit(joint, way * pace)
+            end = copysign(INFINITE, way * pace) if limit is None else limit
+            ways[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit(joint)
+        name = movement if named.side is None else f"{movement}_{named.side}"
+        self._turn_joints(name, ways, pace, to is None and named.to is None, place)
+
+    def _assume(self, posture: Chunk, pace: float, place: str) -> None:
+        limbs = self._known()
+        ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit(joint) for joint in limbs.order if joint in posture}
+        if not ways:
+            raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
+        self._turn_joints("assume", ways, pace, False, place)
+
+    def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, to_limit: bool, place: str) -> None:
+        """Turns joints to positions [rad] or [m], together: one movement for each muscle group."""
+        limbs = self._known()
+        by_group: dict[str, dict[str, float]] = {}
+        for joint, target in ways.items():
             if not limbs.joints[joint].driven:
                 raise WorldError(f"{limbs.plan.name}: joint '{joint}' has no muscles that could move it")
-            target = limbs.limit(joint, way * pace) if to is None else way * to * limbs.unit(joint)
-            if target is None:
-                target = copysign(INFINITE, way * pace)
-            elif not limbs.inside(joint, target):
+            if abs(target) < INFINITE and not limbs.inside(joint, target):
                 self._refuse(name, "limit")
                 return
-            ways.setdefault(limbs.group_of[joint], {})[joint] = target
-        speed = abs(pace) * limbs.unit(next(iter(joints)))
+            by_group.setdefault(limbs.group_of[joint], {})[joint] = target
         movements: dict[str, Movement] = {}
-        for group, targets in ways.items():
-            movements[group] = JointMovement(name, group, speed, place, ways=targets, order=limbs.order, to_limit=to is None)
+        for group, targets in by_group.items():
+            speed = abs(pace) * limbs.unit(next(iter(targets)))
+            movements[group] = JointMovement(name, group, speed, place, ways=targets, order=limbs.order, to_limit=to_limit)
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:

@@ -165,7 +165,7 @@ class Walk(Movement):
         return {"movement": self.name, "group": self.group, "speed": self.speed}
 
     def _arrived(self, step: Step) -> str | None:
-        return None
+        return None if step.reading.walking else "stopped"
 
     def _way(self, step: Step) -> float:
         return step.reading.speed[0] * step.duration * (1 if self.speed > 0 else -1)
@@ -188,7 +188,7 @@ class Turn(Movement):
 
     def _arrived(self, step: Step) -> str | None:
         if self.rest is None:
-            return None
+            return None if step.reading.walking else "stopped"
         before, self.rest = self.rest, step.reading.turning
         if self.rest:
             return None
