@@ -147,6 +147,21 @@ def test_postures_felt_again_merge_and_are_recalled_the_better() -> None:
     assert memory.get_activation(postures(motor, "posture:rotate_torso end:done extreme:maximum")[0]) > before + 0.3
 
 
+def test_a_posture_that_is_narrow_enough_is_asked_for_by_a_function() -> None:
+    simulation, motor = moving()
+    swing(simulation, motor, 70)
+    memory = motor.parent.memory
+
+    def narrow(chunk: dict[str, Any], _: Any) -> bool:
+        return chunk["width"] <= 0.35
+
+    memory.request(["end:passing", narrow])
+    simulation.step(10)
+    found = motor.parent.retrieval.chunk
+    assert found["width"] <= 0.35
+    assert found["posture"] == "rotate_torso"
+
+
 def test_turns_to_the_left_and_right_are_mirrored() -> None:
     simulation, motor = moving()
     swing(simulation, motor, 60)

@@ -28,7 +28,7 @@ class Motor(Muscles):
     Names that the body does not know, and values that are none, are errors.
 
     The body tells what it consists of in the first tick; what is commanded before begins 10 ms after the start. While
-    something moves, the body is felt at the end of each tick; else nothing is felt and nothing costs time.
+    something moves, the body is felt at the end of each tick, and a run that has no end goes on; else nothing costs time.
 
     Angles are degrees in commands, attributes and posture chunks, radians in `body` and `joint()`. Numbers may be text.
 
@@ -38,7 +38,7 @@ class Motor(Muscles):
             buffers; there a buffer alone is enough.)
         speed: How fast joints and the whole body turn unless told otherwise [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (human-data).
-        angle_grid: What felt angles are rounded to [degrees].
+        angle_grid: What felt angles are rounded to [degrees]; this and the next two hold from when the body is known.
         size_grid: What felt lengths are rounded to [m].
         extreme_step: How much further than ever a joint has to go for its posture to be stored on the way [degrees]; None
             for never. Source: ours; about the ten samples to each side that the original took.
