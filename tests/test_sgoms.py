@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import shutil
+import subprocess
+import sys
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -238,3 +241,11 @@ def test_the_readme_example_prints_what_is_shown(capsys: pytest.CaptureFixture[s
     section = (ROOT / "README.md").read_text(encoding="utf-8").split("## Planning units\n")[1].split("\n## ")[0]
     run_text(section.split("```python\n")[1].split("```")[0], "readme.py")
     assert capsys.readouterr().out == section.split("```\n")[2]
+
+
+@pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])
+def test_models_with_buffers_of_their_own_run_without_a_word(name: str, tmp_path: Path) -> None:
+    copy = shutil.copy(ROOT / "tests" / "models" / f"{name}.py", tmp_path)
+    command = [sys.executable, "-m", "actr3d.cli", "run", str(copy), "--seed", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=True)
+    assert done.stderr == ""

@@ -214,7 +214,8 @@ def test_a_request_to_a_busy_imaginal_module_is_lost(capsys: pytest.CaptureFixtu
 def test_sgoms_the_longer_the_interruption_the_longer_it_takes_to_find_back(capsys: pytest.CaptureFixture[str]) -> None:
     for call, interrupted in ((4.0, 2.06), (0.5, 2.06), (10.0, 2.06)):
         run("sgoms", call_time=call)
-        said = dict(reversed(line.split(" s: ")) for line in capsys.readouterr().out.splitlines())  # the last of each
+        lines = [line.split(" s: ") for line in capsys.readouterr().out.splitlines()]
+        said = {what: moment for moment, what in lines}  # the last of each
         # From the interruption: begin, choose, start and end of two unit tasks that take 1 s and the call; look, end; ask.
         away = 0.05 + 0.05 + (0.05 + 1.0 + 0.05) + 0.1 + (0.05 + call + 0.05) + 0.1 + 0.05
         back = interrupted + away + 0.05 * math.sqrt(away) + 0.05
