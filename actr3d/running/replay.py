@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 
 from actr3d.actr.limits import EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
+from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import RecordingError
 from actr3d.printing import ModelOutput, ToldOutput, printing_to
@@ -107,8 +107,8 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
             return _replay_program(recorded)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
-        with RunLimits(seed=recorded.facts.get("program_seed", recorded.facts["seed"])) as limits:
-            random.seed(limits.program_seed)
+        seed = recorded.facts.get("program_seed", recorded.facts["seed"])
+        with RunLimits(seed=seed) as limits, shared_random(seed):
             if make is not None:
                 return _replay_simulation(recorded, make())
             with BuiltOutput(limits) as output:
