@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -38,6 +38,8 @@ class Recording:
         self._append = self._writer.events.append
         self.events = self.answers = self.commands = self.states = 0
         """How many of each it has been given."""
+        self.ending: Callable[[], None] | None = None
+        """Called before it is closed, to tell the rest; what is told later is not recorded."""
 
     def fact(self, name: str, value: Any) -> None:
         """Writes a fact that becomes known in the run: plain values."""
@@ -107,6 +109,9 @@ class Recording:
         Raises:
             RecordingError: If the file cannot be written.
         """
+        ending, self.ending = self.ending, None
+        if ending is not None:
+            ending()
         self._writer.close()
 
     def __enter__(self) -> Self:

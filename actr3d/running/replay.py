@@ -14,7 +14,7 @@ from actr3d.actr.loading import run_text
 from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import RecordingError
-from actr3d.printing import ModelOutput, ToldOutput, printing_to
+from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.recording.form import versions
 from actr3d.running.building import build
@@ -108,13 +108,13 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
         seed = recorded.facts.get("program_seed", recorded.facts["seed"])
-        with RunLimits(seed=seed) as limits, shared_random(seed):
+        with RunLimits(seed=seed), shared_random(seed):
             if make is not None:
                 return _replay_simulation(recorded, make())
-            with BuiltOutput(limits) as output:
+            with BuiltOutput() as output:
                 simulation = _built(recorded.facts)
                 output.lead_to(simulation)
-                return _replay_simulation(recorded, simulation, output)
+                return _replay_simulation(recorded, simulation)
 
 
 def _check_versions(then: dict[str, str]) -> None:
@@ -154,8 +154,8 @@ def _replay_program(recorded: Recorded) -> Comparison:
     return Comparison(ticks=0, events=events.count, difference=difference)
 
 
-def _replay_simulation(recorded: Recorded, simulation: Simulation, output: ToldOutput | None = None) -> Comparison:
-    """Runs a simulation beside its recording, which tells of its output, too, where that is given."""
+def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison:
+    """Runs a simulation beside its recording."""
     ticks = recorded.ticks
     events = _Events(recorded, ticks)
     period = recorded.facts["period_us"]
@@ -180,8 +180,8 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, output: ToldO
                 break
         else:
             simulation._course.repeat_commands()
-            if output is not None and "ended" in recorded.facts:
-                output.finish()
+            if "whole" in recorded.facts:
+                simulation._journal.voice.finish()
             simulation._journal.check()
     except _Differs:
         pass

@@ -82,7 +82,7 @@ def run_model(path: Path | str, limits: RunLimits, *, settings: Mapping[str, Any
 def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str, Any], record: Path | str | None) -> None:
     from actr3d.running.building import build  # a program does without the world that this loads
 
-    with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput(limits) as output:
+    with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
         simulation, parameters = build(source, str(path), settings, path.parent)
         output.lead_to(simulation)
         end = None
@@ -95,7 +95,6 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str
         facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
         with simulation.record(record, **facts, program_seed=limits.program_seed) as recording:
             report = simulation.run(end)
-            output.finish()
             recording.fact("ended", {"by": report.ended_by})
 
 

@@ -13,6 +13,7 @@ from actr3d.kinds import LEVELS
 from actr3d.recording import Recording
 from actr3d.simulation.commands import Command
 from actr3d.simulation.program_run import ProgramRun
+from actr3d.simulation.voice import Voice
 from actr3d.trace import Run, Trace, TraceEvent
 from actr3d.world import World
 
@@ -44,7 +45,9 @@ class Journal:
         """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
-        self._preface: list[TraceEvent] = []
+        self._preface: list[str] = []
+        self.voice = Voice(self._say)
+        """What the minds print to."""
 
     def raise_level(self, level: str) -> None:
         """Lets the next trace record at least as much as a level.
@@ -83,25 +86,41 @@ class Journal:
         self.raise_level("all")
         self._recording = recording
 
+    def end_recording(self, *, whole: bool) -> None:
+        """Lets nothing more be recorded.
+
+        Args:
+            whole: Whether the last tick is over, and what was printed in it.
+        """
+        if self._recording is None:
+            return
+        if whole:
+            self.voice.finish()
+            self._recording.fact("whole", True)
+        self._recording = None
+        if self.trace is not None and not self._listeners:
+            self.trace.ignore(self._hear)
+
     def begin(self) -> Trace | None:
         """Begins a new trace, of a run that is at its start; returns it, or None where nobody wants one."""
         self._events = self._answers = 0
         self._failure = None
+        self.voice.begin()
         self.trace = None if self._level == "none" else Trace(self._level, keep=self._keep)
         if self.trace is not None and (self._listeners or self._recording is not None):
             self.trace.listen(self._hear)
-        if self.trace is not None and self.trace.production:
-            for event in self._preface:
-                self.trace.emit(*event)
+        for text in self._preface:
+            self._say(text)
         return self.trace
 
-    def output(self, time: int, text: str) -> None:
-        """Takes a line that the model prints at a time [us]; one from before the minds are made comes first in every trace."""
-        event = TraceEvent(time, "model", "output", {"text": text})
-        if self.trace is None:
-            self._preface.append(event)
-        elif self.trace.production:
-            self.trace.emit(*event)
+    def preface(self, text: str) -> None:
+        """Takes a line that was printed before the run; it comes first in every trace."""
+        self._preface.append(text)
+
+    def _say(self, text: str) -> None:
+        if self.trace is not None and self.trace.production:
+            run = self.run
+            self.trace.emit(0 if run is None else run.now_us() or 0, "model", "output", {"text": text})
 
     @contextmanager
     def holding(self) -> Generator[None]:
@@ -127,8 +146,9 @@ class Journal:
 
     def _hand_on(self, event: TraceEvent) -> None:
         try:
-            for listener in self._listeners:
-                listener(event)
+            with self.voice.aside():
+                for listener in self._listeners:
+                    listener(event)
         except Exception as error:  # noqa: BLE001 - raised by `check`, where no event of a mind is half done
             self._failure = self._failure or error
 
@@ -163,5 +183,6 @@ class Journal:
 
     def cut(self, tick: int, commands: int) -> None:
         """Lets the recording end here, because from here the run goes another way."""
+        self.voice.cut()
         if self._recording is not None:
             self._recording.cut(tick, self._events, self._answers, commands)

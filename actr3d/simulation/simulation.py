@@ -284,7 +284,11 @@ class Simulation:
         sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
         recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
         self._journal.record(recording)
+        recording.ending = self._end_recording
         return recording
+
+    def _end_recording(self) -> None:
+        self._journal.end_recording(whole=self._course.begun and not self._course.lockstep.broken)
 
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.ticks)
