@@ -68,7 +68,9 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         for tick in (0, 20, 55):  # some events at exactly the end of a tick are of the next one
             assert all(event.time <= tick / 100 for event in events[: counts[tick]])
             assert all(event.time >= tick / 100 for event in events[counts[tick] :])
-        assert list(recorded.commands()) == [(50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})]
+        assert list(recorded.commands()) == [
+            (1, 50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})
+        ]
         told = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
         answers = list(recorded.answers())
         assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(told)] == told

@@ -107,6 +107,7 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
     facts = {"kind": "program", "file": str(path), "sources": {str(path): source}, "seed": limits.seed, "until": limits.until}
     with Recording(record, facts) as recording:
+        limits.recorder = recording
         limits.trace.listen(recording.event_alone)
         with ProgramOutput(limits) as output:
             run_text(source, str(path), limits=limits, folder=path.parent)

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 from weakref import ref
 
+from actr3d.actr.limits import Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
 from actr3d.kinds import LEVELS
@@ -38,6 +39,7 @@ class Journal:
         self._keep = level != "none"
         self._listeners: list[Listener] = []
         self._recording: Recording | None = None
+        self._program: ProgramRun | None = None
         self._failure: Exception | None = None
         self.silent = False
         """Whether the past is being gone through again on the way to another time, which no listener is to hear."""
@@ -69,12 +71,13 @@ class Journal:
             self.trace.listen(self._hear)
         self._listeners.append(listener)
 
-    def tell_program(self, trace: Trace) -> None:
-        """Hands on to the trace of the whole program as much as that one records."""
+    def tell_program(self, trace: Trace, recorder: Recorder | None) -> None:
+        """Hands on to the trace of the whole program as much as that one records, and to its recorder what else there is."""
         self.raise_level(trace.level)
         if trace.level != "none":
             journal = ref(self)  # the program's trace does not keep the simulation alive
-            self.listen(ProgramRun(trace, lambda: (here := journal()) and here.run).take)
+            self._program = ProgramRun(trace, recorder, lambda: (here := journal()) and here.run)
+            self.listen(self._program.take)
 
     @property
     def run(self) -> Run | None:
@@ -162,24 +165,31 @@ class Journal:
         if failure is not None:
             raise failure
 
-    def answers(self, requests: Sequence[Request], answers: Sequence[Any]) -> None:
-        """Takes what bodies answered in this tick."""
-        recording = self._recording
+    def answers(self, tick: int, requests: Sequence[Request], answers: Sequence[Any]) -> None:
+        """Takes what bodies answered at the end of a tick."""
+        recording, program = self._recording, self._program
+        if program is not None and not self.silent:
+            for request, answer in zip(requests, answers, strict=True):
+                program.answer(tick, request, answer)
         if recording is not None:
             for request, answer in zip(requests, answers, strict=True):
                 self._answers += 1
                 if self._answers > recording.answers:
-                    recording.answer(request.body, request.word, answer)
+                    recording.answer(1, tick, request.body, request.word, answer)
 
     def state(self, tick: int, world: World) -> None:
         """Takes the end of a tick."""
         if self._recording is not None and tick == self._recording.states:
-            self._recording.state(world.state_bytes())
+            self._recording.state(1, tick, world.state_bytes())
+        if self._program is not None and not self.silent:
+            self._program.state(tick, world)
 
     def command(self, command: Command) -> None:
         """Takes something new that a user did."""
         if self._recording is not None:
-            self._recording.command(command.tick, command.to_data())
+            self._recording.command(1, command.tick, command.to_data())
+        if self._program is not None:
+            self._program.command(command)
 
     def cut(self, tick: int, commands: int) -> None:
         """Lets the recording end here, because from here the run goes another way."""

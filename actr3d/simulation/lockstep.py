@@ -127,7 +127,7 @@ class Lockstep:
     def _answer(self, questions: Sequence[Request], answers: Sequence[Any]) -> None:
         for request, answer in zip(questions, answers, strict=True):
             self.minds.take(request, answer)
-        self._journal.answers(questions, answers)
+        self._journal.answers(self.ticks + 1, questions, answers)
 
     def _expect(self, phase: str, what: str) -> None:
         if self._phase == phase:

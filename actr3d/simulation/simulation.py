@@ -72,7 +72,7 @@ class Simulation:
         self._period = self._steps * self.world.scene.timestep_us
         self._journal = Journal(trace)
         if limits is not None and limits.trace is not None:
-            self._journal.tell_program(limits.trace)
+            self._journal.tell_program(limits.trace, limits.recorder)
         self._course = Course(self.world, self._begin, self._journal)
         self._random = GlobalRandom()
         self._onlookers = Onlookers(self._random)
