@@ -6,6 +6,7 @@ import json
 import sqlite3
 from array import array
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -53,6 +54,26 @@ class Recorded:
         if self.facts.get("form") != FORM:
             self._file.close()
             raise RecordingError(f"'{path}' is no recording of this form: it says {self.facts.get('form')!r}, this version reads {FORM!r}")
+
+        missing = {"kind", "versions"} - self.facts.keys()
+        if missing:
+            self._file.close()
+            raise RecordingError(f"'{path}' is no whole recording: it does not say its {' and '.join(sorted(missing))}")
+
+    def check(self) -> None:
+        """Looks through the whole file for damage, which would otherwise look like a difference.
+
+        Raises:
+            RecordingError: If there is any.
+        """
+        try:
+            (found,) = self._file.execute("PRAGMA integrity_check(1)").fetchone()
+            for _ in chain(self.events(), self.states(), self.answers(), self.commands()):
+                pass
+        except (sqlite3.Error, ValueError, TypeError) as error:
+            found = str(error)
+        if found != "ok":
+            raise RecordingError(f"the recording '{self.path}' is damaged: {' '.join(found.split())}")
 
     @property
     def ticks(self) -> int:

@@ -65,9 +65,10 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
 
     Raises:
-        RecordingError: If versions differ, or the recording does not say how the simulation was made.
+        RecordingError: If the file is damaged, versions differ, or the recording does not say how the simulation was made.
         Exception: What the model raises in building it.
     """
+    recorded.check()
     if not any_version:
         _check_versions(recorded.facts["versions"])
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
@@ -134,21 +135,25 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
     simulation._journal.raise_level("all")
     simulation._journal.listen(events.take)
     simulation._course.plan([Command.from_data(command.tick, command.data) for command in recorded.commands()])
+    scene = "" if recorded.facts["scene"] == simulation.world.fingerprint else "; it compiles to another scene than then"
     difference: str | None = None
+    begun = False
     try:
         for _, tick, state, count in recorded.states():
+            begun = True
             if tick:
                 simulation.step()
             now = simulation.world.state_bytes()
             where = f"at the end of tick {tick} ({seconds(tick * period):g} s)"
             if now != state:
-                difference = f"the physics {where}: {first_number(state, now)}"
+                difference = f"the physics {where}: {first_number(state, now)}{scene}"
                 break
             if tick and count != events.count:
                 difference = f"there were {count:,} events {where}, and are {events.count:,} now"
                 break
         else:
-            simulation._course.repeat_commands()
+            if begun:
+                simulation._course.repeat_commands()
             if "whole" in recorded.facts:
                 simulation._journal.voice.finish()
             simulation._journal.check()

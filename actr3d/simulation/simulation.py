@@ -280,7 +280,7 @@ class Simulation:
         """
         if self._course.begun:
             raise SimulationError("a recording holds a run from its start on, and this one has begun already")
-        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
         sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
         recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
         self._journal.record(recording)
