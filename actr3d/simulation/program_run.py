@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 from actr3d.actr.limits import Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.kinds import KINDS, LEVELS
 from actr3d.simulation.commands import Command
 from actr3d.trace import Run, Trace, TraceEvent, top_path
+from actr3d.values import Naming
 from actr3d.world import World
 
 
@@ -37,7 +38,7 @@ class ProgramRun:
         """
         if event.kind == "output" or LEVELS.index(KINDS[event.kind].level) > self._rank:
             return
-        self._trace.emit(event.time_us, self._name(event.source), event.kind, event.data)
+        self._hand_on(event, self._trace)
         self._trace.raise_failures()
 
     def state(self, tick: int, world: World) -> None:
@@ -65,6 +66,20 @@ class ProgramRun:
             self._begun = self._trace.begin(self)
         return self._begun
 
+    def _hand_on(self, event: TraceEvent, trace: Trace) -> None:
+        data = event.data if self._number == 1 else self._renamed(event.data)
+        trace.emit(event.time_us, self._name(event.source), event.kind, data)
+
+    def _renamed(self, data: Any) -> Any:
+        """Returns data in which parts have the names that they have in the program's trace."""
+        if type(data) is Naming:
+            return data.renamed(self._name)
+        if isinstance(data, dict):
+            return {key: self._renamed(value) for key, value in cast("dict[Any, Any]", data).items()}
+        if isinstance(data, (list, tuple)):
+            return [self._renamed(value) for value in cast("list[Any]", data)]
+        return data
+
     def _name(self, source: str) -> str:
         top = top_path(self._number)
         return source if self._number == 1 else top if source == "top" else f"{top}.{source}"
@@ -81,7 +96,7 @@ class ProgramRun:
         present = self._present()
         if present is not None:
             named = Trace(trace.level, keep=False)
-            named.listen(lambda event: trace.emit(event.time_us, self._name(event.source), event.kind, event.data))
+            named.listen(lambda event: self._hand_on(event, trace))
             present.tell(named)
 
     def stop(self) -> None:
