@@ -29,7 +29,7 @@ KINDS: Mapping[str, Kind] = {
     "changed": Kind("production", "system", "production", "a chosen production matches no longer and does not fire"),
     "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
-    "output": Kind("production", "model", "text", "the model prints a line; told by `actr3d run`, to a recording and with `--json`"),
+    "output": Kind("production", "model", "text", "a mind prints a line; or a program, to a recording and with `--json`"),
     "planning_unit": Kind(
         "production",
         "SGOMS buffer",

@@ -103,43 +103,47 @@ class BodyPort(Model):
         """Tells the body to do something: `set("walk", 1.2)`.
 
         Raises:
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
+        embodiment = self._joined(word)
         self._trace_request("set", word=word, **_given(values, named))
-        self._send(Request(self._joined().body, word, values, named, _place(), self))
+        embodiment.outbox.append(Request(embodiment.body, word, values, named, _place(), self))
 
     def get(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
 
         Raises:
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
-        self._trace_request("get", word=word, **_given(values, options))
-        return self._ask(word, values, options, to_buffer=False)
+        return self._ask("get", word, values, options)
 
     def request(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses; the answer comes as a chunk: the word, then what was sensed, by name or in order.
 
         Raises:
-            SimulationError: If the agent has no body, or the port no buffer.
+            SimulationError: If the agent has no body, or does not live yet; or if the port has no buffer.
         """
+        self._joined(word)
         if self._buffer is None:
             raise SimulationError(f"port '{self._path}' has no buffer to put the answer to '{word}' into; give it one: BodyPort(buffer)")
-        self._trace_request("request", word=word, **_given(values, options))
-        self.error = False
-        return self._ask(word, values, options, to_buffer=True)
+        return self._ask("request", word, values, options)
 
-    def _ask(self, word: str, values: tuple[Any, ...], options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
+    def _ask(self, call: str, word: str, values: tuple[Any, ...], options: Mapping[str, Any]) -> Reading:
+        embodiment = self._joined(word)
+        self._trace_request(call, word=word, **_given(values, options))
+        if call == "request":
+            self.error = False
         reading = Reading(word)
-        self._send(Request(self._joined().body, word, values, options, _place(), self, reading, to_buffer))
+        embodiment.outbox.append(Request(embodiment.body, word, values, options, _place(), self, reading, call == "request"))
         self._outstanding += 1
         self.busy = True
         return reading
 
-    def _send(self, request: Request) -> None:
-        self._joined().outbox.append(request)
-
-    def _joined(self) -> Embodiment:
+    def _joined(self, word: str) -> Embodiment:
+        if not self._converted:
+            raise SimulationError(
+                f"'{word}' is said to a body before the agent lives; say it while its Simulation runs: in `init`, `start`, a production"
+            )
         for part in self._line():
             embodiment = part.__dict__.get("_embodiment")
             if embodiment is not None:
