@@ -65,7 +65,7 @@ class GeometricCamera:
         self._topology = topology_of(mj_model, self._objects, self.parameters.groups)
         self._scene = room_for_scene(self._topology, self.parameters.rows)
         most = MOST_PIECES_OF_A_PATCH * len(self._scene.patches) + len(self._topology.face_geom) + 1
-        self._row = room_for(most, self._scene.places)
+        self._row = room_for(most, self._scene.places, self._scene.reaches)
         self._optics = _optics(self.parameters)
         self._labels = np.zeros(max(0, *self._objects, 0) + 1, np.int64)
         self._extents = np.zeros(16 * self.parameters.rows, EXTENT)

@@ -89,8 +89,8 @@ class Muscles(WithParameters, Port):
 
     def _command(self, act: Callable[[str], None], call: str, **given: Any) -> None:
         """Carries out a command, or keeps it until the body is known."""
+        self._joined(call)
         self._trace_request(call, **given)
-        self._joined()
         if self._schema is None:
             self._waiting.append((act, place_of_caller()))
             self._become("busy", True)
