@@ -14,6 +14,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
+from actr3d.world.pace import Pace
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
 from actr3d.world.sensors.touch import step_and_feel
@@ -83,6 +84,7 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
+        self._pace = Pace(self, list(self.bodies.values()))
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -104,10 +106,12 @@ class World:
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
+        taken = self._pace.steps(steps)
         if feeling:
-            step_and_feel(self, feeling, steps)
+            step_and_feel(taken, feeling)
         else:
-            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+            for _ in taken:
+                pass
         self._steps += steps
         self.changed()
         for commands in running:
