@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
-import mujoco
 import numpy as np
 from mujoco import mjtJoint
 from numpy.typing import NDArray
@@ -232,26 +231,6 @@ class Body:
             return True
         ours = self.sides(self.own())
         return not np.any(ours[:, 0] != ours[:, 1])
-
-    def steady(self) -> bool:
-        """Returns whether it may have the speeds that it is told at once: nothing touches it or has just pushed it."""
-        return self.holding.calm and self.free()
-
-    def halt(self, dofs: list[int]) -> None:
-        """Stops degrees of freedom at once.
-
-        Where others go on, that alone could speed up limbs that they carry; then all slow down, so that none of it adds energy.
-        """
-        model, data = self.world.mj_model, self.world.mj_data
-        product = np.zeros(model.nv)
-        mujoco.mj_mulM(model, data, product, data.qvel)
-        before = float(data.qvel @ product)
-        data.qvel[dofs] = 0
-        mujoco.mj_mulM(model, data, product, data.qvel)
-        after = float(data.qvel @ product)
-        if after > before > 0:
-            own = self.members[model.dof_bodyid]
-            data.qvel[own] *= np.sqrt(before / after)
 
     def sides(self, own: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Returns for each contact which of its two sides (n, 2) are its own, given which geoms are; soft things have none."""

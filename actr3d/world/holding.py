@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import mujoco
 import numpy as np
 from mujoco import mjtEq, mjtObj
 from numpy.typing import NDArray
@@ -113,6 +114,27 @@ class Holding:
         at = self._body.world.mj_data.qpos[self._q]
         wanted = np.clip(self.told, (self._lower - at) / duration, (self._upper - at) / duration)
         return self.told if (wanted == self.told).all() else wanted
+
+    def steady(self) -> bool:
+        """Returns whether it may have the speeds that it is told at once: nothing touches it or has just pushed it."""
+        return self.calm and self._body.free()
+
+    def halt(self, dofs: list[int]) -> None:
+        """Stops degrees of freedom at once.
+
+        Where others go on, that alone could speed up limbs that they carry; then all slow down, so that none of it adds energy.
+        """
+        world = self._body.world
+        model, data = world.mj_model, world.mj_data
+        product = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, product, data.qvel)
+        before = float(data.qvel @ product)
+        data.qvel[dofs] = 0
+        mujoco.mj_mulM(model, data, product, data.qvel)
+        after = float(data.qvel @ product)
+        if after > before > 0:
+            own = self._body.members[model.dof_bodyid]
+            data.qvel[own] *= np.sqrt(before / after)
 
     def _let_be(self) -> None:
         """Stops what has come back."""

@@ -74,8 +74,8 @@ class Joint:
         else:
             body.holding.tell(row, speed)
         if speed == 0:
-            body.halt([self.v])
-        elif body.steady():
+            body.holding.halt([self.v])
+        elif body.holding.steady():
             self._qvel[self.v] = speed
 
     def put(self, position: float) -> None:
@@ -150,8 +150,8 @@ class Base:
             return
         body.holding.tell_base(speed)
         if speed == (0, 0, 0):
-            body.halt([self.v, self.v + 1, self.v + 2, *body.holding.still()])
-        elif body.steady():
+            body.holding.halt([self.v, self.v + 1, self.v + 2, *body.holding.still()])
+        elif body.holding.steady():
             self.speed = speed
 
     def put(self, x: float, y: float, heading: float | None) -> None:
