@@ -144,6 +144,7 @@ class Motor(Muscles):
 
     def _walk(self, speed: float, place: str) -> None:
         self._need("walk")
+        self._known().possible("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
             self._halt(["walk"] if walk else [], place)
@@ -155,6 +156,7 @@ class Motor(Muscles):
 
     def _turn(self, angle: float | None, rate: float, place: str) -> None:
         self._need("walk")
+        self._known().possible("turn", rate, 1, radians(1))
         self._begin({"turn": Turn(angle, rate, place)})
 
     def _stop(self, groups: Sequence[Any], place: str) -> None:
@@ -285,6 +287,7 @@ class Motor(Muscles):
         for joint, target in ways.items():
             if not limbs.joints[joint].driven:
                 raise WorldError(f"{limbs.plan.name}: joint '{joint}' has no muscles that could move it")
+            limbs.possible(name, pace * limbs.unit(joint), 2, limbs.unit(joint))
             if abs(target) < INFINITE and not limbs.inside(joint, target):
                 self._refuse(name, "limit")
                 return

@@ -5,15 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from mujoco import mjtObj
-
 if TYPE_CHECKING:
     from actr3d.world.body import Body
-
-GIVES = 1e-3
-"""What a joint that stands still may give way in a tick when other limbs swing, and is put back from [rad]. Muscles hold a posture;
-servos that hold a speed of 0 would drift, arms by some degrees in ten swings of the trunk. What is pushed gives way faster."""
 
 THERE = 3e-4
 """What is nearer to its target than this [m] or [rad] after a tick is put there exactly: more than what the pull of other limbs
@@ -44,12 +37,6 @@ class Running:
         """Where the body walks: x, y, speed, speed of turning, [m] [m] [m/s] [rad/s]."""
         self.brake = 0.0
         """How far the brake is pressed, 0 to 1."""
-        model = body.world.mj_model
-        driven = [joint for joint in body.joints.values() if joint.driven and body.anatomy.servos]
-        self._q = np.array([joint.q for joint in driven], dtype=np.intp)
-        self._ctrl = np.array([joint.control for joint in driven], dtype=np.intp)
-        self._ties = np.array([n for n in range(model.neq) if _ties(model, n, body)], dtype=np.intp)
-        self._stood = np.zeros(len(driven))
 
     def __bool__(self) -> bool:
         return bool(self.targets) or self.waypoint is not None or self.brake > 0
@@ -65,7 +52,6 @@ class Running:
             self._walk(*self.waypoint, duration)
         if self.brake > 0:
             self._brake(duration)
-        self._stood = self._body.world.mj_data.qpos[self._q]
 
     def after_step(self) -> None:
         """Ends the commands that are done: puts what is there exactly there, and stops it.
@@ -74,7 +60,6 @@ class Running:
         """
         body = self._body
         base = body.base
-        self._hold()
         there = [name for name in self.targets if self._arrived(name)]
         if len(there) == len(self.targets):
             self.targets.clear()
@@ -82,6 +67,7 @@ class Running:
             x, y, _, _ = self.waypoint
             self.waypoint = None
             base.place = (x, y, base.place[2])
+            body.holding.stand()
             base.drive((0.0, 0.0, 0.0), body)
 
     def turning(self) -> float:
@@ -98,14 +84,6 @@ class Running:
         targets, self.waypoint, self.brake = state
         self.targets = dict(targets)
 
-    def _hold(self) -> None:
-        """Puts joints that stand still back where they were, unless the body touches something, or its hands are tied to something."""
-        data = self._body.world.mj_data
-        gone = np.abs(data.qpos[self._q] - self._stood)
-        give = (data.ctrl[self._ctrl] == 0) & (gone > 0) & (gone < GIVES)
-        if give.any() and not data.eq_active[self._ties].any() and self._body.free():
-            data.qpos[self._q[give]] = self._stood[give]
-
     def _arrived(self, name: str) -> bool:
         """Returns whether a joint or the heading is at its target; then puts it exactly there and stops it."""
         body, base = self._body, self._body.base
@@ -115,11 +93,13 @@ class Running:
             rest = self._rest(name)
             if abs(rest) <= THERE:
                 base.place = (x, y, heading + rest)
-                base.drive((*base.commanded[:2], 0.0), body)
+                body.holding.stand()
+                base.drive((*body.holding.commanded[:2], 0.0), body)
                 return True
         elif abs(target - body.joints[name].position) <= THERE:
             body.joints[name].put(target)
-            body.joints[name].drive(0.0, body.free)
+            body.holding.stand(name)
+            body.joints[name].drive(0.0, body)
             return True
         return False
 
@@ -127,13 +107,13 @@ class Running:
         """Moves one joint on."""
         joint = self._body.joints[name]
         target, speed = self.targets[name]
-        joint.drive(_bounded((target - joint.position) / duration, speed), self._body.free)
+        joint.drive(_bounded((target - joint.position) / duration, speed), self._body)
 
     def _turn(self, name: str, duration: float) -> None:
         """Turns the base on."""
-        base = self._body.base
-        forward, left, _ = base.commanded
-        base.drive((forward, left, _bounded(self._rest(name) / duration, self.targets[name][1])), self._body)
+        body, base = self._body, self._body.base
+        forward, left, _ = body.holding.commanded
+        base.drive((forward, left, _bounded(self._rest(name) / duration, self.targets[name][1])), body)
 
     def _rest(self, name: str) -> float:
         """Returns how far the base still has to turn [rad]."""
@@ -159,13 +139,6 @@ class Running:
         most = self.brake * body.anatomy.steering.brake
         mass = float(body.world.mj_model.body_subtreemass[body.root])
         body.world.mj_data.ctrl[body.control("brake")] = -_bounded(mass * speed / duration, most)
-
-
-def _ties(model: Any, number: int, body: Body) -> bool:
-    """Returns whether an equality ties a part of a body to something."""
-    sides = (int(model.eq_obj1id[number]), int(model.eq_obj2id[number]))
-    is_body = int(model.eq_objtype[number]) == int(mjtObj.mjOBJ_BODY)
-    return is_body and any(bool(body.members[side]) for side in sides if side >= 0)
 
 
 def _bounded(value: float, bound: float) -> float:

@@ -15,6 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
+from actr3d.world.pace import Pace
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
 from actr3d.world.sensors.touch import step_and_feel
@@ -89,6 +90,7 @@ class World:
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
         self.fingerprint = _fingerprint(self.mj_model)
         """Two worlds have the same one where their scenes are compiled to the same bytes."""
+        self._pace = Pace(self, list(self.bodies.values()))
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -110,10 +112,12 @@ class World:
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
+        taken = self._pace.steps(steps)
         if feeling:
-            step_and_feel(self, feeling, steps)
+            step_and_feel(taken, feeling)
         else:
-            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+            for _ in taken:
+                pass
         self._steps += steps
         self.changed()
         for commands in running:

@@ -69,9 +69,9 @@ def proprioception(body: Body) -> Proprioception:
     depth, width, height = body.bounding_box("body").size
     return Proprioception(
         positions=tuple([positions[joint.q] for joint in body.joints.values()]),
-        moving=tuple([name for name, joint in body.joints.items() if joint.commanded]),
+        moving=tuple([name for name, joint in body.joints.items() if joint.told(body)]),
         speed=body.base.speed if walks else (0.0, 0.0, 0.0),
-        walking=walks and body.base.commanded != (0.0, 0.0, 0.0),
+        walking=walks and body.holding.commanded != (0.0, 0.0, 0.0),
         turning=body.running.turning() if walks else 0.0,
         width=width,
         depth=depth,
