@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from looking import seeing_for
 from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
@@ -74,7 +75,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     printed = [TraceEvent(0, line["source"], line["kind"], line["data"]) for line in map(json.loads, done.stdout.splitlines())]
     simulation = driving("all")
     simulation.run(0.1)
-    return [*trace, *printed, *(simulation.trace or ())]
+    return [*trace, *printed, *(simulation.trace or ()), *seeing_for(0.2)]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:

@@ -53,7 +53,8 @@ class Request:
     named: Mapping[str, Any]
     place: str
     """`file:line` where the modeller asked, for error messages."""
-    port: BodyPort
+    port: Asker
+    """Who gets the answer."""
     reading: Reading | None = None
     """Where the answer goes; None where something is to be done and nothing answered."""
     to_buffer: bool = False
@@ -79,7 +80,27 @@ class Embodiment:
         mind.__dict__["_embodiment"] = self
 
 
-class BodyPort(Model):
+class Asker(Model):
+    """A part of a mind that may want something of its body."""
+
+    def _joined(self) -> Embodiment:
+        """Returns the body it belongs to.
+
+        Raises:
+            SimulationError: If the agent has none.
+        """
+        for part in self._line():
+            embodiment = part.__dict__.get("_embodiment")
+            if embodiment is not None:
+                return embodiment
+        kind = "port" if isinstance(self, BodyPort) else type(self).__name__
+        raise SimulationError(f"{kind} '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
+
+    def _take(self, request: Request, answer: Any) -> None:
+        """Takes the answer to a request in, as an event of the mind."""
+
+
+class BodyPort(Asker):
     """Carries a mind's commands to its body, and the body's answers back.
 
     `set(word, …)` tells the body what to do; `get(word, …)` asks it for what it senses, `request(word, …)` likewise, with
@@ -106,7 +127,7 @@ class BodyPort(Model):
             SimulationError: If the agent has no body.
         """
         self._trace_request("set", word=word, **_given(values, named))
-        self._send(Request(self._joined().body, word, values, named, _place(), self))
+        self._send(Request(self._joined().body, word, values, named, place(), self))
 
     def get(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
@@ -131,20 +152,13 @@ class BodyPort(Model):
 
     def _ask(self, word: str, values: tuple[Any, ...], options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
         reading = Reading(word)
-        self._send(Request(self._joined().body, word, values, options, _place(), self, reading, to_buffer))
+        self._send(Request(self._joined().body, word, values, options, place(), self, reading, to_buffer))
         self._outstanding += 1
         self.busy = True
         return reading
 
     def _send(self, request: Request) -> None:
         self._joined().outbox.append(request)
-
-    def _joined(self) -> Embodiment:
-        for part in self._line():
-            embodiment = part.__dict__.get("_embodiment")
-            if embodiment is not None:
-                return embodiment
-        raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
 
     def _take(self, request: Request, answer: Any) -> None:
         """Takes the answer in, as an event of the mind."""
@@ -171,7 +185,7 @@ def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
     return {**({"values": values} if values else {}), **({"named": named} if named else {})}
 
 
-def _place() -> str:
+def place() -> str:
     """Returns where the innermost running line that is not the library's stands."""
     frame = sys._getframe(2)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_LIBRARY):
