@@ -8,6 +8,9 @@ from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any, ClassVar, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from actr3d.vision.units import LABEL, Metres, MetresPerSecond, Radians, units_of
 
 
@@ -63,6 +66,13 @@ class Feature:
         """How large it is [m²], for its salience: width times height, where it has them."""
         return float(getattr(self, "width", 0.0)) * float(getattr(self, "height", 0.0))
 
+    @property
+    def elevation(self) -> float:
+        """How far above the level of the eye it is looked at [rad]: level, where it reaches there, else at its nearest end."""
+        top, bottom = getattr(self, "top", 0.0), getattr(self, "bottom", 0.0)
+        height = min(max(0.0, bottom), top) if bottom <= top else 0.0
+        return math.atan2(height, self.distance)
+
     def at_most(self, slot: str, value: Any) -> Any:
         """Returns what a slot's value may be at most, for comparisons with `>`; more than the value where not all of it is seen."""
         return value
@@ -78,3 +88,18 @@ class Feature:
 def slot_names(kind: type[Feature]) -> tuple[str, ...]:
     """Returns the slots that a chunk of a kind of features may have, besides `feature`."""
     return tuple(field.name for field in fields(kind))
+
+
+def off_sight(axes: NDArray[np.float64], feature: Feature) -> tuple[float, float, float]:
+    """Returns how far the eye would have to turn to look at a feature, to the left and up, and the angle between [rad].
+
+    Args:
+        axes: Those of the view, see `View.axes`.
+        feature: Of the same view.
+    """
+    sight = axes[2]
+    left = math.remainder(feature.direction - math.atan2(sight[1], sight[0]), 2 * math.pi)
+    up = feature.elevation - math.asin(max(-1.0, min(1.0, float(sight[2]))))
+    flat = math.cos(feature.elevation)
+    way = np.array([flat * math.cos(feature.direction), flat * math.sin(feature.direction), math.sin(feature.elevation)])
+    return left, up, math.atan2(float(np.linalg.norm(np.cross(sight, way))), float(sight @ way))

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
-from typing import Any, cast
+import math
+from typing import Any
 
 from actr3d.actr.answers import plain_answer
 from actr3d.actr.modules.port import Asker, Request, place
 from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.camera import CameraParameters, View
-from actr3d.errors import ParameterError, did_you_mean
+from actr3d.camera import View
+from actr3d.clock import MICROSECONDS
 from actr3d.vision.detectors import DETECTORS
-from actr3d.vision.feature import Feature
+from actr3d.vision.encoding import Emma, saccade_time
+from actr3d.vision.feature import off_sight
 from actr3d.vision.looks import Looks
 from actr3d.vision.noise import blurred
 from actr3d.vision.query import Query, read_request
-from actr3d.vision.salience import RULES, Function, salience_of, share, survivors, weigh
 from actr3d.vision.search import Search
+from actr3d.vision.settings import check_camera, check_numbers, encoding_of, saliences_of
 
 BITS = 64
 """Of the seed of a look's noise."""
@@ -48,6 +48,9 @@ class Vision(WithParameters, Asker):
         error_rate: The probability that a search notices nothing.
         edge_noise: The standard deviation of the directions in which edges are seen [rad].
         distance_noise: That of their distances, as a part of these.
+        encoding: How much longer it takes to encode what a top-down request has found: a time [s], such as 0.085 for a shift of
+            attention; or `emma`, or an `Emma`, by which it takes the longer the farther off the line of sight it is.
+        saccades: Whether the eye turns to what a top-down request has found, as far as it can; the chunk then does not come before.
         camera: The fields of `CameraParameters`: `rows=50`, `horizontal_fov=2.0`.
 
     Raises:
@@ -56,7 +59,8 @@ class Vision(WithParameters, Asker):
         VisionError: If a salience is none.
 
     Source: 50 ms for a request and 20 ms for a search for obstacles, the original ACT-R 3D (human-data); the `sos` rule, SOS Vision
-    (West & Emond 2002).
+    (West & Emond 2002). A `hold` of 0.1 s is ours: so long it takes at most until a production of 50 ms has fired that was under
+    way, and one that reads the chunk.
     """
 
     @named_parameters
@@ -66,12 +70,14 @@ class Vision(WithParameters, Asker):
         delay: float = 0.05,
         delay_sd: float | None = None,
         bottom_up_delay: float = 0.02,
-        hold: float = 0.05,
+        hold: float = 0.1,
         salience: Any = None,
         rule: str = "share",
         error_rate: float = 0.0,
         edge_noise: float = 0.0,
         distance_noise: float = 0.0,
+        encoding: Any = 0.0,
+        saccades: bool = False,
         **camera: Any,
     ) -> None:
         self._buffer = buffer
@@ -86,11 +92,13 @@ class Vision(WithParameters, Asker):
         self.error_rate = error_rate
         self.edge_noise = edge_noise
         self.distance_noise = distance_noise
-        self._check()
+        self.saccades = saccades
+        check_numbers(vars(self))
+        check_camera(camera, sorted(self._settable() - {"camera", "busy", "error", "watching"}))
         self._detectors = dict(DETECTORS)
-        self._saliences = self._read_salience(salience)
+        self._saliences = saliences_of(salience, self._detectors)
+        self._encoding = encoding_of(encoding)
         self._camera = camera
-        self._check_camera(camera)
         self._looks = Looks()
         self._top_down: Search | None = None
         self._bottom_up: Search | None = None
@@ -139,6 +147,18 @@ class Vision(WithParameters, Asker):
             self.busy = True
         return search
 
+    def gaze(self, left: float, up: float = 0.0) -> None:
+        """Turns the eye to a direction against the head, or to its limits, as fast as people do.
+
+        Args:
+            left: To the left of straight ahead [degrees].
+            up: Above it [degrees].
+
+        Raises:
+            SimulationError: If the agent has no body.
+        """
+        self._tell("gaze", math.radians(left), math.radians(up))
+
     def _ask_bottom_up(self, query: Query) -> Search:
         """Begins a bottom-up search, or lets it wait; it takes the place of an earlier one."""
         for earlier in (self._bottom_up, self._waiting):
@@ -181,11 +201,17 @@ class Vision(WithParameters, Asker):
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
         self._looks.take(self._perceived(answer), sch.now_us)
-        self._sift(search)
-        self._choose(search)
+        search.clear()
+        if self.error_rate > 0 and self.random.random() < self.error_rate:
+            search.why = "nothing was noticed, by error"
+        else:
+            search.sift(self._looks.features(search.query), self._saliences[search.query.detector.name])
+            search.choose(self.rule, self.random)
         self.__dict__["_last"] = search
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "search", search.to_data())
+        if search.feature is not None and not search.bottom_up:
+            self._attend(search, answer)
         if search.due <= sch.now_us:
             self._end(search, search.begun)
         else:
@@ -197,36 +223,30 @@ class Vision(WithParameters, Asker):
             return view
         return blurred(view, self.edge_noise, self.distance_noise, self.random.getrandbits(BITS))
 
-    def _sift(self, search: Search) -> None:
-        """Notes what in the present view is as was asked for, and what is not."""
-        search.noticed, search.weights, search.refused, search.chosen, search.why = (), (), [], None, None
-        if self.error_rate > 0 and self.random.random() < self.error_rate:
-            search.why = "nothing was noticed, by error"
-            return
-        query = search.query
-        noticed: list[Feature] = []
-        for feature in self._looks.features(query):
-            test = query.failing(feature)
-            if test is None:
-                noticed.append(feature)
-            else:
-                search.refused.append((feature, test))
-        name = query.detector.name
-        search.noticed = noticed
-        search.weights = weigh(noticed, self._saliences[name], f"the salience of '{name}'")
+    def _attend(self, search: Search, view: View) -> None:
+        """Lets attention shift to the chosen feature when the search is over: it is encoded, and the eye turns to it."""
+        sch = self.sch
+        feature = search.feature
+        assert feature is not None
+        left, up, eccentricity = off_sight(view.axes, feature)
+        begin = max(search.due, sch.now_us)
+        encoding = self._encoding
+        time, start = encoding.course(eccentricity) if isinstance(encoding, Emma) else (encoding, 0.0)
+        if self.saccades and start is not None:
+            sch.call_at(begin + round(start * MICROSECONDS), self._turn_eye, (search, search.begun, left, up))
+            if not isinstance(encoding, Emma):
+                time = max(time, saccade_time(eccentricity))
+        search.due = begin + round(time * MICROSECONDS)
 
-    def _choose(self, search: Search) -> None:
-        """Draws one of what is noticed."""
-        if not search.noticed:
-            return
-        if self.rule == "share":
-            search.chosen = share(search.weights, self.random)
-            return
-        left = survivors(search.weights, self.random)
-        if left:
-            search.chosen = self.random.choice(left)
-        else:
-            search.why = "none survived"
+    def _turn_eye(self, search: Search, begun: int, left: float, up: float) -> None:
+        """Turns the eye to what a search has found, unless another one has taken its place."""
+        if search is self._top_down and search.begun == begun:
+            self._tell("saccade", left, up)
+
+    def _tell(self, word: str, *values: float) -> None:
+        embodiment = self._joined()
+        self._trace_request(word, left=values[0], up=values[1])
+        embodiment.outbox.append(Request(embodiment.body, word, values, {}, place(), self))
 
     # -- what comes of it
 
@@ -271,39 +291,9 @@ class Vision(WithParameters, Asker):
     def _is_held(self) -> bool:
         """Tells whether the buffer has what a top-down request has just brought."""
         chunk, time = self._brought
-        return chunk is not None and self._buffer.chunk is chunk and self.sch.now_us < time + round(self.hold * 1e6)
-
-    # -- parameters
-
-    def _check(self) -> None:
-        for name in ("delay", "bottom_up_delay", "hold", "edge_noise", "distance_noise", "delay_sd"):
-            value = getattr(self, name)
-            if value is not None and not value >= 0:
-                raise ParameterError(f"Vision.{name}: must be at least 0 (got {value!r})")
-        if not 0 <= self.error_rate <= 1:
-            raise ParameterError(f"Vision.error_rate: must be a probability, 0 to 1 (got {self.error_rate!r})")
-        if self.rule not in RULES:
-            raise ParameterError(f"Vision.rule: must be one of {', '.join(RULES)} (got {self.rule!r})")
-
-    def _check_camera(self, camera: Mapping[str, Any]) -> None:
-        known = [field.name for field in fields(CameraParameters)]
-        for name in camera:
-            if name not in known:
-                own = sorted(self._settable())
-                hint = did_you_mean(name, [*own, *known])
-                raise ParameterError(
-                    f"Vision has no parameter '{name}'{hint}; it has: {', '.join(own)}, and the camera's {', '.join(known)}"
-                )
-        CameraParameters.from_mapping(camera)
-
-    def _read_salience(self, given: Any) -> dict[str, Function]:
-        """Returns the salience of each feature, by name."""
-        by_name: dict[Any, Any] = dict(cast("Mapping[Any, Any]", given)) if isinstance(given, Mapping) else {}
-        for name in by_name:
-            if name not in self._detectors:
-                raise ParameterError(f"Vision.salience: no feature '{name}'{did_you_mean(str(name), self._detectors)}")
-        saliences: dict[str, Function] = {}
-        for name, detector in self._detectors.items():
-            own = detector.finds.salience if given is None or by_name else cast("Any", given)
-            saliences[name] = salience_of(by_name.get(name, own), "Vision.salience")
-        return saliences
+        return (
+            self.hold > 0
+            and chunk is not None
+            and self._buffer.chunk is chunk
+            and self.sch.now_us <= time + round(self.hold * MICROSECONDS)
+        )
