@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from actr3d.actr.answers import plain_answer
-from actr3d.actr.modules.port import Asker, Request, place
+from actr3d.actr.modules.port import Request, place
 from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.actr.searches import Searching, outcome_of
 from actr3d.camera import View
 from actr3d.clock import MICROSECONDS
 from actr3d.vision.detectors import DETECTORS
@@ -23,7 +25,7 @@ BITS = 64
 """Of the seed of a look's noise."""
 
 
-class Vision(WithParameters, Asker):
+class Vision(WithParameters, Searching):
     """Looks for features with a body's eye, and brings one of those it notices to a buffer, as a chunk.
 
     The view is private: a mind gets features only, with opaque labels and no names. A request is answered from what is visible at
@@ -104,7 +106,7 @@ class Vision(WithParameters, Asker):
         self._bottom_up: Search | None = None
         self._waiting: Search | None = None
         self._brought: tuple[Any, int] = (None, 0)
-        self._last: Search | None = None
+        self._last: dict[bool, Search] = {}
 
     # -- what it is asked
 
@@ -207,7 +209,8 @@ class Vision(WithParameters, Asker):
         else:
             search.sift(self._looks.features(search.query), self._saliences[search.query.detector.name])
             search.choose(self.rule, self.random)
-        self.__dict__["_last"] = search
+        search.seen = sch.now_us
+        self._last[search.bottom_up] = search
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "search", search.to_data())
         if search.feature is not None and not search.bottom_up:
@@ -282,11 +285,14 @@ class Vision(WithParameters, Asker):
             self._brought = (self._buffer.chunk, self.sch.now_us)
         elif slots is not None and not held:
             self._buffer.set(slots)
+        data = {"bottom_up": search.bottom_up, "failed": slots is None, **({"held": True} if held else {})}
+        search.outcome = outcome_of(data)
         trace = self.sch.trace
         if trace is not None and trace.all:
-            found = {} if slots is None else {"chunk": slots}
-            data = {"bottom_up": search.bottom_up, "failed": slots is None, **found, **({"held": True} if held else {})}
-            trace.emit(self.sch.now_us, self._path, "sight", data)
+            trace.emit(self.sch.now_us, self._path, "sight", data if slots is None else {**data, "chunk": slots})
+
+    def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:
+        return [(search.seen, search.to_data(), search.outcome) for _, search in sorted(self._last.items())]
 
     def _is_held(self) -> bool:
         """Tells whether the buffer has what a top-down request has just brought."""
