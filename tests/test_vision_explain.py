@@ -60,7 +60,10 @@ def test_it_says_what_was_noticed_refused_and_chosen(walker: Any) -> None:
 def test_it_says_so_of_every_time(walker: Any) -> None:
     assert walker.explain(at=0.0).searches == ()
     pending = walker.explain(at=0.07)
-    assert [(reason.bottom_up, reason.outcome) for reason in pending.searches] == [(False, "pending"), (True, "pending")]  # which begins anew
+    assert [(reason.bottom_up, reason.outcome) for reason in pending.searches] == [
+        (False, "pending"),
+        (True, "pending"),
+    ]  # which begins anew
     last = walker.explain(at=0.4)
     assert last.searches == walker.explain().searches
     failed, bottom_up = last.searches

@@ -31,6 +31,8 @@ class Obstacle(Feature):
     """Between its uppermost and its lowest visible edges."""
     top: Metres
     """Its uppermost visible edge, above the eye."""
+    bottom: Metres
+    """Its lowest visible edge, above the eye, mostly below 0."""
     leftmost: Radians
     """The direction of its leftmost visible point."""
     rightmost: Radians
@@ -89,6 +91,7 @@ def _obstacle(
         width=math.hypot(lefts[0] - rights[0], lefts[1] - rights[1]),
         height=top - bottom,
         top=top,
+        bottom=bottom,
         leftmost=float(lefts[2]),
         rightmost=float(rights[2]),
         object=label,

@@ -54,6 +54,11 @@ class Opening(Feature):
     cut: bool = False
     """Whether it leaves the field of view above or below: then it is at least as high as `height`."""
 
+    @property
+    def key(self) -> tuple[int, int]:
+        """What tells it apart from others, from look to look: what bounds it at the sides."""
+        return self.left, self.right
+
     def at_most(self, slot: str, value: Any) -> Any:
         """Returns infinity for the height of one that leaves the field of view: no bound was seen."""
         return math.inf if slot == "height" and self.cut else value
