@@ -204,7 +204,7 @@ def test_parameters_that_are_none_are_told() -> None:
 
 
 def test_an_agent_without_a_body_sees_nothing() -> None:
-    with pytest.raises(SimulationError, match=r"Vision 'agent\.vision' leads to no body|Vision '.*vision' leads to no body"):
+    with pytest.raises(SimulationError, match=r"port '.*vision' leads to no body"):
         asking("vision.request('feature:opening')")().run(1)
 
 

@@ -172,7 +172,7 @@ def test_emma_sets_the_time_of_a_chunk_and_turns_the_eye_where_it_may() -> None:
     ((time, _),) = list(events(simulation.trace, "sight"))
     assert time == near(0.1 + Emma().course(angle)[0], abs=3e-4)
     assert math.degrees(eye_of(simulation.world)[0]) == near(math.degrees(angle), abs=0.2)
-    ((turned, _),) = [(at, data) for at, data in events(simulation.trace, "request") if data["call"] == "saccade"]
+    ((turned, _),) = [(at, data) for at, data in events(simulation.trace, "request") if data.get("word") == "saccade"]
     assert turned == near(0.1 + 0.185)
     covert, _ = seen(", encoding=Emma(factor=0.01)")
     assert math.degrees(eye_of(covert.world)[0]) == near(0, abs=1e-6)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from actr3d.actr.chunk import Chunk
-from actr3d.actr.modules.port import Asker
+from actr3d.actr.modules.port import Port
 from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
 
@@ -15,7 +15,7 @@ MOST_SHOWN = 12
 """How many features are printed; all are in the reason."""
 
 
-class Searching(Asker):
+class Searching(Port):
     """A module that looks for things, and whose searches are explained."""
 
     def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from actr3d.actr.answers import plain_answer
-from actr3d.actr.modules.port import Request, place
+from actr3d.actr.modules.port import Request, place_of_caller
 from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.searches import Searching, outcome_of
 from actr3d.camera import View
@@ -183,7 +183,7 @@ class Vision(WithParameters, Searching):
             delay = max(0.0, self.random.gauss(delay, self.delay_sd))
         search.begun = self.sch.now_us
         search.due = self.sch.after(delay)
-        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, place(), self, search))
+        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, place_of_caller(), self, search))
         return search
 
     def _give_up(self, search: Search) -> None:
@@ -245,11 +245,6 @@ class Vision(WithParameters, Searching):
         """Turns the eye to what a search has found, unless another one has taken its place."""
         if search is self._top_down and search.begun == begun:
             self._tell("saccade", left, up)
-
-    def _tell(self, word: str, *values: float) -> None:
-        embodiment = self._joined()
-        self._trace_request(word, left=values[0], up=values[1])
-        embodiment.outbox.append(Request(embodiment.body, word, values, {}, place(), self))
 
     # -- what comes of it
 
