@@ -17,6 +17,9 @@ from actr3d.vision.kernel.gaps import GAP
 from actr3d.vision.kernel.openings import OPENING
 from actr3d.vision.units import Label, Metres
 
+SHOWN = 11
+"""How many of the numbers of an opening are told; the others are the kernel's own."""
+
 APART = 0.1
 """How far the edges of one opening may be apart from one row to the next [m]: an edge that leans by 45 degrees, seen from 8 m
 on the default screen. Ours."""
@@ -89,7 +92,7 @@ def opening(view: View, *, step: Metres = 0.02) -> tuple[Opening, ...]:
         elif there > len(openings):
             openings = np.empty(there, OPENING)
         else:
-            return tuple(_opening(*numbers) for numbers in openings[:there].tolist())
+            return tuple(_opening(*numbers[:SHOWN]) for numbers in openings[:there].tolist())
 
 
 def _opening(

@@ -57,12 +57,12 @@ def _find(
     extents: Records, optics: Record, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
 ) -> tuple[int, int]:
     set_points(extents, optics, axes, points)
-    count = find_gaps(extents, points, step, gaps)
+    count = find_gaps(extents, points, optics, axes[1, 2], step, gaps)
     if count > len(gaps):
         return count, 0
     there = link_gaps(extents, points, gaps, count, apart)
     if there <= len(openings):
-        set_openings(extents, points, gaps, count, optics, axes[1, 2], openings[:there])
+        set_openings(extents, points, gaps, count, optics.rows, openings[:there])
     return count, there
 
 
