@@ -67,7 +67,7 @@ def doorways() -> Iterator[tuple[float, float, float, str]]:
             yield distance, width, thick, eye(0, aside, math.degrees(turn), *tilt)
 
 
-@pytest.mark.parametrize(("distance", "width", "thick", "site"), islice(doorways(), 50))
+@pytest.mark.parametrize(("distance", "width", "thick", "site"), list(islice(doorways(), 50)))
 def test_doorways_made_at_random_are_as_wide_as_they_are(distance: float, width: float, thick: float, site: str) -> None:
     openings = found("opening", doorway(distance, width, thick=thick), site)
     assert max(openings, key=lambda o: o.height).width == near(width, abs=CENTIMETRE)
