@@ -29,7 +29,16 @@ KINDS: Mapping[str, Kind] = {
     "changed": Kind("production", "system", "production", "a chosen production matches no longer and does not fire"),
     "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
-    "output": Kind("production", "model", "text", "the model prints a line; told by `actr3d run`, to a recording and with `--json`"),
+    "output": Kind("production", "model", "text", "a mind prints a line; or a program, to a recording and with `--json`"),
+    "planning_unit": Kind(
+        "production",
+        "SGOMS buffer",
+        "name what path [by]",
+        "a planning unit is «begun», «ended», «interrupted» (by which), «resumed», «cut» (given up) or, where a trace begins, «going on»",
+    ),
+    "unit_task": Kind("production", "SGOMS buffer", "name what path", "likewise a unit task"),
+    "method": Kind("production", "SGOMS buffer", "name what path", "likewise a method"),
+    "operator": Kind("production", "SGOMS buffer", "name what path", "likewise an operator"),
     "buffer": Kind(
         "buffer",
         "buffer",

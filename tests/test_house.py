@@ -37,7 +37,7 @@ PARTS: dict[str, set[str]] = {
     "motor": BASE | BODILY,
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY,
-    "simulation": BASE | BODILY | SENSES | {"recording"},
+    "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
     "running": BASE | BODILY | SENSES | RUNNING | {"printing"},
     "experiment": BASE | BODILY | SENSES | RUNNING,
     "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},

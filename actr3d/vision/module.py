@@ -114,7 +114,7 @@ class Vision(WithParameters, Searching):
         """Looks for a feature: `request('feature:opening', width='>?w', height='>1.5')`.
 
         A slot takes comparisons (`'>0.5'`, `'<2'`, `'>=?w <3'`), labels take `'?l'` or `'!?l'`. A bare number is the least of a
-        size, and the most of a distance or time. Angles are in degrees.
+        size, and the most of a distance or time. Angles are in degrees. All that is asked must hold.
 
         Args:
             pattern: The feature, and slots if one likes: `'feature:opening height:1.5'`.
@@ -127,8 +127,9 @@ class Vision(WithParameters, Searching):
         Raises:
             VisionError: If there is no such feature or slot, or a value is not what it takes.
             ChunkError: If a variable is not bound.
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
+        self._joined("view")
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
         trace = self.sch.trace
         if trace is not None and trace.all:
@@ -178,7 +179,7 @@ class Vision(WithParameters, Searching):
 
     def _begin(self, search: Search, delay: float) -> Search:
         """Asks the body for a view, which it answers at the end of the present tick."""
-        embodiment = self._joined()
+        embodiment = self._joined("view")
         if self.delay_sd is not None:
             delay = max(0.0, self.random.gauss(delay, self.delay_sd))
         search.begun = self.sch.now_us

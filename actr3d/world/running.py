@@ -64,6 +64,7 @@ class Running:
             x, y, _, _ = self.waypoint
             self.waypoint = None
             base.place = (x, y, base.place[2])
+            body.holding.stand()
             base.drive((0.0, 0.0, 0.0), body)
 
     def state(self) -> tuple[Any, ...]:
@@ -84,11 +85,13 @@ class Running:
             rest = _wrapped(target - heading)
             if abs(rest) <= THERE:
                 base.place = (x, y, heading + rest)
-                base.drive((*base.commanded[:2], 0.0), body)
+                body.holding.stand()
+                base.drive((*body.holding.commanded[:2], 0.0), body)
                 return True
         elif abs(target - body.joints[name].position) <= THERE:
             body.joints[name].put(target)
-            body.joints[name].drive(0.0, body.free)
+            body.holding.stand()
+            body.joints[name].drive(0.0, body)
             return True
         return False
 
@@ -96,13 +99,13 @@ class Running:
         """Moves one joint on."""
         joint = self._body.joints[name]
         target, speed = self.targets[name]
-        joint.drive(_bounded((target - joint.position) / duration, speed), self._body.free)
+        joint.drive(_bounded((target - joint.position) / duration, speed), self._body)
 
     def _turn(self, duration: float) -> None:
         """Turns the base on, the shorter way round."""
-        base = self._body.base
+        body, base = self._body, self._body.base
         target, speed = self.targets[HEADING]
-        forward, left, _ = base.commanded
+        forward, left, _ = body.holding.commanded
         rest = _wrapped(target - base.place[2])
         base.drive((forward, left, _bounded(rest / duration, speed)), self._body)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from hashlib import blake2b
 from typing import Any
 
 import mujoco
@@ -14,6 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
+from actr3d.world.pace import Pace
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
 from actr3d.world.sensors.touch import step_and_feel
@@ -35,6 +37,9 @@ class WorldState:
 
     steps: int
     """Physics steps since the start."""
+
+    scene: str
+    """The fingerprint of the compiled scene that it is of."""
 
     mj_state: NDArray[np.float64]
     """`mjSTATE_INTEGRATION` of the data; less than that drifts (platform-facts)."""
@@ -83,6 +88,9 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
+        self.fingerprint = _fingerprint(self.mj_model)
+        """Two worlds have the same one where their scenes are compiled to the same bytes."""
+        self._pace = Pace(self, list(self.bodies.values()))
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -104,10 +112,12 @@ class World:
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
+        taken = self._pace.steps(steps)
         if feeling:
-            step_and_feel(self, feeling, steps)
+            step_and_feel(taken, feeling)
         else:
-            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+            for _ in taken:
+                pass
         self._steps += steps
         self.changed()
         for commands in running:
@@ -156,7 +166,7 @@ class World:
         mj_state = np.empty(self._state_size)
         mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         bodies = tuple((name, body.state()) for name, body in self.bodies.items())
-        return WorldState(steps=self._steps, mj_state=mj_state, bodies=bodies)
+        return WorldState(steps=self._steps, scene=self.fingerprint, mj_state=mj_state, bodies=bodies)
 
     def state_bytes(self) -> bytes:
         """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
@@ -171,6 +181,8 @@ class World:
         """
         if state.mj_state.shape != (self._state_size,):
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
+        if state.scene != self.fingerprint:
+            raise WorldError(f"the state is of another scene: that one compiles to {state.scene}, this one to {self.fingerprint}")
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._warnings[:] = 0
         self._steps = state.steps
@@ -253,3 +265,10 @@ class World:
     def _mocap(self, name: str) -> int:
         body: Any = self.mj_model.body(name)
         return int(self.mj_model.body_mocapid[body.id])
+
+
+def _fingerprint(mj_model: MjModel) -> str:
+    """Returns a hash of a compiled scene: of all its numbers and names."""
+    image = np.empty(mujoco.mj_sizeModel(mj_model), np.uint8)
+    mujoco.mj_saveModel(mj_model, None, image)
+    return blake2b(image.tobytes(), digest_size=8).hexdigest()
