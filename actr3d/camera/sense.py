@@ -7,11 +7,16 @@ from typing import TYPE_CHECKING, Any
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.view import View
+from actr3d.world.frames import heading_of
 from actr3d.world.sensors.registry import SENSORS
 from actr3d.world.words import adder
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
+
+
+USUAL = CameraParameters()
+"""What is looked with where no options are given."""
 
 
 class Sight:
@@ -24,6 +29,7 @@ class Sight:
 
     def __init__(self, body: Body, parameters: CameraParameters) -> None:
         self._world = body.world
+        self._root = body.root
         self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
         self._moment = -1
@@ -38,7 +44,7 @@ class Sight:
         world = self._world
         if self._view is None or self._moment != world.moment:
             world.refresh()
-            self._view = self._camera.look(world.mj_data)
+            self._view = self._camera.look(world.mj_data, heading_of(world.mj_data.xmat[self._root]))
             self._moment = world.moment
         return self._view
 
@@ -64,4 +70,4 @@ def view(body: Body, **options: Any) -> View:
         ConfigurationError: If an option is no field, or a value is not what it takes.
         CameraError: If something named as background is not there.
     """
-    return body.sense(Sight, CameraParameters.from_mapping(options)).look()
+    return body.sense(Sight, CameraParameters.from_mapping(options) if options else USUAL).look()

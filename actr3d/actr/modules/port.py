@@ -84,8 +84,8 @@ class Port(Model):
 
     def _tell(self, word: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
         """Tells the body to do something, for the modeller's line at `place`, or for the one that is running."""
-        embodiment = self._joined(word)
         named = {} if named is None else named
+        embodiment = self._joined(word)
         self._trace_request("set", word=word, **_given(values, named))
         embodiment.outbox.append(Request(embodiment.body, word, values, named, place or place_of_caller(), self))
 
@@ -99,6 +99,11 @@ class Port(Model):
         return reading
 
     def _joined(self, word: str) -> Embodiment:
+        """Returns the body that a word is for.
+
+        Raises:
+            SimulationError: If the agent has none, or does not live yet.
+        """
         if not self._converted:
             raise SimulationError(
                 f"'{word}' is said to a body before the agent lives; say it while its Simulation runs: in `init`, `start`, a production"
