@@ -110,6 +110,11 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         limits.recorder = recording
         limits.trace.listen(recording.event_alone)
         with ProgramOutput(limits) as output:
-            run_text(source, str(path), limits=limits, folder=path.parent)
+            try:
+                run_text(source, str(path), limits=limits, folder=path.parent)
+            except SystemExit:
+                output.finish()
+                recording.fact("ended", {"by": "exit"})
+                raise
             output.finish()
         recording.fact("ended", {"by": "end"})
