@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.actr.shared_random import shared_random
@@ -97,12 +99,17 @@ def _built(recorded: Recorded) -> Simulation:
     facts = recorded.facts
     file = facts["file"]
     try:
-        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent)
+        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent, _helpers(facts))
     except Actr3dError:
         raise
     except (Exception, SystemExit) as error:  # it did build something when it was recorded
         raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {_told(error)}") from error
     return simulation
+
+
+def _helpers(facts: Mapping[str, Any]) -> HelperTexts:
+    """Returns the helper modules as they were, wherever their files are now."""
+    return HelperTexts(facts.get("helpers"))
 
 
 def _replay_program(recorded: Recorded) -> Comparison:
@@ -116,7 +123,7 @@ def _replay_program(recorded: Recorded) -> Comparison:
     try:
         with ProgramOutput(limits) as output:
             try:
-                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent)
+                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=_helpers(facts))
             except SystemExit as error:
                 trouble = f" ({_told(error)})"
             if "ended" in facts:
