@@ -23,7 +23,7 @@ from actr3d.simulation.lockstep import Lockstep
 from actr3d.simulation.minds import Factory
 from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
-from actr3d.simulation.sources import sources_of
+from actr3d.simulation.sources import told_facts
 from actr3d.simulation.submissions import Submissions
 from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
@@ -276,17 +276,18 @@ class Simulation:
 
         Args:
             path: The file; it must not exist.
-            facts: What else is to be told of the run: plain values by name.
+            facts: What else is to be told of the run: plain values by names that a recording does not use itself.
 
         Raises:
-            SimulationError: If the run has begun already.
-            RecordingError: If the file exists, or cannot be made.
+            SimulationError: If the run has begun already, or is being recorded.
+            RecordingError: If the file exists, or cannot be made, or a fact cannot be recorded.
         """
         if self._course.begun:
             raise SimulationError("a recording holds a run from its start on, and this one has begun already")
+        if self._journal.recorded:
+            raise SimulationError("this run is being recorded already; what records it holds everything")
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
-        sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
-        recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
+        recording = Recording(path, told_facts(own, facts, [*self._minds.values(), *self._bodiless.values()]))
         self._journal.record(recording)
         recording.ending = self._end_recording
         return recording
