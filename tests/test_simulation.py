@@ -226,6 +226,28 @@ def test_an_observer_cannot_step_what_it_observes() -> None:
         simulation.step()
 
 
+@pytest.mark.parametrize("look", ["listen", "until"])
+def test_listeners_and_conditions_only_look_too(look: str) -> None:
+    simulation, told = driving("all"), list[str]()
+
+    def meddle(_: object) -> bool:
+        for change in (simulation.step, simulation.tock, lambda: simulation.seek(0), lambda: simulation.command("aperture", 1.0)):
+            with pytest.raises(SimulationError, match="an observer only looks") as caught:
+                change()
+            told.append(str(caught.value))
+        return False
+
+    if look == "listen":
+        simulation.listen(meddle)
+        simulation.step(5)
+    else:
+        simulation.run(0.05, until=meddle)
+    assert len(told) >= 20
+    plain = driving("all")
+    plain.step(5)
+    assert digest(simulation) == digest(plain)
+
+
 def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
     simulation = Simulation(scene_of("walker"))
     simulation.command("walk", 1.0)

@@ -204,7 +204,7 @@ class Simulation:
             if minds.stopped:
                 return "stop"
             if until is not None:
-                with self._random.aside():
+                with self._onlookers.only_looking():
                     if until(self._glimpse()):
                         return "until"
         return "seconds"
@@ -213,7 +213,7 @@ class Simulation:
         if threading.get_ident() != self._owner:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
         if self._onlookers.looking:
-            raise SimulationError("an observer only looks: it cannot step or change the simulation it observes")
+            raise SimulationError("an observer only looks, as a listener and `until` do: it cannot step or change the simulation")
 
     # -- commands
 
@@ -266,7 +266,7 @@ class Simulation:
         """
 
         def listen_aside(event: TraceEvent) -> None:
-            with self._random.aside():
+            with self._onlookers.only_looking():
                 listener(event)
 
         self._journal.listen(listen_aside)
