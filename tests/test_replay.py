@@ -326,6 +326,41 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     assert capsys.readouterr().out.startswith("every byte agrees: 14 ticks, ")
 
 
+@pytest.mark.parametrize("code", [0, 3])
+def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, path = tmp_path / "exiting.py", tmp_path / "run"
+    file.write_text(f"{NOISY}print('over', end='')\nraise SystemExit({code})\n", encoding="utf-8")
+    with pytest.raises(SystemExit) as left:
+        main(["run", str(file), "--seed", "1", "--record", str(path)])
+    assert left.value.code == code
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 0
+    assert capsys.readouterr().out.startswith("every byte agrees: ")
+    alter(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
+    assert main(["replay", str(path)]) == 1
+    assert '"text": "moreend..."' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("leave", ["1 / 0", "raise SystemExit(0)"])
+def test_a_replay_that_fails_differs(
+    leave: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "fallen.py"
+    fail = f"if os.environ.get('FAIL') == '%s': {leave}\n"
+    text = BUILT.replace("    scene = ", f"    {fail % 'build'}    scene = ")
+    text = text.replace("        print(side", f"        if self.times == 2:\n            {fail % 'run'}        print(side")
+    file.write_text("import os\n" + text, encoding="utf-8")
+    path = recorded_run(file)
+    capsys.readouterr()
+    what = "ZeroDivisionError: division by zero" if leave == "1 / 0" else "SystemExit: 0"
+    monkeypatch.setenv("FAIL", "run")
+    assert main(["replay", str(path)]) == 1
+    assert capsys.readouterr().out == f"differs: the run failed after 0.09 s ({what})\n"
+    monkeypatch.setenv("FAIL", "build")
+    assert main(["replay", str(path)]) == 2
+    assert f"error: what '{path}' holds cannot be built here: {what}\n" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

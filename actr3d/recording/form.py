@@ -9,6 +9,9 @@ from importlib.metadata import PackageNotFoundError, version
 FORM = "actr3d recording 2"
 """The first of the facts; a file without it is no recording."""
 
+OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
+"""Facts that every recording tells by itself."""
+
 SCHEMA = """
 CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE events (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data TEXT NOT NULL);

@@ -43,12 +43,12 @@ class Recorded:
             raise RecordingError(f"no recording '{path}'")
         try:
             # Where a killed program left a journal, reading the file takes writing it.
-            self._file = sqlite3.connect(self.path, isolation_level=None)
+            self._file = sqlite3.connect(self.path.absolute(), isolation_level=None)
         except sqlite3.Error as error:
             raise RecordingError(f"cannot open the recording '{path}': {error}") from None
         try:
             self.facts: dict[str, Any] = {name: json.loads(value) for name, value in self._file.execute("SELECT name, value FROM facts")}
-        except (sqlite3.Error, ValueError) as error:
+        except (sqlite3.Error, ValueError, TypeError) as error:
             self._file.close()
             raise RecordingError(f"'{path}' is no recording: {error}") from None
         if self.facts.get("form") != FORM:

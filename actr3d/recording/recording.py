@@ -29,12 +29,12 @@ class Recording:
         facts: What can be told of the run before it begins: the model's source, its parameters, the seed; plain values.
 
     Raises:
-        RecordingError: If the file exists already, or cannot be made.
+        RecordingError: If the file exists already, or cannot be made, or a fact is not plain.
     """
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
         told = {"form": FORM, "versions": versions(), **facts}
-        self._writer = Writer(Path(path), [(name, json.dumps(value)) for name, value in told.items()])
+        self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in told.items()])
         self._append = self._writer.events.append
         self.events = self.answers = self.commands = self.states = 0
         """How many of each it has been given."""
@@ -42,8 +42,12 @@ class Recording:
         """Called before it is closed, to tell the rest; what is told later is not recorded."""
 
     def fact(self, name: str, value: Any) -> None:
-        """Writes a fact that becomes known in the run: plain values."""
-        self._writer.facts.append((name, json.dumps(value)))
+        """Writes a fact that becomes known in the run: plain values.
+
+        Raises:
+            RecordingError: If they are not plain.
+        """
+        self._writer.facts.append((name, _plain(name, value)))
 
     def event(self, event: TraceEvent) -> None:
         """Writes an event."""
@@ -123,3 +127,10 @@ class Recording:
         else:
             with suppress(RecordingError):  # what went wrong first is what is told
                 self.close()
+
+
+def _plain(name: str, value: Any) -> str:
+    try:
+        return json.dumps(value)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise RecordingError(f"the fact '{name}' cannot be recorded, only numbers, texts, and lists and dicts of these: {error}") from None

@@ -128,14 +128,15 @@ class Writer:
                 return
             try:
                 work(*args)
-            except (sqlite3.Error, OSError) as error:
+            except (sqlite3.Error, OSError, ValueError) as error:
                 self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}")
 
     # -- the file
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
         self.path.open("xb").close()
-        self._file = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
+        # The whole path, because SQLite has a meaning of its own for names such as `:memory:`.
+        self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
         try:
             # Neither the beginning nor the end of a run waits for the disk, only for the system; the thread does meanwhile.
             self._file.execute("PRAGMA synchronous=OFF")

@@ -8,12 +8,15 @@ from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.loading import load_text
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
 from actr3d.simulation import Simulation
 
 
-def build(source: str, filename: str, settings: Mapping[str, Any], folder: Path | None = None) -> tuple[Simulation, dict[str, Any]]:
+def build(
+    source: str, filename: str, settings: Mapping[str, Any], folder: Path | None = None, helpers: HelperTexts | None = None
+) -> tuple[Simulation, dict[str, Any]]:
     """Loads a model's text and builds its simulation.
 
     Args:
@@ -21,6 +24,7 @@ def build(source: str, filename: str, settings: Mapping[str, Any], folder: Path 
         filename: How tracebacks call it.
         settings: Values of its parameters, by name; the others have their defaults.
         folder: Where it finds its own helper modules; None for none.
+        helpers: Where the texts of these are kept, and come from where they are known.
 
     Returns:
         The simulation, and the values of all parameters by name.
@@ -30,7 +34,8 @@ def build(source: str, filename: str, settings: Mapping[str, Any], folder: Path 
         ConfigurationError: If there is no such parameter, or it does not take such a value.
         Exception: Whatever it raises itself.
     """
-    function: Any = load_text(source, filename, folder=folder).build
+    module = load_text(source, filename, folder=folder, helpers=helpers)
+    function: Any = module.build
     names = list(inspect.signature(function).parameters)
     if len(names) > 1:
         raise ModelFileError(f"{filename}: build takes one argument, its parameters (it takes {', '.join(names)})")
@@ -45,6 +50,7 @@ def build(source: str, filename: str, settings: Mapping[str, Any], folder: Path 
     simulation = function(*given)
     if not isinstance(simulation, Simulation):
         raise ModelFileError(f"{filename}: build must return a Simulation (returned {simulation!r})")
+    vars(simulation)["_built_by"] = module  # its helper modules go with it, and those may be all that the minds are of
     return simulation, asdict(given[0]) if given else {}
 
 

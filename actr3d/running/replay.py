@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, seconds
-from actr3d.errors import RecordingError
+from actr3d.errors import Actr3dError, RecordingError
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.recording.form import versions
@@ -65,8 +66,9 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
 
     Raises:
-        RecordingError: If the file is damaged, versions differ, or the recording does not say how the simulation was made.
-        Exception: What the model raises in building it.
+        RecordingError: If the file is damaged, versions differ, or the recording does not say how the simulation was made, or
+            it cannot be made so any more.
+        Exception: What `make` raises.
     """
     recorded.check()
     if not any_version:
@@ -81,7 +83,7 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
             if make is not None:
                 return _replay_simulation(recorded, make())
             with BuiltOutput() as output:
-                simulation = _built(recorded.facts)
+                simulation = _built(recorded)
                 output.lead_to(simulation)
                 return _replay_simulation(recorded, simulation)
 
@@ -93,10 +95,21 @@ def _check_versions(then: dict[str, str]) -> None:
         raise RecordingError(f"the recording was made with other versions, and may not agree for that alone: {'; '.join(different)}")
 
 
-def _built(facts: dict[str, Any]) -> Simulation:
+def _built(recorded: Recorded) -> Simulation:
+    facts = recorded.facts
     file = facts["file"]
-    simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent)
+    try:
+        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent, _helpers(facts))
+    except Actr3dError:
+        raise
+    except (Exception, SystemExit) as error:  # it did build something when it was recorded
+        raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {_told(error)}") from error
     return simulation
+
+
+def _helpers(facts: Mapping[str, Any]) -> HelperTexts:
+    """Returns the helper modules as they were, wherever their files are now."""
+    return HelperTexts(facts.get("helpers"))
 
 
 def _replay_program(recorded: Recorded) -> Comparison:
@@ -109,13 +122,16 @@ def _replay_program(recorded: Recorded) -> Comparison:
     trouble = ""
     try:
         with ProgramOutput(limits) as output:
-            run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent)
+            try:
+                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=_helpers(facts))
+            except SystemExit as error:
+                trouble = f" ({_told(error)})"
             if "ended" in facts:
                 output.finish()
     except Differs:  # in the last line of a log, when the program itself was over
         pass
     except Exception as error:  # noqa: BLE001 - the recorded run may have ended so, too
-        trouble = f" ({type(error).__name__}: {error})"
+        trouble = f" ({_told(error)})"
     left, difference, unfinished = beside.rest(), beside.difference, 0
     if beside.broken_off:
         unfinished = left.pop("event", 0)
@@ -159,5 +175,11 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
             simulation._journal.check()
     except Differs:
         pass
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - what is recorded went on beyond that
+        difference = f"the run failed after {seconds(simulation.ticks * period):g} s ({_told(error)})"
     left = events.rest()
     return Comparison(ticks=simulation.ticks, events=events.count, difference=events.difference or difference, unfinished=left)
+
+
+def _told(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"

@@ -5,9 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.reading import read_source
@@ -83,7 +85,8 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str
     from actr3d.running.building import build  # a program does without the world that this loads
 
     with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
-        simulation, parameters = build(source, str(path), settings, path.parent)
+        helpers = HelperTexts()
+        simulation, parameters = build(source, str(path), settings, path.parent, helpers)
         output.lead_to(simulation)
         end = None
         if limits.until is not None:  # down to the end of a tick
@@ -93,7 +96,9 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Mapping[str
             simulation.run(end)
             return
         facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
-        with simulation.record(record, **facts, program_seed=limits.program_seed) as recording:
+        facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
+        with simulation.record(record, **facts) as recording:
+            helpers.heard = partial(recording.fact, "helpers")  # a mind may import one later
             report = simulation.run(end)
             recording.fact("ended", {"by": report.ended_by})
 
@@ -107,9 +112,16 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
     facts = {"kind": "program", "file": str(path), "sources": {str(path): source}, "seed": limits.seed, "until": limits.until}
     with Recording(record, facts) as recording:
+        helpers = HelperTexts()
+        helpers.heard = partial(recording.fact, "helpers")
         limits.recorder = recording
         limits.trace.listen(recording.event_alone)
         with ProgramOutput(limits) as output:
-            run_text(source, str(path), limits=limits, folder=path.parent)
+            try:
+                run_text(source, str(path), limits=limits, folder=path.parent, helpers=helpers)
+            except SystemExit:
+                output.finish()
+                recording.fact("ended", {"by": "exit"})
+                raise
             output.finish()
         recording.fact("ended", {"by": "end"})

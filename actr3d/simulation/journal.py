@@ -84,6 +84,11 @@ class Journal:
         """The run as its own trace has it at present; None where nothing is traced."""
         return None if self.trace is None or not self.trace.runs else self.trace.runs[-1]
 
+    @property
+    def recorded(self) -> bool:
+        """Whether everything is being recorded."""
+        return self._recording is not None
+
     def record(self, recording: Recording) -> None:
         """Lets everything be recorded."""
         self.raise_level("all")

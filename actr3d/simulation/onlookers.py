@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.global_random import GlobalRandom
@@ -21,7 +22,7 @@ class Onlookers:
         self._random = random
         self._observers: list[Observer] = []
         self.looking = False
-        """Whether one of them is looking now."""
+        """Whether one of them, or somebody else who only looks, is looking now."""
 
     def add(self, observer: Observer) -> None:
         """Calls an observer from now on."""
@@ -35,11 +36,17 @@ class Onlookers:
         """
         if not self._observers:
             return
-        self.looking = True
+        glimpse = make()
+        with self.only_looking():
+            for observer in self._observers:
+                observer(glimpse)
+
+    @contextmanager
+    def only_looking(self) -> Generator[None]:
+        """Lets somebody look inside the block who cannot change anything, the minds' random numbers included."""
+        before, self.looking = self.looking, True
         try:
-            glimpse = make()
             with self._random.aside():
-                for observer in self._observers:
-                    observer(glimpse)
+                yield
         finally:
-            self.looking = False
+            self.looking = before
