@@ -52,6 +52,16 @@ def test_joints_that_stand_still_hold_while_others_swing() -> None:
     assert others == near([0] * len(others), abs=math.radians(0.1))
 
 
+def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
+    world, body = living()
+    body.set("position", "torso_yaw", 0.7, 2.0)
+    world.step(100)
+    assert body.joints["torso_yaw"].position == near(0.4, abs=1e-3)
+    world.step(1000)
+    assert body.joints["torso_yaw"].position == near(0.7, abs=1e-6)
+    assert not body.running
+
+
 def test_a_posture_moves_several_joints_while_walking() -> None:
     world, body = living()
     body.set("walk", 1.4)
