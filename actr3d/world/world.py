@@ -123,7 +123,7 @@ class World:
         for commands in running:
             commands.after_step()
             self.changed()
-        if self._warnings.any():
+        if np.count_nonzero(self._warnings):
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
 
     def changed(self) -> None:
