@@ -111,6 +111,8 @@ class Holding:
         # What is hardly off is left to its servo: to lag a little is how it carries what turns.
         wrong = np.abs(wanted - driven.speeds) > SLIGHT_SPEED
         wrong[: self._base] = wrong[: self._base].any()
+        if self._loop_moves():  # speeds that do not agree with its closing would throw the base about: its servos find some that do
+            wrong &= ~driven.looped
         driven.set_speeds(wanted, wrong)
 
     def _push(self, back: Row, wanted: Row) -> None:
@@ -127,10 +129,12 @@ class Holding:
 
     def _let_loop_go(self) -> None:
         """Holds joints that stand where they are now, while another one in the same loop moves and takes them along."""
-        looped = self._driven.looped
-        if np.isnan(self.held[looped]).any():
-            stand = looped & np.isfinite(self.held)
+        if self._loop_moves():
+            stand = self._driven.looped & np.isfinite(self.held)
             self.held[stand] = self._driven.places[stand]
+
+    def _loop_moves(self) -> bool:
+        return bool(np.isnan(self.held[self._driven.looped]).any())
 
     def _wanted(self, duration: float) -> Row:
         """Returns the speeds told, and for joints that would run into a limit what brings them there just at the end."""
@@ -174,9 +178,10 @@ class Holding:
         self._told_anew()
         self.held = np.where(np.isfinite(self.held), self._driven.places, math.nan)
 
-    def steady(self) -> bool:
-        """Returns whether it may have the speeds that it is told at once: nothing touches it or has just pushed it."""
-        return self.calm and self._body.free()
+    def steady(self, row: int | None = None) -> bool:
+        """Returns whether it, or the joint in a row, may have the speed that it is told at once: nothing touches it or has just
+        pushed it, and the joint is in no loop."""
+        return self.calm and (row is None or not self._driven.looped[row]) and self._body.free()
 
     def halt(self, dofs: list[int]) -> None:
         """Stops degrees of freedom at once.

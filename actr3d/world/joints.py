@@ -51,8 +51,8 @@ class Joint:
     def drive(self, speed: float, body: Body) -> None:
         """Tells its servo to keep a speed [rad/s].
 
-        It stops at once. It starts at once where nothing touches the body; else its servo has to bring it to that speed, so that
-        no command can press a limb into a wall.
+        It stops at once. It starts at once where nothing touches the body, and both hands do not hold one load with it; else its
+        servo has to bring it to that speed, so that no command can press a limb into a wall, or throw the body about.
 
         Args:
             speed: The speed.
@@ -73,7 +73,7 @@ class Joint:
             body.holding.tell(row, speed)
         if speed == 0:
             body.holding.halt([self.v])
-        elif body.holding.steady():
+        elif body.holding.steady(row):
             self._qvel[self.v] = speed
 
     def put(self, position: float) -> None:
