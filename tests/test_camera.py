@@ -315,6 +315,18 @@ def test_of_two_things_that_coincide_the_same_one_is_seen_everywhere(shape: str,
         assert one.as_dict() == other.as_dict() == alone.as_dict()
 
 
+def test_a_skin_is_named_and_its_body_seen() -> None:
+    text = """<mujoco><worldbody><site name="eye"/><body name="torso" pos="3 0 0"><geom size=".1"/></body></worldbody>
+      <deformable><skin name="cloak" vertex="0 0 0 0 1 0 0 0 1" face="0 1 2">
+      <bone body="torso" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2" vertweight="1 1 1"/></skin></deformable></mujoco>"""
+    mj_model = mujoco.MjModel.from_xml_string(text)
+    mj_data = mujoco.MjData(mj_model)
+    mujoco.mj_forward(mj_model, mj_data)
+    with pytest.warns(ModelWarning, match="the Geometric Camera does not see skin 'cloak': give what should be seen a geom"):
+        camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=3))
+    assert {label for row in camera.look(mj_data).as_dict().values() for label in row} == {1}
+
+
 def test_what_it_cannot_see_is_named() -> None:
     text = """<mujoco><worldbody><site name="eye"/><body name="cloth" pos="3 0 0">
       <flexcomp name="sheet" type="grid" count="3 3 1" spacing="1 1 1" dim="2" mass="1" radius="0.01">

@@ -25,7 +25,7 @@ def flailing(body: Body, tick: int, names: list[str], speed: float) -> None:
 
 
 @pytest.mark.parametrize("speed", [4.2, 16.0])
-@pytest.mark.parametrize("load", [None, Load(size=(2.0, 0.03), mass=5)])
+@pytest.mark.parametrize("load", [None, Load(size=(2.0, 0.03), mass=5), Load(shape="box", size=(0.3, 0.3, 0.1), mass=2)])
 def test_its_own_limbs_do_not_move_who_stands(load: Load | None, speed: float) -> None:
     world, body = living(load=load, position=(1.0, 2.0), heading=0.5)
     names = ["pelvis_pitch", "torso_yaw", "torso_roll", "left_upper_arm_pitch", "right_upper_arm_roll", "head_pitch"]
@@ -33,12 +33,12 @@ def test_its_own_limbs_do_not_move_who_stands(load: Load | None, speed: float) -
         flailing(body, tick, names, speed)
         world.step(5)
         pose = body.get("pose")
-        assert (pose.x, pose.y, pose.heading) == near((1.0, 2.0, 0.5), abs=0.03 if load is None else 0.2), f"at tick {tick}"
+        assert (pose.x, pose.y, pose.heading) == near((1.0, 2.0, 0.5), abs=0.03), f"at tick {tick}"
     body.set("stop")
     for _ in range(50):
         world.step(5)
     pose = body.get("pose")
-    assert (pose.x, pose.y, pose.heading) == near((1.0, 2.0, 0.5), abs=1e-3 if load is None else 0.01)
+    assert (pose.x, pose.y, pose.heading) == near((1.0, 2.0, 0.5), abs=1e-3)
 
 
 def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way() -> None:
@@ -51,7 +51,8 @@ def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way() -> None:
         body.set("posture", dict.fromkeys(low, 0.0), 8.0)
         world.step(500)
     pose = body.get("pose")
-    assert (pose.x, pose.y, pose.heading) == near((6.0, 0.0, 0.0), abs=0.05)
+    assert (pose.x, pose.heading) == near((6.0, 0.0), abs=0.05)
+    assert pose.y == near(0.0, abs=0.15)  # who walks keeps speed and heading, and is not led back to a line
 
 
 def test_a_joint_that_is_told_nothing_bears_a_load() -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from pathlib import Path
+from subprocess import PIPE, Popen
 
 import numpy as np
 import pytest
@@ -70,6 +73,36 @@ def test_two_who_write_at_once_leave_one_whole_file(cache: Path) -> None:
     found = kept_parts.kept("name")
     assert found is not None
     assert same(found, parts)
+
+
+WRITER = """
+import sys
+import numpy as np
+from actr3d.world import kept_parts
+mine, other = ([np.full((100_000, 3), value)] for value in map(float, sys.argv[1:]))
+print("ready", flush=True)
+sys.stdin.readline()
+for _ in range(120):
+    kept_parts.keep("name", mine)
+    found = kept_parts.kept("name")
+    assert found is not None, "a file that is not whole"
+    assert len(found) == 1 and found[0].tobytes() in (mine[0].tobytes(), other[0].tobytes())
+"""
+
+
+def test_two_processes_that_write_at_once_never_find_a_file_that_is_not_whole(cache: Path) -> None:
+    with ExitStack() as stack:
+        commands = [[sys.executable, "-c", WRITER, mine, other] for mine, other in (("1", "2"), ("2", "1"))]
+        running = [stack.enter_context(Popen(command, stdin=PIPE, stdout=PIPE, stderr=PIPE, text=True)) for command in commands]
+        for process in running:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "ready\n"
+        for process in running:  # both are loaded, and begin together
+            assert process.stdin is not None
+            process.stdin.write("\n")
+            process.stdin.flush()
+        assert [process.communicate()[1] for process in running] == ["", ""]
+    assert [path.name for path in cache.iterdir()] == ["name"]
 
 
 def test_what_was_not_used_for_longest_makes_room(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:

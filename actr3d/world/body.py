@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from actr3d.errors import WorldError
 from actr3d.world.actuators import ACTUATORS
 from actr3d.world.anatomy import Anatomy, Embodied
+from actr3d.world.base import Base
 from actr3d.world.bounding_box import BoundingBox, Extent
 from actr3d.world.frames import frame_of
 from actr3d.world.grasp import Hand, Held
 from actr3d.world.holding import Holding
-from actr3d.world.joints import Base, Joint
+from actr3d.world.joints import Joint
 from actr3d.world.noise import Noise, Sd
 from actr3d.world.running import Running
 from actr3d.world.sensors import SENSORS

@@ -123,7 +123,7 @@ class World:
                 pass
         self._steps += steps
         self.changed()
-        if self._warnings.any():
+        if np.count_nonzero(self._warnings):
             raise WorldError(f"the physics diverged near {seconds(self.time)} s{self._culprit()}: forces or speeds without bounds")
 
     def _stepped(self, steps: int, running: list[Running]) -> Iterator[None]:
