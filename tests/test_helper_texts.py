@@ -27,21 +27,21 @@ PROGRAM = """
 import sys
 from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parent.parent / "shared"))
-from counting.rules import Rules
+from tallying.rules import Rules
 import beyond
 Rules().run(beyond.END)
 """
 BUILT = """
-from counting import rules
+from tallying import rules
 from actr3d.simulation import Simulation
 from actr3d.world import Scene
 def build() -> Simulation:
     return Simulation(Scene(), bodiless={"counter": rules.Rules})
 """
 FILES = {
-    "own/counting/__init__.py": "",
-    "own/counting/numbers_of.py": "LAST = 3\n",
-    "own/counting/rules.py": RULES,
+    "own/tallying/__init__.py": "",
+    "own/tallying/numbers_of.py": "LAST = 3\n",
+    "own/tallying/rules.py": RULES,
     "own/later/word.py": "WORD = 'then'\n",
     "shared/beyond.py": "END = 1\n",
     "own/program.py": PROGRAM,
@@ -68,14 +68,14 @@ def test_helper_modules_are_recorded_and_replayed_as_they_were(name: str, folder
     beyond = {str(folder / "shared/beyond.py"): "END = 1\n"} if name == "program" else {}
     assert texts == {**beside, **beyond}
     (folder / "own/later/word.py").write_text("WORD = 'now'\n", encoding="utf-8")
-    (folder / "own/counting/numbers_of.py").write_text("LAST = 7\n", encoding="utf-8")
+    (folder / "own/tallying/numbers_of.py").write_text("LAST = 7\n", encoding="utf-8")
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out.startswith("every byte agrees: ")
     shutil.rmtree(folder / "own")
     shutil.rmtree(folder / "shared")
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out.startswith("every byte agrees: ")
-    assert not {name.partition(".")[0] for name in set(sys.modules) - known} & {"counting", "later", "beyond"}
+    assert not {name.partition(".")[0] for name in set(sys.modules) - known} & {"tallying", "later", "beyond"}
 
 
 def test_a_program_loads_what_a_file_holds_when_it_is_imported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
