@@ -30,6 +30,7 @@ KINDS: Mapping[str, Kind] = {
     "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
     "output": Kind("production", "model", "text", "the model prints a line; told by `actr3d run`, to a recording and with `--json`"),
+    "result": Kind("production", "top model", "...", "a run is over that something was measured of: what was measured"),
     "buffer": Kind(
         "buffer",
         "buffer",

@@ -182,6 +182,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, output: ToldO
             simulation._course.repeat_commands()
             if output is not None and "ended" in recorded.facts:
                 output.finish()
+                simulation.conclude()
             simulation._journal.check()
     except _Differs:
         pass

@@ -103,6 +103,11 @@ class Journal:
         elif self.trace.production:
             self.trace.emit(*event)
 
+    def result(self, time: int, data: dict[str, Any]) -> None:
+        """Takes what was measured of the run, which is over at a time [us]."""
+        if self.trace is not None and self.trace.production:
+            self.trace.emit(time, "top", "result", data)
+
     @contextmanager
     def holding(self) -> Generator[None]:
         """Holds events back inside the block: whether they belong to the known run or to a new one is decided there."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,7 +17,7 @@ from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
-from actr3d.world.sensors.touch import step_and_feel
+from actr3d.world.sensors.touch import Touches
 from actr3d.world.servo import fit_servos
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
@@ -83,6 +84,9 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
+        self.watchers: list[Callable[[int], None]] = []
+        """Who looks at every physics step, and changes nothing: called after each with its number, from 0. The geometry, contacts and
+        forces of `mj_data` are those of the step's beginning then."""
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -90,6 +94,11 @@ class World:
     def time(self) -> int:
         """Time since the start [us], counted in whole steps: it cannot drift."""
         return self._steps * self.scene.timestep_us
+
+    @property
+    def steps(self) -> int:
+        """How many physics steps it has gone."""
+        return self._steps
 
     def step(self, steps: int = 1) -> None:
         """Advances the physics by a number of steps: one tick. Commands that are on their way choose their speeds
@@ -104,8 +113,8 @@ class World:
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
-        if feeling:
-            step_and_feel(self, feeling, steps)
+        if feeling or self.watchers:
+            self._step_singly(feeling, steps)
         else:
             mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
         self._steps += steps
@@ -115,6 +124,16 @@ class World:
             self.changed()
         if self._warnings.any():
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
+
+    def _step_singly(self, feeling: list[Body], steps: int) -> None:
+        """Advances the physics as a whole tick does, while skins feel, and watchers look at, every step."""
+        touches = Touches(feeling)
+        for number in range(self._steps, self._steps + steps):
+            mujoco.mj_step(self.mj_model, self.mj_data)
+            touches.feel()
+            for watcher in self.watchers:
+                watcher(number)
+        touches.keep()
 
     def changed(self) -> None:
         """Notes that positions, speeds or commands are not those that were last computed with."""

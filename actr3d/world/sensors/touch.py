@@ -20,7 +20,6 @@ from actr3d.world.sensors.registry import sensor
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
-    from actr3d.world.world import World
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,27 +45,35 @@ def contacts(body: Body) -> tuple[Touch, ...]:
 def present(body: Body) -> tuple[Touch, ...]:
     """Returns what touches the skin in the present state, in the order of names. For observers: it starts no watch."""
     body.world.solve()
-    return _touches(body)
+    return felt(body)
 
 
-def step_and_feel(world: World, bodies: Iterable[Body], steps: int) -> None:
-    """Advances the physics by single steps, and gives each of some bodies the hardest moments of all its touches."""
-    data = world.mj_data
-    felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
-    for _ in range(steps):
-        mujoco.mj_step(world.mj_model, data)
-        if data.ncon:
-            for body, hardest in felt:
-                for touch in _touches(body):
-                    known = hardest.get((touch.part, touch.other))
-                    if known is None or touch.force > known.force:
-                        hardest[touch.part, touch.other] = touch
-    for body, hardest in felt:
-        body.touched = tuple(touch for _, touch in sorted(hardest.items()))
+class Touches:
+    """What the skins of some bodies feel in one tick: the hardest moment of each touch.
+
+    Args:
+        bodies: Who feels.
+    """
+
+    def __init__(self, bodies: Iterable[Body]) -> None:
+        self._felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
+
+    def feel(self) -> None:
+        """Feels the physics step that is just over."""
+        for body, hardest in self._felt:
+            for touch in felt(body):
+                known = hardest.get((touch.part, touch.other))
+                if known is None or touch.force > known.force:
+                    hardest[touch.part, touch.other] = touch
+
+    def keep(self) -> None:
+        """Gives each body what it has felt, at the end of the tick."""
+        for body, hardest in self._felt:
+            body.touched = tuple(touch for _, touch in sorted(hardest.items()))
 
 
-def _touches(body: Body) -> tuple[Touch, ...]:
-    """Returns the touches that the solver has last found."""
+def felt(body: Body) -> tuple[Touch, ...]:
+    """Returns the touches that the solver has last found, in the order of names. For observers of single steps."""
     model, data = body.world.mj_model, body.world.mj_data
     if data.ncon == 0:
         return ()
