@@ -58,6 +58,10 @@ class GridError(Actr3dError):
     """A grid world cannot be made, or a body in it placed or moved, as asked."""
 
 
+class PlanError(Actr3dError):
+    """A planning unit cannot be declared, begun, interrupted or resumed as asked."""
+
+
 class CameraError(Actr3dError):
     """A camera cannot be made, or cannot look: unknown eye or geom, poses that are missing or no numbers."""
 

@@ -31,6 +31,15 @@ KINDS: Mapping[str, Kind] = {
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
     "output": Kind("production", "model", "text", "the model prints a line; told by `actr3d run`, to a recording and with `--json`"),
     "result": Kind("production", "top model", "...", "a run is over that something was measured of: what was measured"),
+    "planning_unit": Kind(
+        "production",
+        "SGOMS buffer",
+        "name what path [by]",
+        "a planning unit is «begun», «ended», «interrupted» (by which), «resumed», «cut» (given up) or, where a trace begins, «going on»",
+    ),
+    "unit_task": Kind("production", "SGOMS buffer", "name what path", "likewise a unit task"),
+    "method": Kind("production", "SGOMS buffer", "name what path", "likewise a method"),
+    "operator": Kind("production", "SGOMS buffer", "name what path", "likewise an operator"),
     "buffer": Kind(
         "buffer",
         "buffer",

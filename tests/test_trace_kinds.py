@@ -49,6 +49,17 @@ class Agent(ACTR):
     def think(goal='think'):
         goal.clear()
 
+from actr3d.sgoms import SGOMS, Ordered
+
+class Planner(SGOMS):
+    plan = Ordered('task')
+    def init():
+        b_plan_unit.set('planning_unit:plan')
+    def begin(b_unit_task='unit_task:task state:start'):
+        b_method.set('method:press')
+        b_operator.set('operator:push')
+        b_unit_task.modify(state='finished')
+
 class World(Model):
     def start(self):
         yield 0.12
@@ -65,6 +76,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     module: Any = load_text(EVERYTHING, "everything.py")
     world = module.World()
     world.agent = module.Agent()
+    world.planner = module.Planner()
     trace = world.traced()
     world.run(2)
     trace.command("pause", {"why": "lunch"})
@@ -99,6 +111,7 @@ def test_a_level_holds_the_kinds_of_the_table(level: str) -> None:
     for wanted in (level, "all"):
         world = module.World()
         world.agent = module.Agent()
+        world.planner = module.Planner()
         with RunLimits(seed=1):
             trace = world.traced(wanted)
         world.run(2)

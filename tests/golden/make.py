@@ -20,6 +20,9 @@ IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tu
 EMBODIED = {"doorway"}
 """Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
 
+OURS = {"tutorial/sgoms"}
+"""Models that use what python_actr does not have."""
+
 
 def model_names() -> list[str]:
     """Returns the path of every model below `models`, without its ending."""
