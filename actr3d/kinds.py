@@ -78,6 +78,11 @@ KINDS: Mapping[str, Kind] = {
     ),
     "retrieval": Kind("all", "memory", "failed [chunk]", "a memory's answer arrives, or its failure"),
     "answer": Kind("all", "port", "word value", "a body answers what it was asked for"),
+    "move": Kind(
+        "all", "motor", "movement group speed [to]", "a movement of a muscle group begins; how fast and where to are in radians or metres"
+    ),
+    "moved": Kind("all", "motor", "movement group end", "that ends: «done», «stopped», «limit» or «blocked»"),
+    "refused": Kind("all", "motor", "movement why", "a movement is not made: the muscle group is «busy», or its «limit» is nearer"),
     "add": Kind("all", "memory", "chunk merged size given", "a memory takes in a chunk, or strengthens (merges with) the equal one it has"),
     "chunks": Kind("all", "memory", "by size gone new", "a memory's chunks are changed otherwise: by which method, and which ones"),
 }

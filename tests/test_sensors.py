@@ -323,7 +323,7 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
 @pytest.mark.parametrize(
     ("word", "options", "message"),
     [
-        ("poze", {}, "walker has no sensor 'poze'; did you mean 'pose'?; it has pose, velocity"),
+        ("poze", {}, "walker has no sensor 'poze'; did you mean 'pose'?; it has anatomy, pose, velocity"),
         ("pose", {"part": "arm"}, "walker has no part 'arm'"),
         ("pose", {"prt": "arm"}, r"walker: pose takes \(part=None\): got an unexpected keyword argument 'prt'"),
         ("velocity", {"frame": "wrld"}, "velocity: frame must be 'part' or 'world'"),
@@ -334,7 +334,7 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
         ("pose", {"noise": {"xx": 1}}, "noise of pose: its readings have no 'xx'"),
         ("rangefinder", {"noise": {"x": 1}, "elevation": -1.0}, "its readings have no fields; give one number"),
         ("image", {"width": 0}, "image: width: must be 1 to 4096"),
-        (["pose"], {}, r"walker has no sensor \['pose'\]; it has pose"),
+        (["pose"], {}, r"walker has no sensor \['pose'\]; it has anatomy, pose"),
         ("pose", {"part": []}, r"walker has no part \[\]; it has legs"),
         ("rangefinder", {"at": 3}, r"walker: a frame is named by text \(got 3\)"),
     ],

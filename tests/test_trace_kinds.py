@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from moving import moving
 from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
@@ -89,7 +90,11 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     simulation.measure(Passage("walker"))
     simulation.run(0.1)
     simulation.conclude()
-    return [*trace, *printed, *(simulation.trace or ())]
+    mover, motor = moving(trace="all")
+    motor.rotate_torso(2)
+    motor.rotate_torso(1)
+    mover.step(5)
+    return [*trace, *printed, *(simulation.trace or ()), *(mover.trace or ())]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:

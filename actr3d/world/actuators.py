@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from actr3d.errors import WorldError
-from actr3d.world.running import HEADING
+from actr3d.world.running import HEADING, TURN
 from actr3d.world.words import Word, adder, known, number
 
 if TYPE_CHECKING:
@@ -47,8 +47,16 @@ def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) ->
 def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body to a heading [rad, in the world's frame] at a speed [rad/s], the shorter way round."""
     angle, speed = number(angle, "heading: angle"), number(speed, "heading: speed", 1e-6)
-    body.running.waypoint = None
+    _forget_the_way(body)
     body.running.targets[HEADING] = (angle, speed)
+
+
+@_walks
+def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
+    """Turns the whole body by an angle [rad, left is positive] at a speed [rad/s], also while it walks."""
+    angle, speed = number(angle, "turn: angle"), number(speed, "turn: speed", 1e-6)
+    _forget_the_way(body)
+    body.running.targets[TURN] = (body.base.place[2] + angle, speed)
 
 
 @_walks
@@ -162,6 +170,7 @@ def _forget_the_way(body: Body) -> None:
     """Forgets where the body was going, for another command moves it now."""
     body.running.waypoint = None
     body.running.targets.pop(HEADING, None)
+    body.running.targets.pop(TURN, None)
 
 
 def _servoed(body: Body, name: str) -> Joint:

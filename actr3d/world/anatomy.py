@@ -29,6 +29,23 @@ class Steering(Configuration):
 
 
 @dataclass(frozen=True, kw_only=True)
+class NamedMovement(Configuration):
+    """A movement that a body has a name for: some joints that turn together."""
+
+    name: str
+    """What it is called: `extend_shoulder`."""
+
+    side: str | None = None
+    """On which side, where there is one movement of that name on each."""
+
+    joints: tuple[tuple[str, float], ...]
+    """The joints, and which way each of them turns: 1 where a positive angle of the movement is one of the joint, or -1."""
+
+    to: float | None = None
+    """To which angle it always brings them [rad]; None where whoever moves says to which."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Anatomy:
     """Names what a `Body` cannot find by looking at the compiled model. Names are those of MuJoCo's elements."""
 
@@ -55,6 +72,9 @@ class Anatomy:
 
     push: tuple[str, str, str] | None = None
     """The servos that walk forward, to the left and turn; None cannot walk."""
+
+    movements: tuple[NamedMovement, ...] = ()
+    """Movements that have names."""
 
     noise: tuple[tuple[str, float], ...] = ()
     """Of sensors that are never exact: the word and the standard deviation of every number it reads, in its unit."""

@@ -23,6 +23,8 @@ class Joint:
     def __init__(self, world: World, number: int, name: str) -> None:
         model, data = world.mj_model, world.mj_data
         self.name = name
+        self.number = number
+        """Which of MuJoCo's joints it is."""
         limited = bool(model.jnt_limited[number])
         self.lower: float = float(model.jnt_range[number, 0]) if limited else -math.inf
         self.upper: float = float(model.jnt_range[number, 1]) if limited else math.inf
@@ -44,6 +46,11 @@ class Joint:
     def velocity(self) -> float:
         """How fast it moves [rad/s] or [m/s]."""
         return float(self._qvel[self.v])
+
+    @property
+    def commanded(self) -> float:
+        """The speed that its servo is told to keep [rad/s]; 0 without one."""
+        return 0.0 if self._servo is None else float(self._ctrl[self._servo])
 
     def drive(self, speed: float, free: Callable[[], bool]) -> None:
         """Tells its servo to keep a speed [rad/s].

@@ -13,6 +13,7 @@ from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.bodies.limbs import HINGED, HINGES, SHOULDER, SIDES, UPPER_ARM, Limbs
 from actr3d.world.bodies.load import Load
+from actr3d.world.bodies.movements import MOVEMENTS
 from actr3d.world.parts import Colour, Length, Name
 
 
@@ -125,5 +126,6 @@ class Mannequin(Configuration):
             noise=self.noise,
             push=push,
             servos=push + joints,
+            movements=MOVEMENTS,
             hands=tuple(f"{prefix}{side}_hand" for side in SIDES),
         )
