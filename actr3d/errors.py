@@ -66,6 +66,10 @@ class CameraError(Actr3dError):
     """A camera cannot be made, or cannot look: unknown eye or geom, poses that are missing or no numbers."""
 
 
+class VisionError(Actr3dError):
+    """A vision module cannot be made, or look for something, as asked: unknown feature, slot, parameter or comparison."""
+
+
 class ModelFileError(Actr3dError):
     """A model file cannot be loaded: missing, not Python 3, or not readable as text."""
 

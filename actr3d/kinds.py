@@ -77,12 +77,22 @@ KINDS: Mapping[str, Kind] = {
         "[s] and its `outcome`",
     ),
     "retrieval": Kind("all", "memory", "failed [chunk]", "a memory's answer arrives, or its failure"),
-    "answer": Kind("all", "port", "word value", "a body answers what it was asked for"),
     "move": Kind(
         "all", "motor", "movement group speed [to]", "a movement of a muscle group begins; how fast and where to are in radians or metres"
     ),
     "moved": Kind("all", "motor", "movement group end", "that ends: «done», «stopped», «limit» or «blocked»"),
     "refused": Kind("all", "motor", "movement why", "a movement is not made: the muscle group is «busy», or its «limit» is nearer"),
+    "answer": Kind("all", "port, motor, vision", "word value", "a body answers what it was asked for"),
+    "search": Kind(
+        "all",
+        "vision",
+        "asked bottom_up noticed refused chosen [why]",
+        "a view arrives: the features that are as was asked for, with their saliences, those that are not and why, and which one is "
+        "brought; `why` says why none is, though some are noticed",
+    ),
+    "sight": Kind(
+        "all", "vision", "bottom_up failed [chunk held]", "what was found comes to the buffer, or nothing; `held` if the buffer is kept"
+    ),
     "add": Kind("all", "memory", "chunk merged size given", "a memory takes in a chunk, or strengthens (merges with) the equal one it has"),
     "chunks": Kind("all", "memory", "by size gone new", "a memory's chunks are changed otherwise: by which method, and which ones"),
 }

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from looking import seeing_for
 from moving import moving
 from walkers import driving
 
@@ -94,7 +95,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     motor.rotate_torso(2)
     motor.rotate_torso(1)
     mover.step(5)
-    return [*trace, *printed, *(simulation.trace or ()), *(mover.trace or ())]
+    return [*trace, *printed, *(simulation.trace or ()), *(mover.trace or ()), *seeing_for(0.2)]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.view import View
+from actr3d.world.frames import heading_of
 from actr3d.world.sensors.registry import SENSORS
 from actr3d.world.words import adder
 
@@ -24,6 +25,7 @@ class Sight:
 
     def __init__(self, body: Body, parameters: CameraParameters) -> None:
         self._world = body.world
+        self._root = body.root
         self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
         self._moment = -1
@@ -38,7 +40,7 @@ class Sight:
         world = self._world
         if self._view is None or self._moment != world.moment:
             world.refresh()
-            self._view = self._camera.look(world.mj_data)
+            self._view = self._camera.look(world.mj_data, heading_of(world.mj_data.xmat[self._root]))
             self._moment = world.moment
         return self._view
 

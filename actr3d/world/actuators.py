@@ -25,10 +25,14 @@ ACTUATORS: dict[str, Word] = {}
 MODERATE = 2.0
 """How fast joints turn unless told otherwise [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (human-data)."""
 
+SACCADE, SACCADE_PER_RAD = 0.02, 0.002 * math.degrees(1)
+"""How long the eye moves: 20 ms and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; human-data)."""
+
 _walks = adder(ACTUATORS, lambda body: body.anatomy.push is not None)
 _joints = adder(ACTUATORS, lambda body: any(joint.driven for joint in body.joints.values()))
 _driven = adder(ACTUATORS, lambda body: body.anatomy.steering is not None)
 _moves = adder(ACTUATORS, lambda body: body.base.planar or body.base.free)
+_looks = adder(ACTUATORS, lambda body: all(name in body.joints and body.joints[name].driven for name in ("eye_yaw", "eye_pitch")))
 _holds = adder(ACTUATORS, lambda body: bool(body.hands))
 _foreign = adder(ACTUATORS, lambda body: bool(body.controls) and not body.anatomy.servos)
 
@@ -135,6 +139,26 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
     for hand in body.hands.values():
         hand.carry()
     body.world.changed()
+
+
+@_looks
+def gaze(body: Body, left: float, up: float = 0.0, speed: float | None = None) -> None:
+    """Turns the eye to a direction against the head [rad, to the left and up], or to its limits; at a speed [rad/s] or as people do."""
+    yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
+    to_yaw = max(yaw.lower, min(yaw.upper, number(left, "gaze: left")))
+    to_pitch = max(pitch.lower, min(pitch.upper, -number(up, "gaze: up")))
+    turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))
+    farthest = max(turns)
+    time = SACCADE + SACCADE_PER_RAD * farthest if speed is None else farthest / number(speed, "gaze: speed", 1e-6)
+    for name, angle, turn in zip(("eye_yaw", "eye_pitch"), (to_yaw, to_pitch), turns, strict=True):
+        body.running.targets[name] = (angle, max(turn / time, 1e-6) if time > 0 else MODERATE)
+
+
+@_looks
+def saccade(body: Body, left: float, up: float = 0.0) -> None:
+    """Turns the eye by so much against where it looks [rad to the left, rad up], or to its limits, as fast as people do."""
+    yaw, pitch = body.joints["eye_yaw"].position, body.joints["eye_pitch"].position
+    gaze(body, yaw + number(left, "saccade: left"), number(up, "saccade: up") - pitch)
 
 
 @_holds

@@ -54,6 +54,7 @@ class Request:
     place: str
     """`file:line` where the modeller asked, for error messages."""
     port: Port
+    """Who gets the answer."""
     reading: Reading | None = None
     """Where the answer goes; None where something is to be done and nothing answered."""
     to_buffer: bool = False
@@ -102,7 +103,8 @@ class Port(Model):
     def _joined(self) -> Embodiment:
         embodiment = self._find_embodiment()
         if embodiment is None:
-            raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
+            kind = "port" if isinstance(self, BodyPort) else type(self).__name__
+            raise SimulationError(f"{kind} '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
         return embodiment
 
     def _find_embodiment(self) -> Embodiment | None:
