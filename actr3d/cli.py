@@ -189,6 +189,12 @@ def _seconds(text: str) -> float:
     return value
 
 
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 on (got {text})")
+    return int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -215,7 +221,8 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core", "camera", "lockstep"], help="what to measure")
+    bench.add_argument("name", choices=["core", "camera", "lockstep", "aperture"], help="what to measure")
+    bench.add_argument("--trials", type=_count, metavar="N", help="of the aperture: how many trials a cell (30)")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
@@ -226,6 +233,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _bench(options: argparse.Namespace) -> int:
     bench: Any = importlib.import_module(f"actr3d.bench.{options.name}")
+    if options.name == "aperture":
+        return bench.main(json_output=options.json, trials=options.trials)
     return bench.main(json_output=options.json)
 
 
