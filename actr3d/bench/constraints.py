@@ -10,11 +10,12 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from statistics import mean
+from statistics import mean, stdev, variance
 from typing import Any
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
+from scipy.special import stdtr
 
 from actr3d.bench.trials import CONDITIONS, GROUPS, Outcome, Trial
 
@@ -24,6 +25,8 @@ CRITICAL = (1.25, 1.35)
 """Where turning begins, as a ratio of aperture to shoulders. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of human-data."""
 MARGIN = (0.06, 0.08)
 """The margin on each side [m]. Source: Higuchi's review (human-data)."""
+HIPS = 0.191 * 1.714
+"""How wide the walker's hips are, which do not turn [m]. Source: Drillis & Contini (1966), as the mannequin's; its height."""
 PASSABLE = (1.11, 1.21)
 """Where it is judged to be passable as one is. Source: Warren & Whang (1987), about 1.16; the bounds are ours."""
 SAME = 5.0
@@ -148,13 +151,13 @@ class Findings:
                 (ratios, normal), (_, fast) = (self.curve(group, condition, agent) for condition in ("normal", "fast"))
                 below = [b - a for ratio, a, b in zip(ratios, normal, fast, strict=True) if ratio < CRITICAL[0]]
                 differences.append(mean(below))
-            test = stats.ttest_1samp(differences, 0.0, alternative="greater")
-            met &= bool(mean(differences) > 0 and test.pvalue < 0.05)
-            found.append(f"{group} {mean(differences):+.1f} degrees (p = {test.pvalue:.2g})")
+            p = above_zero(mean(differences), stdev(differences) / math.sqrt(len(differences)), len(differences) - 1)
+            met &= p < 0.05
+            found.append(f"{group} {mean(differences):+.1f} degrees (p = {p:.2g})")
         return Constraint(number=5, says="fast > normal below the critical ratio", met=met, found=", ".join(found))
 
     def untouched(self) -> Constraint:
-        """6: no contact, and the margin, where somebody turned and passed."""
+        """6: no contact, and the margin of who turned, where hips do not leave less."""
         touched = sum(outcome.result.contacts > 0 for outcome in self.outcomes)
         passed = sum(outcome.result.outcome == "passed" for outcome in self.outcomes)
         margins: defaultdict[float, list[float]] = defaultdict(list)
@@ -162,10 +165,13 @@ class Findings:
             left, right = outcome.result.clearance_left_m, outcome.result.clearance_right_m
             if left is not None and right is not None and angle(outcome) > TURNED:
                 margins[outcome.trial.aperture].append((left + right) / 2)
-        all_margins = [margin for of in margins.values() for margin in of]
-        middle = mean(all_margins) if all_margins else math.nan
+        roomy = [margin for aperture, of in margins.items() if aperture >= HIPS + 2 * MARGIN[0] for margin in of]
+        middle = mean(roomy) if roomy else math.nan
         by_aperture = ", ".join(f"{100 * aperture:.0f} cm: {100 * mean(of):.1f}" for aperture, of in sorted(margins.items()))
-        found = f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin {100 * middle:.1f} cm ({by_aperture})"
+        found = (
+            f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin {100 * middle:.1f} cm where hips leave room for it "
+        )
+        found += f"({by_aperture})"
         met = touched == 0 and passed == len(self.outcomes) and MARGIN[0] <= middle <= MARGIN[1]
         return Constraint(number=6, says="no contact, margin 6 to 8 cm", met=met, found=found)
 
@@ -183,9 +189,24 @@ class Findings:
 
 def equivalence(one: Sequence[float], other: Sequence[float], bound: float) -> tuple[float, float]:
     """Returns the difference of two means, and the p value of the two one-sided (Welch) t tests that it is within a bound."""
-    more = stats.ttest_ind([value - bound for value in one], other, equal_var=False, alternative="less")
-    less = stats.ttest_ind([value + bound for value in one], other, equal_var=False, alternative="greater")
-    return mean(one) - mean(other), max(float(more.pvalue), float(less.pvalue))
+    difference = mean(one) - mean(other)
+    parts = [variance(values) / len(values) for values in (one, other)]
+    squares = sum(part**2 / (len(values) - 1) for part, values in zip(parts, (one, other), strict=True))
+    freedom = sum(parts) ** 2 / squares if squares else 1.0
+    return difference, above_zero(bound - abs(difference), math.sqrt(sum(parts)), freedom)
+
+
+def above_zero(value: float, error: float, freedom: float) -> float:
+    """Returns the p value of a one-sided t test that a value is above 0.
+
+    Args:
+        value: The value.
+        error: Its standard error.
+        freedom: Of how many degrees of freedom that is.
+    """
+    if error == 0:
+        return float(value <= 0)
+    return float(stdtr(freedom, -value / error))
 
 
 def turning_point(trials: Iterable[tuple[float, bool]]) -> float:
@@ -206,4 +227,4 @@ def turning_point(trials: Iterable[tuple[float, bool]]) -> float:
     starts = [(low + (high - low) * n / 40, slope) for n in range(41) for slope in (20.0, 200.0)]
     best = min(starts, key=unlikely)
     bounds = [(low, high), (1.0, 200.0)]
-    return optimize.minimize(unlikely, best, bounds=bounds, method="L-BFGS-B").x[0]
+    return float(optimize.minimize(unlikely, best, bounds=bounds, method="L-BFGS-B").x[0])
