@@ -20,7 +20,7 @@ from seeing import compiled, mujoco, seen
 
 from actr3d.camera import CameraParameters, GeometricCamera
 from actr3d.camera.kernel import jit
-from actr3d.errors import CameraError, ConfigurationError
+from actr3d.errors import CameraError, ConfigurationError, ModelWarning
 
 BALL = '<geom name="ball" type="sphere" size=".3" pos="3 0 1.5"/>'
 CROWD = [
@@ -302,3 +302,12 @@ def test_of_two_things_that_coincide_the_same_one_is_seen_everywhere(shape: str,
         _, other = seen("".join(reversed(crowd)) + twin + twin, rows=20)
         _, alone = seen(twin + "".join(crowd), rows=20)
         assert one.as_dict() == other.as_dict() == alone.as_dict()
+
+
+def test_what_it_cannot_see_is_named() -> None:
+    text = """<mujoco><worldbody><site name="eye"/><body name="cloth" pos="3 0 0">
+      <flexcomp name="sheet" type="grid" count="3 3 1" spacing="1 1 1" dim="2" mass="1" radius="0.01">
+      <edge equality="true"/></flexcomp></body>
+      </worldbody></mujoco>"""
+    with pytest.warns(ModelWarning, match="the Geometric Camera does not see flex 'sheet': give what should be seen a geom"):
+        GeometricCamera(mujoco.MjModel.from_xml_string(text), site="eye")

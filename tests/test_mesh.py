@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
 import struct
 import subprocess
 import sys
@@ -191,8 +192,9 @@ def test_parts_are_the_same_in_every_process(tmp_path: Path) -> None:
         "print(world.mj_model.ngeom, hashlib.sha256(world.mj_model.mesh_vert.tobytes()).hexdigest())"
     )
     run = [sys.executable, "-c", code, str(path)]
-    first, second = (subprocess.run(run, capture_output=True, text=True, check=True).stdout for _ in range(2))
-    assert first == second
+    caches = [{**os.environ, "XDG_CACHE_HOME": str(tmp_path / name)} for name in ("one", "other", "other")]
+    first, second, kept = (subprocess.run(run, capture_output=True, text=True, check=True, env=env).stdout for env in caches)
+    assert first == second == kept
     assert int(first.split()[0]) > 2
 
 

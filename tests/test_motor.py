@@ -10,18 +10,22 @@ from living import near
 from moving import during, motor_of, mover, moving, until
 
 from actr3d.actr import ACTR
-from actr3d.errors import ParameterError, SimulationError, WorldError
+from actr3d.actr.loading import load_text
+from actr3d.errors import ModelWarning, ParameterError, SimulationError, WorldError
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation
-from actr3d.world import Car, Floor, ImportedBody, Mannequin, Scene, Wall
+from actr3d.world import Car, Floor, ImportedBody, Load, Mannequin, Scene, Wall
+from actr3d.world.anatomy import NamedMovement
 
 ARM = """<mujoco><worldbody><body name="base"><geom size="0.1"/>
-  <body name="upper" pos="0 0 0.2"><joint name="shoulder" axis="0 0 1" range="-60 60"/><geom size="0.05" pos="0.3 0 0"/>
-    <body name="fore" pos="0.5 0 0"><joint name="elbow" axis="0 1 0"/><joint name="wrist" axis="1 0 0"/><geom size="0.04" pos="0.2 0 0"/>
-      <body name="finger" pos="0.4 0 0"><joint name="grip" type="slide" axis="1 0 0" range="0 0.05"/><geom size="0.02"/></body>
+  <body name="upper" gravcomp="1" pos="0 0 0.2"><joint name="shoulder" axis="0 0 1" range="-60 60"/>
+    <geom size="0.05" pos="0.3 0 0"/>
+    <body name="fore" gravcomp="1" pos="0.5 0 0"><joint name="elbow" axis="0 1 0"/><joint name="wrist" axis="1 0 0"/>
+      <geom size="0.04" pos="0.2 0 0"/>
+      <body name="finger" gravcomp="1" pos="0.4 0 0"><joint name="grip" type="slide" axis="1 0 0" range="0 0.05"/><geom size="0.02"/></body>
     </body></body></body></worldbody>
-  <actuator><velocity name="a" joint="shoulder" kv="100"/><velocity name="b" joint="elbow" kv="100"/>
-    <velocity name="c" joint="grip" kv="100"/></actuator></mujoco>"""
+  <actuator><velocity name="a" joint="shoulder" kv="200"/><velocity name="b" joint="elbow" kv="200"/>
+    <velocity name="c" joint="grip" kv="200"/></actuator></mujoco>"""
 """An arm on a pedestal, as a robot's description may have it; nothing moves its wrist."""
 
 
@@ -124,7 +128,7 @@ def test_groups_move_at_once_while_it_walks_and_turns() -> None:
     motor.stop()
     simulation.step(2)
     assert not motor.busy
-    assert simulation.world.bodies["walker"].get("velocity").linear == near((0, 0, 0), abs=1e-6)
+    assert simulation.world.bodies["walker"].get("velocity").linear == near((0, 0, 0), abs=1e-3)
 
 
 @pytest.mark.parametrize(("by", "speed"), [(90, 120), (-200, 240), (360, 180)])
@@ -175,6 +179,44 @@ def test_lowering_the_arms_brings_both_to_where_they_hang() -> None:
     assert motor.right_upper_arm_busy
     assert until(simulation, lambda: not motor.busy) == near(51, abs=1)
     assert motor.left_upper_arm_pitch_angle == motor.right_upper_arm_roll_angle == 0
+
+
+def test_several_groups_are_stopped_at_once_and_the_rest_goes_on() -> None:
+    simulation, motor = moving()
+    motor.walk(1.0)
+    motor.rotate_torso()
+    motor.extend_shoulder("left", speed=30)
+    simulation.step(10)
+    motor.stop("torso", "left_shoulder")
+    assert (motor.torso_end, motor.left_shoulder_end, motor.walking) == ("stopped", "stopped", True)
+    simulation.step(10)
+    assert angle(simulation, "torso_yaw") == near(12, abs=0.3)
+    assert simulation.world.bodies["walker"].get("pose").x == near(0.2, abs=0.01)
+
+
+@pytest.mark.parametrize("given", ["chunk", "buffer", "text"])
+def test_a_posture_is_assumed_again(given: str) -> None:
+    simulation, motor = moving()
+    motor.rotate_torso(50)
+    motor.extend_shoulder("left", 15)
+    until(simulation, lambda: not motor.busy)
+    posture = motor.parent.posture
+    known: Any = {"chunk": posture.chunk.copy(), "buffer": posture, "text": "posture:any torso_yaw:50 left_shoulder_yaw:-15 width:9"}[given]
+    motor.rotate_torso(-10)
+    motor.compress_shoulder("left")
+    until(simulation, lambda: not motor.busy)
+    if given == "buffer":
+        posture.set({"torso_yaw": 50, "left_shoulder_yaw": -15})
+    motor.assume(known, "60")
+    assert until(simulation, lambda: not motor.torso_busy) == 101
+    assert (motor.torso_yaw_angle, motor.left_shoulder_yaw_angle) == (50, -15)
+    assert motor.torso_end == "done"
+    motor.assume("torso_yaw:91")
+    assert motor.refusal == "limit"
+    with pytest.raises(WorldError, match="'width:1' names no joint of walker; it has pelvis_yaw"):
+        motor.assume("width:1")
+    with pytest.raises(WorldError, match="assume: torso_yaw: must be a number"):
+        motor.assume("torso_yaw:left")
 
 
 def test_a_movement_is_prepared_for_as_long_as_a_parameter_says_and_can_be_stopped_meanwhile() -> None:
@@ -241,6 +283,9 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("move", ("rotate_trunk",), r"walker has no movement 'rotate_trunk'; did you mean 'rotate_torso'\?"),
         ("move", ("lower_arms", None, 30), "lower_arms always ends in the same posture"),
         ("stop", ("leg",), r"walker has no muscle group 'leg'; did you mean 'legs'\?"),
+        ("walk", (50,), r"walk: speed: walker can do at most [\d.]+ \(got 50\)"),
+        ("turn", (90, 1e5), r"turn: speed: walker can do at most [\d.]+ \(got 100000\)"),
+        ("rotate_torso", (30, 1e5), r"rotate_torso: speed: walker can do at most [\d.]+ \(got 100000\)"),
         ("walk", ("fast",), r"walk: speed: must be a number \(got 'fast'\)"),
     ],
 )
@@ -307,7 +352,7 @@ def test_a_limb_that_something_holds_back_is_blocked_and_stops_pushing() -> None
     until(simulation, lambda: not motor.busy)
     assert ended(motor, "left_upper_arm") == "blocked"
     assert angle(simulation, "left_upper_arm_pitch") == near(-37, abs=3)
-    assert simulation.world.bodies["walker"].joints["left_upper_arm_pitch"].commanded == 0
+    assert simulation.world.bodies["walker"].joints["left_upper_arm_pitch"].told(simulation.world.bodies["walker"]) == 0
     assert motor.parent.posture.chunk["end"] == "blocked"
 
 
@@ -328,10 +373,11 @@ def test_with_endless_patience_it_pushes_on() -> None:
     assert motor.walking
 
 
-def test_a_movement_that_a_user_ends_is_over() -> None:
+@pytest.mark.parametrize("legs", [("walk", 1.0), ("turn", 90, 90), ("turn", None, 90)])
+def test_a_movement_that_a_user_ends_is_over(legs: tuple[Any, ...]) -> None:
     simulation, motor = moving()
     motor.rotate_torso()
-    motor.turn(90, 90)
+    getattr(motor, legs[0])(*legs[1:])
     simulation.step(10)
     simulation.command("stop")
     simulation.step(2)
@@ -340,6 +386,36 @@ def test_a_movement_that_a_user_ends_is_over() -> None:
 
 
 # -- any body with joints
+
+
+BODIES = {
+    "person": Mannequin(name="walker"),
+    "with a bar": Mannequin(name="walker", load=Load(shape="bar", size=(1.0, 0.03)), trunk="box"),
+    "car": Car(name="walker"),
+    "arm": ImportedBody(name="walker", text=ARM),
+    "stone": ImportedBody(name="walker", text="<mujoco><worldbody><body name='stone'><geom size='0.1'/></body></worldbody></mujoco>"),
+}
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_every_body_tells_what_it_is_in_the_order_in_which_it_feels(kind: str) -> None:
+    simulation, motor = moving(body=BODIES[kind])
+    body = simulation.world.bodies["walker"]
+    plan, felt = body.get("anatomy"), body.get("proprioception")
+    joints = [joint for part in plan.parts for joint in part.joints]
+    assert [joint.name for joint in joints] == list(body.joints) == list(motor._limbs.order)
+    assert felt.positions == tuple(joint.position for joint in body.joints.values())
+    assert [part.name for part in plan.parts] == [part.name for part in motor.body.line()] == list(body.parts)
+    for joint in joints:
+        limits = body.joints[joint.name].limits
+        assert limits == (-math.inf if joint.lower is None else joint.lower, math.inf if joint.upper is None else joint.upper)
+        assert joint.driven == body.joints[joint.name].driven
+    for movement in plan.movements:
+        assert {joint for joint, _ in movement.joints} <= {joint.name for joint in joints if joint.driven}
+    box = body.bounding_box("body")
+    size = body.get("bounding_box")
+    assert (size.width, size.depth, size.height) == (box.width, box.depth, box.height) == (felt.width, felt.depth, felt.height)
+    assert motor.width == near(box.width, abs=0.0051)
 
 
 def test_an_imported_arm_is_known_and_moved() -> None:
@@ -360,6 +436,64 @@ def test_an_imported_arm_is_known_and_moved() -> None:
     assert motor.fore_end == "stopped"
     assert motor.elbow_angle == near(15, abs=2)
     assert {"shoulder", "elbow", "wrist", "grip"} <= motor.parent.posture.chunk.keys()
+
+
+def test_a_joint_that_slides_needs_a_speed() -> None:
+    _, motor = moving(body=ImportedBody(name="arm", text=ARM))
+    with pytest.raises(WorldError, match=r"joint 'grip' slides; say how fast \[m/s\]"):
+        motor.rotate("grip")
+
+
+def test_a_weak_limb_that_comes_as_near_as_it_can_is_done_and_one_that_cannot_is_blocked() -> None:
+    text = ARM.replace('gravcomp="1"', "")
+    simulation, motor = moving(body=ImportedBody(name="arm", text=text))
+    motor.rotate("elbow", angle=40)
+    until(simulation, lambda: not motor.busy)
+    assert motor.fore_end == "done"
+    assert angle(simulation, "elbow", "arm") == near(40, abs=1)
+    simulation, motor = moving(body=ImportedBody(name="arm", text=text.replace('kv="200"', 'kv="0.2"')))
+    motor.rotate("elbow", angle=-60, speed=50)
+    until(simulation, lambda: not motor.busy)
+    assert motor.fore_end == "blocked"
+
+
+def test_an_imported_body_may_have_names_for_movements() -> None:
+    reach = NamedMovement(name="reach", joints=(("shoulder", -1), ("elbow", 1)))
+    fold = NamedMovement(name="fold", joints=(("shoulder", 1), ("elbow", 1)), to=math.radians(45))
+    simulation, motor = moving(body=ImportedBody(name="arm", text=ARM, movements=(reach, fold)))
+    motor.move("reach", angle=20, speed=60)
+    assert (motor.upper_busy, motor.fore_busy, motor.finger_busy) == (True, True, False)
+    until(simulation, lambda: not motor.busy)
+    assert (motor.shoulder_angle, motor.elbow_angle) == near((-20, 20), abs=0.5)
+    motor.move("fold")
+    until(simulation, lambda: not motor.busy)
+    assert (motor.shoulder_angle, motor.elbow_angle) == near((45, 45), abs=0.5)
+
+
+def test_a_pattern_that_names_no_muscle_group_is_told_once_the_body_is_known() -> None:
+    text = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+
+class Slip(ACTR):
+    goal = Buffer()
+    motor = Motor()
+    def go(goal="go", motor="torso_bussy:False legs_busy:False width:?w"):
+        pass
+"""
+    simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": load_text(text, "slip.py").Slip})
+    with pytest.warns(
+        ModelWarning, match=r"'go' can never match: 'motor' has no attribute 'torso_bussy'; did you mean 'torso_busy'\?"
+    ) as told:
+        simulation.step(3)
+    assert len(told) == 1
+    simulation.seek(0)
+    simulation.step(3)
+
+
+def test_proprioception_takes_no_noise() -> None:
+    with pytest.raises(WorldError, match="give it to the motor module instead"):
+        moving(body=Mannequin(name="walker", noise=(("proprioception", 0.1),)))
 
 
 def test_two_agents_move_their_own_bodies() -> None:

@@ -68,7 +68,9 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         for tick in (0, 20, 55):  # some events at exactly the end of a tick are of the next one
             assert all(event.time <= tick / 100 for event in events[: counts[tick]])
             assert all(event.time >= tick / 100 for event in events[counts[tick] :])
-        assert list(recorded.commands()) == [(50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})]
+        assert list(recorded.commands()) == [
+            (1, 50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})
+        ]
         told = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
         answers = list(recorded.answers())
         assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(told)] == told
@@ -93,7 +95,7 @@ def test_a_run_is_the_same_with_a_recording_or_without(tmp_path: Path) -> None:
 def test_odd_values_are_recorded_as_the_trace_tells_them(tmp_path: Path) -> None:
     odd: dict[Any, Any] = {"inf": float("inf"), 1: "number", "object": object(), "word": "größe \ud800"}
     events = [TraceEvent(5, "top", "state", odd), TraceEvent(6, "top", "state", {"a": [1, (2, 3)]})]
-    with Recording(tmp_path / "run", {}) as recording:
+    with Recording(tmp_path / "run", {"kind": "simulation"}) as recording:
         for event in events:
             recording.event(event)
     with Recorded(tmp_path / "run") as recorded:

@@ -204,6 +204,7 @@ def in_fact(name: str, old: str, new: str) -> str:
 CHANGES = [
     (in_fact("sources", "noise=1", "noise=2"), "differs: event "),
     (in_fact("sources", "heading=0.3", "heading=0.4"), "differs: the physics at the end of tick 0 (0 s): number 4 of "),
+    (in_fact("sources", "Scene(", "Scene(gravity=(0, 0, -9), "), "; it compiles to another scene than then"),
     (in_fact("sources", "Scene(", "Scene(gravity=(0, 0, -9), "), "differs: the physics at the end of tick 1 (0.01 s): number "),
     (in_fact("sources", "times", "counts"), "error: Parameters has no parameter 'times'"),
     (in_fact("versions", '"mujoco": "', '"mujoco": "1'), "error: the recording was made with other versions"),
@@ -231,6 +232,46 @@ def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[s
     assert main(["replay", str(path)]) == 2
     assert "python 2.7 then, 3." in capsys.readouterr().err
     assert main(["replay", str(path), "--any-version"]) == 0
+
+
+def test_a_damaged_recording_is_told_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file)
+    data = bytearray(path.read_bytes())
+    with sqlite3.connect(path) as connection:
+        (page,) = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'events'").fetchone()
+        (size,) = connection.execute("PRAGMA page_size").fetchone()
+    connection.close()
+    data[(page - 1) * size : (page - 1) * size + 8] = b"XXXXXXXX"
+    path.write_bytes(data)
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert f"error: the recording '{path}' is damaged: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("table", ["events", "answers", "commands"])
+def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run"):
+        simulation.command("aperture", 0.5)
+        simulation.run(0.3)
+    alter(tmp_path / "run", f"UPDATE {table} SET data = substr(data, 1, length(data) - 9) || 'XXXXXXXXX'")
+    with Recorded(tmp_path / "run") as recorded, pytest.raises(RecordingError, match="is damaged: "):
+        replay(recorded, driving)
+
+
+def test_a_recording_that_was_killed_before_anything_was_written_agrees(file: Path) -> None:
+    path = recorded_run(file)
+    alter(path, "DELETE FROM events", "DELETE FROM states", "DELETE FROM facts WHERE name IN ('ended', 'whole')")
+    with Recorded(path) as recorded:
+        assert str(replay(recorded)) == "every byte agrees: 0 events"
+
+
+def test_a_recording_without_its_facts_is_told(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file)
+    alter(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert "is no whole recording: it does not say its kind and versions" in capsys.readouterr().err
 
 
 def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

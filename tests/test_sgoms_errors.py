@@ -76,6 +76,7 @@ class Agent(SGOMS):
         ("b_unit_task.modify(unit_task='tlak')", "has a unit task 'tlak'; did you mean 'talk'"),
         ("b_unit_task.set('state:start')", "names no unit task"),
         ("b_unit_task.modify(state='finishd')", "state 'finishd' does not end the unit task; did you mean 'finished'"),
+        ("b_unit_task.clear()", "'boil' is cleared, and nothing would come after it; it ends with b_unit_task.modify"),
         ("b_interrupt.set('planning_unit:phoen when:now')", "b_interrupt: Agent has no planning unit 'phoen'; did you mean 'phone'"),
         ("b_interrupt.set('planning_unit:phone')", "does not say when; 'when:now' cuts"),
         ("b_interrupt.set('planning_unit:phone when:ned')", "does not say when; did you mean 'end'"),

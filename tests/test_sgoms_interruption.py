@@ -232,15 +232,20 @@ class Agent(Base):
     def notice(b_plan_unit="planning_unit:?unit state:lost lost:unit_task"):
         said.append((self.now(), "forgot " + unit))
         DM.add("planning_unit:tea cuelag:start cue:boil unit_task:steep")  # looks it up
-        b_plan_unit.modify(state="running")
+        b_plan_unit.modify(state="begin")
 """
     module = cooking(body, seconds=2)
     assert tasks(module) == ["boil", "forgot tea", "steep"]
+    assert [line.split(maxsplit=1)[1] for line in told(module, "planning_unit")] == ["begun tea"]
+    none = body.replace("threshold=0", "threshold=9").replace("DM.add(", "DM.threshold = -9; DM.add(")
+    module = cooking(none, seconds=2)
+    assert tasks(module) == ["forgot tea", "boil", "steep"]
+    assert module.agent.b_plan_unit["lost"] == "none"
 
 
 def test_a_forgotten_place_may_be_asked_for_again() -> None:
     body = FORGETFUL.format(threshold=0.5).replace("baselevel=0", "baselevel=1").replace('b_plan_unit.set("planning_unit:?unit")', "")
-    body = body.replace("said.append", "DM.threshold = -9; b_plan_unit.modify(lost='none', state='finished'); said.append")
+    body = body.replace("said.append", "DM.threshold = -9; b_plan_unit.modify(state='finished'); said.append")
     assert tasks(cooking(body, 0.22, NOW)) == ["boil", *PHONE, "forgot tea", "boil", "steep", "pour"]
 
 

@@ -14,7 +14,7 @@ import pytest
 from living import near
 from walkers import Driver, digest, driving, scene_of
 
-from actr3d.actr import ACTR, Model
+from actr3d.actr import ACTR, Buffer, Model
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SimulationError, WorldError
@@ -328,6 +328,9 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
     (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "leads to no body"),
     (lambda s: Simulation(s.world, trace="some"), "no level 'some'"),
+    (lambda s: BodyPort().set("walk", 1), "'walk' is said to a body before the agent lives; say it while its Simulation runs"),
+    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is said to a body before the agent lives"),
+    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is said to a body before the agent lives"),
     (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 

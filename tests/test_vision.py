@@ -93,6 +93,9 @@ def test_what_fails_is_not_returned_and_the_buffer_empties(asked: str) -> None:
         "left='?one'",
         "left='!?two'",
         "direction='>-1 <1'",
+        "cut='False'",
+        "cut='!True'",
+        "cut=False",
     ],
 )
 def test_what_holds_is_returned(asked: str) -> None:
@@ -166,6 +169,7 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
         ("vision.request('feature:opening', width='>?wide')", r"'\?wide' is not bound"),
         ("vision.request('feature:opening', width='>>1')", "cannot read width='>>1'; write a number or"),
         ("vision.request('feature:opening', width='>wide')", "width is compared with a number in m"),
+        ("vision.request('feature:opening', width='wide')", "width is compared with a number in m"),
         ("vision.request('feature:opening', width='')", "width has no value"),
         ("vision.request('feature:opening', direction=5)", "direction is measured; say '>5' or '<5'"),
         ("vision.request('feature:opening', left='>2')", "left cannot be compared by size"),
@@ -200,8 +204,10 @@ def test_parameters_that_are_none_are_told() -> None:
 
 
 def test_an_agent_without_a_body_sees_nothing() -> None:
-    with pytest.raises(SimulationError, match=r"Vision 'agent\.vision' leads to no body|Vision '.*vision' leads to no body"):
+    with pytest.raises(SimulationError, match=r"port '.*vision' leads to no body"):
         asking("vision.request('feature:opening')")().run(1)
+    with pytest.raises(SimulationError, match="before the agent lives"):
+        Vision(None).request("feature:opening")
 
 
 # -- when it comes

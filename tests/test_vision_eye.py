@@ -172,7 +172,7 @@ def test_emma_sets_the_time_of_a_chunk_and_turns_the_eye_where_it_may() -> None:
     ((time, _),) = list(events(simulation.trace, "sight"))
     assert time == near(0.1 + Emma().course(angle)[0], abs=3e-4)
     assert math.degrees(eye_of(simulation.world)[0]) == near(math.degrees(angle), abs=0.2)
-    ((turned, _),) = [(at, data) for at, data in events(simulation.trace, "request") if data["call"] == "saccade"]
+    ((turned, _),) = [(at, data) for at, data in events(simulation.trace, "request") if data.get("word") == "saccade"]
     assert turned == near(0.1 + 0.185)
     covert, _ = seen(", encoding=Emma(factor=0.01)")
     assert math.degrees(eye_of(covert.world)[0]) == near(0, abs=1e-6)
@@ -201,3 +201,22 @@ def test_an_encoding_that_is_none_is_told() -> None:
     for wrong in ("ema", -1, None, True):
         with pytest.raises(ParameterError, match=r"Vision\.encoding: must be a time from 0 on \[s\], 'emma' or an Emma"):
             Vision(None, encoding=wrong)
+
+
+def test_a_driver_sees_with_a_cars_eye() -> None:
+    kind = agent(
+        """
+from actr3d.actr import *
+from actr3d.vision import Vision
+class Agent(Model):
+    visual = Buffer()
+    vision = Vision(visual, horizontal_fov=2.0)
+    def start(self):
+        yield self.vision.request("feature:opening", height=1)
+"""
+    )
+    scene = Scene(parts=(Floor(), Aperture(width=3.0, position=(9.0, 0.0), heading=0.4), Car(name="walker", heading=0.4)))
+    chunk = Mindful(World(scene), kind).tick(10).mind.visual.chunk
+    assert chunk["width"] == near(3.0, abs=0.01)
+    eye = (1.2 * math.cos(0.4) - 0.35 * math.sin(0.4), 1.2 * math.sin(0.4) + 0.35 * math.cos(0.4))
+    assert chunk["direction"] == near(math.degrees(math.atan2(-eye[1], 9.0 - eye[0]) - 0.4), abs=1)

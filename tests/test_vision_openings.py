@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from collections.abc import Iterator
+from itertools import islice, pairwise
+from random import Random
 from typing import Any
 
 import pytest
@@ -49,6 +51,26 @@ def test_off_the_axis_too_where_one_edge_is_the_front_and_the_other_the_back(asi
     one = only(found("opening", doorway(5.0, 0.4, thick=thick), eye(0, aside, math.degrees(math.atan2(-aside, 5)))))
     assert one.width == near(0.4, abs=CENTIMETRE)
     assert one.direction == near(0, abs=math.radians(3))
+
+
+def doorways() -> Iterator[tuple[float, float, float, str]]:
+    """Yields doorways made at random (distance, width and thickness) and eyes that see through them."""
+    random = Random(1)
+    while True:
+        distance, width, thick = random.uniform(0.5, 7), random.uniform(0.3, 1.2), random.choice([0.02, 0.1, 0.2, 0.3])
+        aside, off = random.uniform(-3, 3), random.uniform(-25, 25)
+        tilt = (random.uniform(-12, 12), random.uniform(-8, 8))
+        turn = math.atan2(-aside, distance + thick / 2) + math.radians(off)
+        low = max((-width / 2 - aside) / deep for deep in (distance, distance + thick))
+        high = min((width / 2 - aside) / deep for deep in (distance, distance + thick))
+        if high - low > 0.01 and max(abs(math.atan(low) - turn), abs(math.atan(high) - turn)) < math.radians(38):
+            yield distance, width, thick, eye(0, aside, math.degrees(turn), *tilt)
+
+
+@pytest.mark.parametrize(("distance", "width", "thick", "site"), list(islice(doorways(), 50)))
+def test_doorways_made_at_random_are_as_wide_as_they_are(distance: float, width: float, thick: float, site: str) -> None:
+    openings = found("opening", doorway(distance, width, thick=thick), site)
+    assert max(openings, key=lambda o: o.height).width == near(width, abs=CENTIMETRE)
 
 
 @pytest.mark.parametrize("yaw", [-35, -10, 20, 40])
@@ -143,6 +165,20 @@ def test_an_opening_hidden_in_part_is_told_as_far_as_it_is_seen() -> None:
     assert openings[0].width == near(0.6, abs=CENTIMETRE)
     assert openings[0].bottom == near(-0.3 / 1.9 * 5, abs=0.1)  # the box hides what is lower
     assert openings[0].below not in (0, openings[0].left, openings[0].right)
+
+
+def test_what_is_no_rectangle_is_as_large_as_the_largest_rectangle_in_it() -> None:
+    steps = "".join(
+        f'<body pos="4 {side * (half + 1)} {z}"><geom type="box" size="0.05 1 {tall}"/><geom type="box" size="0.05 1 {rest}" '
+        f'pos="0 {side * out} {-z + rest}"/></body>'
+        for side in (1, -1)
+        for half, z, tall, rest, out in ((0.5, 1.7, 0.8, 0.45, -0.3),)
+    )
+    one = max(found("opening", steps), key=lambda o: o.height)
+    assert (one.width, one.height) == (near(1.0, abs=CENTIMETRE), near(1.6, abs=0.08))  # the lower part is 0.4 m wide
+    leaning = "".join(f'<body pos="4 {y} 1" euler="10 0 0"><geom type="box" size="0.02 0.02 1"/></body>' for y in (0.5, -0.5))
+    one = max(found("opening", leaning), key=lambda o: o.height)
+    assert one.width + math.tan(math.radians(10)) * one.height == near(0.96 + 2 * 0.02 * (1 - 1 / math.cos(math.radians(10))), abs=0.03)
 
 
 def test_what_leaves_the_field_of_view_at_a_side_is_no_opening() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from living import near
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, WorldError
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Track, Wall, World
 
 
@@ -53,6 +53,16 @@ def test_going_on_from_a_state_gives_the_same_bytes() -> None:
     world.step(200)
     assert world.state().mj_state.tobytes() == first.mj_state.tobytes()
     assert (world.time, first.steps) == (626_000, 313)
+
+
+def test_a_state_of_another_scene_is_refused_whatever_its_size() -> None:
+    world, same, other = doorway(0.7), doorway(0.7), doorway(0.8)
+    world.step(3)
+    same.restore(world.state())
+    assert same.state_bytes() == world.state_bytes()
+    with pytest.raises(WorldError, match="the state is of another scene"):
+        other.restore(world.state())
+    assert other.time == 0
 
 
 def test_looking_at_positions_changes_nothing() -> None:

@@ -8,7 +8,6 @@ them can be loaded and used at once, also by several threads. See `actr3d.actr.p
 from __future__ import annotations
 
 import importlib
-import random
 import sys
 import weakref
 from collections.abc import Callable, Generator
@@ -24,6 +23,7 @@ from actr3d.actr.aliases import aliases
 from actr3d.actr.limits import EndOfRun, RunLimits
 from actr3d.actr.program import Program
 from actr3d.actr.reading import compile_source, read_source
+from actr3d.actr.shared_random import shared_random
 from actr3d.actr.sources import WRITTEN_FOR_PYTHON_ACTR, drop_lines
 
 _LOADING = Lock()
@@ -98,12 +98,11 @@ def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLi
     """Runs a program's code under its limits, and puts everything back afterwards."""
     outer = RunLimits.current()
     with ExitStack() as stack:
-        stack.callback(random.setstate, random.getstate())
         stack.callback(logs.begin())
         stack.enter_context(limits)
         stack.enter_context(aliases(program.old))
         stack.enter_context(_as_main(module, program))
-        random.seed(limits.program_seed)
+        stack.enter_context(shared_random(limits.program_seed))
         logs.LOG.source = module.__file__
         stack.callback(_finish)  # also where the program fails: what it logged until then is kept
         try:

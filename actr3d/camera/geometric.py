@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
@@ -20,14 +21,15 @@ from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.topology import geoms_of, topology_of
 from actr3d.camera.view import View
 from actr3d.errors import CameraError
+from actr3d.saying import warn_modeller
 
 
 class GeometricCamera:
     """Sees the edges of what is visible from one place of a MuJoCo model: exactly, and without pixels, names or meanings.
 
     Every geom is seen as MuJoCo's rays see it: not if its colour is fully transparent, planes from their front only, and
-    from inside a geom its inner sides. Flexes and skins are not seen. What is changed in `mj_model` (sizes, colours, heights,
-    poses) is seen at the next look; only what geoms there are, and of what type, is read once.
+    from inside a geom its inner sides. Flexes and skins are not seen, and a warning names them. What is changed in `mj_model`
+    (sizes, colours, heights, poses) is seen at the next look; only what geoms there are, and of what type, is read once.
 
     A camera is for one thread at a time.
     """
@@ -54,7 +56,9 @@ class GeometricCamera:
 
         Raises:
             CameraError: If there is no such eye, if `background` names no geom, or if a geom cannot be seen at all.
+            ModelWarning: (a warning) Names flexes and skins, which are not seen.
         """
+        _warn_of_unseen(mj_model)
         self.parameters = CameraParameters() if parameters is None else parameters
         self._mj_model = mj_model
         self._eye = _the_eye(mj_model, camera=camera, site=site, body=body)
@@ -63,7 +67,7 @@ class GeometricCamera:
         self._topology = topology_of(mj_model, self._objects, self.parameters.groups)
         self._scene = room_for_scene(self._topology, self.parameters.rows)
         most = MOST_PIECES_OF_A_PATCH * len(self._scene.patches) + len(self._topology.face_geom) + 1
-        self._row = room_for(most, self._scene.places)
+        self._row = room_for(most, self._scene.places, self._scene.reaches)
         self._optics = optics_of(self.parameters)
         self._labels = np.zeros(max(0, *self._objects, 0) + 1, np.int64)
         self._extents = np.zeros(16 * self.parameters.rows, EXTENT)
@@ -140,6 +144,13 @@ class GeometricCamera:
             name = names_of(self._mj_model, "geom")[-1 - count] or str(-1 - count)
             raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is no number; did the physics diverge?")
         return count
+
+
+def _warn_of_unseen(mj_model: MjModel) -> None:
+    kinds = (("flex", mj_model.nflex, mujoco.mjtObj.mjOBJ_FLEX), ("skin", mj_model.nskin, mujoco.mjtObj.mjOBJ_SKIN))
+    names = [f"{kind} '{mujoco.mj_id2name(mj_model, which, n) or n}'" for kind, count, which in kinds for n in range(int(count))]
+    if names:
+        warn_modeller(f"the Geometric Camera does not see {', '.join(names)}: give what should be seen a geom")
 
 
 def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:

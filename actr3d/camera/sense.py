@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from actr3d.world.body import Body
 
 
+USUAL = CameraParameters()
+"""What is looked with where no options are given."""
+
+
 class Sight:
     """A body's eye, looked through with one set of parameters: at most one look for each state of the world.
 
@@ -66,4 +70,4 @@ def view(body: Body, **options: Any) -> View:
         ConfigurationError: If an option is no field, or a value is not what it takes.
         CameraError: If something named as background is not there.
     """
-    return body.sense(Sight, CameraParameters.from_mapping(options)).look()
+    return body.sense(Sight, CameraParameters.from_mapping(options) if options else USUAL).look()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from math import radians
 
@@ -70,12 +71,18 @@ class Limbs:
         self.joints: dict[str, JointPlan] = {joint.name: joint for part in plan.parts for joint in part.joints}
         self.order = tuple(self.joints)
         """The joints in the order in which the body feels them."""
+        self.number = {joint: number for number, joint in enumerate(self.order)}
+        """By joint, its place there."""
+        self.shown_as = {name: f"{name}_{'angle' if joint.kind == 'hinge' else 'position'}" for name, joint in self.joints.items()}
+        """By joint, the motor module's attribute that shows where it is felt to be."""
         self.group_of: dict[str, str] = {joint.name: part.name for part in plan.parts for joint in part.joints}
         """By joint, the muscle group that moves it: that of its part."""
         self.walks = "walk" in plan.actuators
         moved = {part.name: None for part in plan.parts if any(joint.driven for joint in part.joints)}
         self.groups: tuple[str, ...] = tuple(dict.fromkeys([*([BASE_GROUP] if self.walks else []), *moved]))
         """All muscle groups."""
+        self.fastest = plan.fastest or (math.inf, math.inf, math.inf)
+        """How fast it can walk [m/s], turn [rad/s] and turn a joint [rad/s]."""
         self.felt: dict[str, float] = {}
         """By joint, where it is felt to be [rad] or [m]."""
         self.least: dict[str, float] = {}
@@ -84,10 +91,8 @@ class Limbs:
     def feel(self, joint: str, position: float) -> None:
         """Takes in where a joint is felt to be [rad] or [m]."""
         self.felt[joint] = position
-        if position < self.least.get(joint, position + 1):
-            self.least[joint] = position
-        if position > self.most.get(joint, position - 1):
-            self.most[joint] = position
+        self.least[joint] = min(position, self.least.get(joint, position))
+        self.most[joint] = max(position, self.most.get(joint, position))
 
     def freedom(self, joint: str) -> Freedom:
         """Returns a joint as it is known now.
@@ -148,6 +153,22 @@ class Limbs:
         if side is None and None in sides:
             return sides[None]
         return sides[known(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
+
+    def possible(self, call: str, speed: float, kind: int, unit: float) -> None:
+        """Checks that a speed is one that the body can have.
+
+        Args:
+            call: What is to have that speed.
+            speed: The speed [m/s] or [rad/s].
+            kind: Which of `fastest` it is compared with.
+            unit: What one unit in which people give it is inside.
+
+        Raises:
+            WorldError: If it is faster; says what would be possible.
+        """
+        most = self.fastest[kind]
+        if abs(speed) > most + TINY:
+            raise WorldError(f"{call}: speed: {self.plan.name} can do at most {most / unit:g} (got {speed / unit:g})")
 
     def inside(self, joint: str, position: float) -> bool:
         """Tells whether a position [rad] or [m] is within a joint's limits."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from math import copysign, radians
 from typing import Any
 
+from actr3d.actr.chunk import Chunk
 from actr3d.actr.parameters import named_parameters
 from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.limbs import BodyPart, Freedom, Limbs
@@ -27,16 +28,17 @@ class Motor(Muscles):
     Names that the body does not know, and values that are none, are errors.
 
     The body tells what it consists of in the first tick; what is commanded before begins 10 ms after the start. While
-    something moves, the body is felt at the end of each tick; else nothing is felt and nothing costs time.
+    something moves, the body is felt at the end of each tick, and a run that has no end goes on; else nothing costs time.
 
     Angles are degrees in commands, attributes and posture chunks, radians in `body` and `joint()`. Numbers may be text.
 
     Args:
         buffer: Where each posture goes that is stored; None for nowhere.
-        memory: The declarative memory that keeps postures; None for none.
+        memory: The declarative memory that keeps postures; None for none. (By the rules of ACT-R 7 a memory collects what leaves
+            buffers; there a buffer alone is enough.)
         speed: How fast joints and the whole body turn unless told otherwise [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (human-data).
-        angle_grid: What felt angles are rounded to [degrees].
+        angle_grid: What felt angles are rounded to [degrees]; this and the next two hold from when the body is known.
         size_grid: What felt lengths are rounded to [m].
         extreme_step: How much further than ever a joint has to go for its posture to be stored on the way [degrees]; None
             for never. Source: ours; about the ten samples to each side that the original took.
@@ -132,16 +134,17 @@ class Motor(Muscles):
         rate = radians(self._speed("turn", speed, by is not None))
         self._command(partial(self._turn, by, rate), "turn", angle=angle, speed=speed)
 
-    def stop(self, group: Any = None) -> None:
-        """Stops what a muscle group does, at once, or all of the body.
+    def stop(self, *groups: Any) -> None:
+        """Stops what some muscle groups do, at once, or all of the body.
 
         Raises:
             WorldError: If there is no such muscle group.
         """
-        self._command(partial(self._stop, group), "stop", group=group)
+        self._command(partial(self._stop, groups), "stop", groups=list(groups))
 
     def _walk(self, speed: float, place: str) -> None:
         self._need("walk")
+        self._known().possible("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
             self._halt(["walk"] if walk else [], place)
@@ -153,16 +156,16 @@ class Motor(Muscles):
 
     def _turn(self, angle: float | None, rate: float, place: str) -> None:
         self._need("walk")
+        self._known().possible("turn", rate, 1, radians(1))
         self._begin({"turn": Turn(angle, rate, place)})
 
-    def _stop(self, group: Any, place: str) -> None:
-        if group is None:
-            self._halt(list(self._under_way), place)
-            if "stop" in self._known().plan.actuators:
-                self._tell("stop", place=place)
-        else:
-            known(group, self._known().groups, self._known().plan.name, "muscle group")
-            self._halt([key for key, movement in self._under_way.items() if movement.group == group], place)
+    def _stop(self, groups: Sequence[Any], place: str) -> None:
+        plan = self._known().plan
+        for group in groups:
+            known(group, self._known().groups, plan.name, "muscle group")
+        self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], place)
+        if not groups and "stop" in plan.actuators:
+            self._tell("stop", place=place)
 
     def _need(self, word: str) -> None:
         """Checks that the body can do something.
@@ -183,14 +186,16 @@ class Motor(Muscles):
             joint: A joint, or a part and `axis`.
             axis: Of a part's joints, the one that turns about it: `yaw`, `pitch` or `roll`, or slides along `x`, `y` or `z`.
             angle: To which angle [degrees], or position of one that slides [m]; None until its limit, or until told to stop.
-            speed: How fast [degrees/s] or [m/s]; negative for towards smaller angles where there is no angle.
+            speed: How fast [degrees/s], negative for towards smaller angles where there is no angle; [m/s] where it slides, and
+                needed there.
 
         Raises:
             WorldError: If there is no such joint, it has no muscles, or a value is not what it should be.
         """
         pace = self._speed("rotate", speed, angle is not None)
+        usual = speed is None
         to = None if angle is None else number(angle, "rotate: angle")
-        self._command(partial(self._rotate, joint, axis, to, pace), "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
+        self._command(partial(self._rotate, joint, axis, to, pace, usual), "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
 
     def move(self, movement: Any, side: Any = None, angle: Any = None, speed: Any = None) -> None:
         """Makes a movement that the body has a name for.
@@ -224,6 +229,21 @@ class Motor(Muscles):
         """Lowers both arms to where they hang; see `move`."""
         self.move("lower_arms", None, None, speed)
 
+    def assume(self, posture: Any, speed: Any = None) -> None:
+        """Brings joints to where they are in a posture, such as one that was retrieved; other slots do not matter.
+
+        Args:
+            posture: A buffer that holds it, a chunk, a mapping, or text: joints with angles [degrees], or positions [m].
+            speed: How fast each joint moves [degrees/s] or [m/s].
+
+        Raises:
+            ChunkError: If it is no posture.
+            WorldError: If it names no joint of the body, or a value is not what it should be.
+        """
+        pace = self._speed("assume", speed, True)
+        wanted = Chunk(posture, self.sch.bound)
+        self._command(partial(self._assume, wanted, pace), "assume", posture=wanted, speed=speed)
+
     def feel(self, name: str = "felt") -> None:
         """Feels the body at the end of this tick, and stores that posture under a name."""
         self._command(partial(self._want, name), "feel", name=name)
@@ -232,37 +252,50 @@ class Motor(Muscles):
         self._wanted.append(str(name))
         self._ask()
 
-    def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, place: str) -> None:
-        name = self._known().joint(joint, axis)
-        self._turn_joints(name, {name: 1.0}, to, pace, place)
+    def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, place: str) -> None:
+        limbs = self._known()
+        name = limbs.joint(joint, axis)
+        if usual and limbs.joints[name].kind == "slide":
+            raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; say how fast [m/s]: rotate('{name}', speed=…)")
+        target = limbs.limit(name, pace) if to is None else to * limbs.unit(name)
+        self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, place)
 
     def _move(self, movement: Any, side: Any, to: float | None, pace: float, place: str) -> None:
-        named = self._known().movement(movement, side)
-        name = movement if named.side is None else f"{movement}_{named.side}"
-        if named.to is not None:
-            if to is not None or pace < 0:
-                raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed above 0")
-            to = named.to / radians(1)
-        self._turn_joints(name, dict(named.joints), to, pace, place)
-
-    def _turn_joints(self, name: str, joints: Mapping[str, float], to: float | None, pace: float, place: str) -> None:
-        """Turns joints, each in its own way, together: one movement for each muscle group."""
         limbs = self._known()
-        ways: dict[str, dict[str, float]] = {}
-        for joint, way in joints.items():
+        named = limbs.movement(movement, side)
+        if named.to is not None and (to is not None or pace < 0):
+            raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed above 0")
+        ways: dict[str, float] = {}
+        for joint, way in named.joints:
+            limit = limbs.limit(joint, way * pace)
+            end = copysign(INFINITE, way * pace) if limit is None else limit
+            ways[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit(joint)
+        name = movement if named.side is None else f"{movement}_{named.side}"
+        self._turn_joints(name, ways, pace, to is None and named.to is None, place)
+
+    def _assume(self, posture: Chunk, pace: float, place: str) -> None:
+        limbs = self._known()
+        ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit(joint) for joint in limbs.order if joint in posture}
+        if not ways:
+            raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
+        self._turn_joints("assume", ways, pace, False, place)
+
+    def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, to_limit: bool, place: str) -> None:
+        """Turns joints to positions [rad] or [m], together: one movement for each muscle group."""
+        limbs = self._known()
+        by_group: dict[str, dict[str, float]] = {}
+        for joint, target in ways.items():
             if not limbs.joints[joint].driven:
                 raise WorldError(f"{limbs.plan.name}: joint '{joint}' has no muscles that could move it")
-            target = limbs.limit(joint, way * pace) if to is None else way * to * limbs.unit(joint)
-            if target is None:
-                target = copysign(INFINITE, way * pace)
-            elif not limbs.inside(joint, target):
+            limbs.possible(name, pace * limbs.unit(joint), 2, limbs.unit(joint))
+            if abs(target) < INFINITE and not limbs.inside(joint, target):
                 self._refuse(name, "limit")
                 return
-            ways.setdefault(limbs.group_of[joint], {})[joint] = target
-        speed = abs(pace) * limbs.unit(next(iter(joints)))
-        movements: dict[str, Movement] = {
-            group: JointMovement(name, group, speed, place, ways=targets, to_limit=to is None) for group, targets in ways.items()
-        }
+            by_group.setdefault(limbs.group_of[joint], {})[joint] = target
+        movements: dict[str, Movement] = {}
+        for group, targets in by_group.items():
+            speed = abs(pace) * limbs.unit(next(iter(targets)))
+            movements[group] = JointMovement(name, group, speed, place, ways=targets, order=limbs.order, to_limit=to_limit)
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from actr3d.motor.limbs import BASE_GROUP
 from actr3d.world.sensors.motion import AT_LIMIT
@@ -17,21 +16,21 @@ about a tenth, and legs that something touches take some 0.2 s to get going. Our
 FASTER = 1.2
 """How many times more than before is more. Ours."""
 
+INFINITE = float("inf")
+
 Order = tuple[str, tuple[Any, ...], Mapping[str, Any]]
 """What the body is told: a word, its values, and more by name."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Step:
+class Step(NamedTuple):
     """What has happened since the body was last felt."""
 
     duration: float
     """How long that is [s]."""
-    before: Mapping[str, float]
-    """Where each joint was [rad] or [m]."""
-    now: Mapping[str, float]
-    """Where it is."""
+    before: tuple[float, ...]
+    """Where the joints were, in the order of the body [rad] or [m]."""
     reading: Proprioception
+    """How the body stands now."""
 
 
 class Movement:
@@ -75,7 +74,9 @@ class Movement:
             return None
         slow = self._gone < HELD * self.pace * self._time and self._gone <= FASTER * self._before
         self._before, self._gone, self._time = self._gone, 0.0, 0.0
-        return "blocked" if slow else None
+        if not slow:
+            return None
+        return "done" if self._rest(step) <= self.pace * step.duration else "blocked"
 
     def told(self) -> dict[str, Any]:
         """Returns what a trace keeps of it."""
@@ -89,6 +90,10 @@ class Movement:
         """Returns how far it has come in a step [rad] or [m]."""
         raise NotImplementedError
 
+    def _rest(self, step: Step) -> float:
+        """Returns how far it still has to go [rad] or [m]; who is as near as a tick's way, and weak, is there."""
+        return INFINITE
+
 
 class JointMovement(Movement):
     """Turns joints of one part.
@@ -99,13 +104,17 @@ class JointMovement(Movement):
         pace: How fast [rad/s] or [m/s].
         place: `file:line` where it was asked for.
         ways: By joint, where it goes [rad] or [m]; infinite where there is no end.
+        order: The joints of the body in its order.
         to_limit: Whether it was to go on until its limit.
     """
 
-    def __init__(self, name: str, group: str, pace: float, place: str, *, ways: Mapping[str, float], to_limit: bool) -> None:
+    def __init__(
+        self, name: str, group: str, pace: float, place: str, *, ways: Mapping[str, float], order: Sequence[str], to_limit: bool
+    ) -> None:
         super().__init__(name, group, pace, place)
         self.ways = ways
         self.to_limit = to_limit
+        self._number = {joint: order.index(joint) for joint in ways}
         self._left = set(ways)
 
     def begin(self) -> Iterable[Order]:
@@ -130,15 +139,16 @@ class JointMovement(Movement):
         self._left.intersection_update(step.reading.moving)
         if self._left:
             return None
-        if any(abs(step.now[joint] - target) > AT_LIMIT for joint, target in self.ways.items()):
+        if any(abs(step.reading.positions[self._number[joint]] - target) > AT_LIMIT for joint, target in self.ways.items()):
             return "stopped"  # by someone else, such as the user
         return "limit" if self.to_limit else "done"
 
     def _way(self, step: Step) -> float:
-        return max(abs(step.now[joint] - step.before[joint]) for joint in self._left)
+        before, now = step.before, step.reading.positions
+        return max([abs(now[n] - before[n]) for n in (self._number[joint] for joint in self._left)])
 
-
-INFINITE = float("inf")
+    def _rest(self, step: Step) -> float:
+        return max(abs(step.reading.positions[self._number[joint]] - self.ways[joint]) for joint in self._left)
 
 
 class Walk(Movement):
@@ -155,7 +165,7 @@ class Walk(Movement):
         return {"movement": self.name, "group": self.group, "speed": self.speed}
 
     def _arrived(self, step: Step) -> str | None:
-        return None
+        return None if step.reading.walking else "stopped"
 
     def _way(self, step: Step) -> float:
         return step.reading.speed[0] * step.duration * (1 if self.speed > 0 else -1)
@@ -178,7 +188,7 @@ class Turn(Movement):
 
     def _arrived(self, step: Step) -> str | None:
         if self.rest is None:
-            return None
+            return None if step.reading.walking else "stopped"
         before, self.rest = self.rest, step.reading.turning
         if self.rest:
             return None

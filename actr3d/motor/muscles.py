@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from actr3d.actr.chunk import Chunk
@@ -11,6 +11,7 @@ from actr3d.actr.modules.port import Port, Request, place_of_caller
 from actr3d.actr.parameters import WithParameters
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
+from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, Limbs
 from actr3d.motor.movement import JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import BodySchema
@@ -48,6 +49,7 @@ class Muscles(WithParameters, Port):
         self._ended: list[tuple[Movement, str]] = []
         self._asked = False
         self._wanted: list[str] = []
+        self._further: str | None = None
         self._positions: tuple[float, ...] = ()
         self._felt_us = 0
         self.busy = False
@@ -87,8 +89,8 @@ class Muscles(WithParameters, Port):
 
     def _command(self, act: Callable[[str], None], call: str, **given: Any) -> None:
         """Carries out a command, or keeps it until the body is known."""
+        self._joined(call)
         self._trace_request(call, **given)
-        self._joined()
         if self._schema is None:
             self._waiting.append((act, place_of_caller()))
             self._become("busy", True)
@@ -181,65 +183,65 @@ class Muscles(WithParameters, Port):
         """Takes in how the body stands, which movements are over, and which postures are to be remembered."""
         limbs = self._limbs
         assert limbs is not None
-        step = self._step(limbs, reading)
+        before, self._positions = self._positions or reading.positions, reading.positions
+        now = self.sch.now_us
+        step = Step(seconds(now - self._felt_us), before, reading)
+        self._felt_us = now
+        if self._schema is None:
+            self._update(limbs, reading, limbs.order)
+            check_patterns(self)
+        elif before != reading.positions:
+            gone = [joint for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at]
+            self._update(limbs, reading, gone)
         over: list[tuple[str, str]] = []
         for key, movement in self._under_way.items():
             end = movement.ended(step, self.patience) if movement.begun else None
             if end is not None:
                 over.append((key, end))
         ended = [(self._under_way.pop(key), end) for key, end in over if end in ("done", "limit")]
-        self._end(ended)
-        for key, end in over:
-            if key in self._under_way:
-                self._halt([key], self._under_way[key].place, end)
+        if over:
+            self._end(ended)
+            for key in [key for key, _ in over if key in self._under_way]:
+                self._halt([key], self._under_way[key].place, dict(over)[key])
         self._remember(limbs, ended)
         if any(movement.begun for movement in self._under_way.values()):
             self._ask()
 
-    def _step(self, limbs: Limbs, reading: Proprioception) -> Step:
-        """Brings what is known of the body into step with it, and returns what has happened."""
-        before, self._positions = self._positions, reading.positions
-        for n, joint in enumerate(limbs.order):
-            position = reading.positions[n]
-            if not before or position != before[n]:
-                noise = self.random.gauss(0, self.angle_noise * limbs.unit(joint)) if self.angle_noise else 0.0
-                limbs.feel(joint, position + noise)
-        if self._schema is None:
-            self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
-        for n, joint in enumerate(limbs.order):
-            if not before or reading.positions[n] != before[n]:
-                unit = "angle" if limbs.joints[joint].kind == "hinge" else "position"
-                self._become(f"{joint}_{unit}", self._schema.shown(joint, limbs.felt[joint]))
-        if before != reading.positions:
-            for name in ("width", "depth", "height"):
-                noise = self.random.gauss(0, self.size_noise) if self.size_noise else 0.0
-                self._become(name, self._schema.size(getattr(reading, name) + noise))
-        now = self.sch.now_us
-        duration, self._felt_us = seconds(now - self._felt_us), now
-        order = limbs.order
-        return Step(
-            duration=duration,
-            before=dict(zip(order, before or reading.positions, strict=True)),
-            now=dict(zip(order, reading.positions, strict=True)),
-            reading=reading,
-        )
+    def _update(self, limbs: Limbs, reading: Proprioception, joints: Sequence[str]) -> None:
+        """Brings what is known of some joints, and of the body's size, into step with the body."""
+        draw = self.random.gauss
+        for joint in joints:
+            noise = draw(0, self.angle_noise * limbs.unit(joint)) if self.angle_noise else 0.0
+            limbs.feel(joint, reading.positions[limbs.number[joint]] + noise)
+        schema = self._schema
+        if schema is None:
+            schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
+        for joint in joints:
+            self._become(limbs.shown_as[joint], schema.shown(joint, limbs.felt[joint]))
+        for name in ("width", "depth", "height"):
+            noise = draw(0, self.size_noise) if self.size_noise else 0.0
+            self._become(name, schema.size(getattr(reading, name) + noise))
+        further = schema.extremes(joints)
+        if further:
+            schema.note(further)
+            self._further = further[0]
 
     def _remember(self, limbs: Limbs, ended: list[tuple[Movement, str]]) -> None:
         """Stores the posture where movements have ended, where a joint has gone further than ever, and where it was asked for."""
-        schema = self._schema
-        assert schema is not None
-        ended, self._ended = [*self._ended, *ended], []
+        if self._ended:
+            ended, self._ended = [*self._ended, *ended], []
+        if self._further is not None:
+            passing = self._under_way.get(limbs.group_of[self._further])
+            if passing is not None:  # else it has just ended, or was pushed
+                self._store(passing.name, "passing", self._further)
+            self._further = None
         for movement, end in ended:
             if isinstance(movement, JointMovement):
                 self._store(movement.name, end, next(joint for joint in limbs.order if joint in movement.ways))
-        further = schema.extremes()
-        if further:
-            schema.note(further)
-            group = limbs.group_of[further[0]]
-            self._store(self._under_way[group].name if group in self._under_way else "moved", "passing", further[0])
-        wanted, self._wanted = self._wanted, []
-        for name in wanted:
-            self._store(name, "felt", None)
+        if self._wanted:
+            wanted, self._wanted = self._wanted, []
+            for name in wanted:
+                self._store(name, "felt", None)
         if self._waiting:
             self._catch_up()
 

@@ -68,13 +68,14 @@ class BodySchema:
         limbs = self._limbs
         return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit(joint)
 
-    def extremes(self) -> tuple[str, ...]:
-        """Returns the joints that have gone further by a step than in any posture so far."""
+    def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
+        """Returns those of some joints that have gone further by a step than in any posture so far."""
         if self._step is None:
             return ()
         limbs = self._limbs
         further: list[str] = []
-        for joint, at in limbs.felt.items():
+        for joint in joints:
+            at = limbs.felt[joint]
             step = self._step * limbs.unit(joint)
             if at >= self._most[joint] + step or at <= self._least[joint] - step:
                 further.append(joint)

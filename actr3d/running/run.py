@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import random
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.reading import read_source
+from actr3d.actr.shared_random import shared_random
 from actr3d.actr.sources import syntax_tree
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SettingError
@@ -74,8 +74,7 @@ def run_model(
 def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | Mapping[str, Any], record: Path | str | None) -> Any:
     from actr3d.running.building import Blueprint  # a program does without the world that this loads
 
-    with limits, suppress(EndOfRun), BuiltOutput(limits) as output:
-        random.seed(limits.program_seed)
+    with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
         blueprint = Blueprint(source, str(path), path.parent)
         simulation, parameters = blueprint.build(settings(blueprint.fields) if callable(settings) else settings)
         output.lead_to(simulation)
@@ -89,7 +88,6 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | 
         facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
         with simulation.record(record, **facts, program_seed=limits.program_seed) as recording:
             report = simulation.run(end)
-            output.finish()
             result = simulation.conclude()
             recording.fact("ended", {"by": report.ended_by})
             return result
@@ -105,6 +103,7 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
     facts = {"kind": "program", "file": str(path), "sources": {str(path): source}, "seed": limits.seed, "until": limits.until}
     with Recording(record, facts) as recording:
+        limits.recorder = recording
         limits.trace.listen(recording.event_alone)
         with ProgramOutput(limits) as output:
             run_text(source, str(path), limits=limits, folder=path.parent)

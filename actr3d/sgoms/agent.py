@@ -117,7 +117,7 @@ class SGOMS(Control):
         """Clears what the planning unit is about."""
         for buffer in (self.b_operator, self.b_method, self.b_unit_task):
             if buffer.chunk is not None:
-                buffer.clear()
+                Buffer.clear(buffer)
 
     def _interrupt(self, response: str) -> None:
         """Saves the place, where there is one to go back to, and begins the response."""

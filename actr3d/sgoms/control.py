@@ -41,7 +41,7 @@ class Control(ACTR):
     # -- ordered planning units
 
     def sgoms_begin(b_plan_unit: Any = "planning_unit:?unit type:ordered cue:?cue unit_task:?task state:begin", DM: Any = "busy:False"):
-        """Asks memory for the first unit task."""
+        """Asks memory for the first unit task, or again for the one after the present."""
         DM.request("planning_unit:?unit cuelag:?cue cue:?task")
         self._clear_below()
         b_plan_unit.modify(state="retrieving")

@@ -111,7 +111,7 @@ class PlanUnitLevel(Level):
 
     `set("planning_unit:tea")` begins one; what is not said is filled in. States: «begin»; «retrieving» or «choosing» the
     next unit task; «running»; «finished»; «resuming» what it has interrupted; «lost», where `lost` says what memory did
-    not find: «unit_task» or «place».
+    not find: «unit_task» or «place». The state «begin» then lets it ask for the unit task again, «finished» for the place.
     """
 
     _slots = frozenset({"planning_unit", "type", "cuelag", "cue", "unit_task", "state", "interrupted", "place", "lost", "saved"})
@@ -150,6 +150,8 @@ class PlanUnitLevel(Level):
             if "planning_unit" in args:
                 self._agent()._unit(as_text(args["planning_unit"]), "b_plan_unit")
             self._check({**self.chunk, **args})
+            if args.get("state", "lost") != "lost" and self.chunk["lost"] != "none":
+                args["lost"] = "none"
         super().modify(**args)
 
     def _check(self, slots: Any) -> None:
@@ -199,6 +201,21 @@ class UnitTaskLevel(Level):
             self._agent()._check_unit_task(as_text(args["unit_task"]))
         self._check_state(args.get("state", START))
         super().modify(**args)
+
+    def clear(self) -> None:
+        """Empties the buffer.
+
+        Raises:
+            PlanError: If the planning unit is waiting for the end of the unit task, which would never come.
+        """
+        agent = self._agent()
+        plan: dict[Any, Any] = {} if agent is None else agent.b_plan_unit.chunk or {}
+        if self.chunk and plan.get("state") == "running":
+            raise PlanError(
+                f"b_unit_task: '{self.chunk['unit_task']}' is cleared, and nothing would come after it; "
+                f"it ends with b_unit_task.modify(state='{END}')"
+            )
+        super().clear()
 
     def _check_state(self, state: object) -> None:
         if is_slip(as_text(state), END):

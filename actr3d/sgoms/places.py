@@ -26,8 +26,8 @@ def place_of(agent: Any, plan: Chunk, number: str, *, whole: bool) -> dict[Any, 
     """
     chunks: dict[str, dict[Any, Any]] = {"plan": dict(plan)}
     task = agent.b_unit_task.chunk
-    if plan["state"] == "retrieving":  # the answer will not be waited for; it is asked for again
-        chunks["plan"]["state"] = "begin" if plan["unit_task"] == START else "running"
+    if plan["state"] == "retrieving":
+        chunks["plan"]["state"] = "begin"  # the answer will not be waited for; it is asked for again
     if task is not None and task["state"] == END:
         chunks["task"] = dict(task)
     elif task is not None and whole:

@@ -47,7 +47,9 @@ class Lockstep:
         self._period = seconds(period)
         self.trace = journal.begin()
         """Its trace; None where nothing is traced."""
-        self.minds = Minds(factories, bodies, seed, self.trace)
+        self._voice = journal.voice
+        with self._voice:
+            self.minds = Minds(factories, bodies, seed, self.trace)
         self.ticks = 0
         """How many whole ticks it has gone."""
         self.commands = 0
@@ -70,7 +72,8 @@ class Lockstep:
         """
         self._expect("ready", "tick")
         self._phase = "failed"
-        self.minds.run(self._period, (self.ticks + 1) * self._period_us)
+        with self._voice:
+            self.minds.run(self._period, (self.ticks + 1) * self._period_us)
         self._phase = "ticked"
 
     def tock(self) -> tuple[Any, ...]:
@@ -124,7 +127,7 @@ class Lockstep:
     def _answer(self, questions: Sequence[Request], answers: Sequence[Any]) -> None:
         for request, answer in zip(questions, answers, strict=True):
             self.minds.take(request, answer)
-        self._journal.answers(questions, answers)
+        self._journal.answers(self.ticks + 1, questions, answers)
 
     def _expect(self, phase: str, what: str) -> None:
         if self._phase == phase:

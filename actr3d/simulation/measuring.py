@@ -10,7 +10,7 @@ from actr3d.world import World
 class Measure(Protocol):
     """Looks at every physics step of a run, and says in the end what came of it. It changes nothing.
 
-    Where a run goes back, steps come again: what was kept of a step is then replaced, and what lies after the present
+    Where a run goes back, times come again: what was kept of a time is then replaced, and what lies after the present
     does not count.
     """
 
@@ -22,19 +22,14 @@ class Measure(Protocol):
         """
         ...
 
-    def look(self, step: int) -> None:
-        """Looks at the world after a physics step.
-
-        Args:
-            step: The number of the step, from 0. The geometry, contacts and forces of `mj_data` are those of its beginning.
-        """
+    def look(self) -> None:
+        """Looks at the world after a physics step, or a part of one; see `World.watchers`."""
         ...
 
-    def result(self, steps: int, *, over: bool) -> Any:
-        """Returns what has been measured, a frozen dataclass of plain values; `str` of it is for people.
+    def result(self, *, over: bool) -> Any:
+        """Returns what has been measured up to now, a frozen dataclass of plain values; `str` of it is for people.
 
         Args:
-            steps: How many steps lie behind.
             over: Whether the minds have brought the run to its end; otherwise it was cut short, or goes on.
         """
         ...

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
@@ -10,6 +9,7 @@ from actr3d.actr.chunk import LASTING_TYPES
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.model import Model
 from actr3d.actr.modules.port import Embodiment, Request
+from actr3d.actr.shared_random import seed_shared
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.trace import Trace
@@ -31,7 +31,7 @@ class Minds:
     Args:
         factories: By name, what makes each mind.
         bodies: The names of those minds that have bodies.
-        seed: What all random choices come from, those of the module `random` included.
+        seed: What all random choices come from, those of `random` and `numpy.random` included.
         trace: Where events go.
 
     Raises:
@@ -43,7 +43,7 @@ class Minds:
         self.stopped = False
         """Whether a mind asked in the last tick for the end of the run."""
         outer = RunLimits.current()
-        random.seed(seed)
+        seed_shared(seed)
         with RunLimits(seed=seed):
             self.environment = Environment()
             for name, factory in factories.items():

@@ -14,7 +14,7 @@ class Onlookers:
     """Shows the present to all observers, who cannot change anything meanwhile.
 
     Args:
-        random: The module `random` as the minds have it, which observers are to leave as it is.
+        random: The random numbers as the minds have them, which observers are to leave as they are.
     """
 
     def __init__(self, random: GlobalRandom) -> None:

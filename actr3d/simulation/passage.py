@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -12,10 +13,12 @@ import numpy as np
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world import World
 from actr3d.world.parts import Aperture
-from actr3d.world.sensors.touch import felt
+from actr3d.world.sensors.touch import last_felt
 
 SET_OUT = 0.05
 """Who has come as far as this from the start [m] has set out. Ours."""
+TINY = 1e-9
+"""Less than any physics step [s]."""
 TURNED = math.radians(1)
 """A turn begins where the shoulder line is turned as far as this [rad]. Ours."""
 
@@ -67,8 +70,10 @@ class PassageResult:
 
 
 class _Sample(NamedTuple):
-    """One physics step on the way."""
+    """The beginning of a physics step on the way."""
 
+    time: float
+    """[s]"""
     before: float
     """How far the axis is before the wall [m]."""
     angle: float
@@ -91,7 +96,8 @@ class Passage:
 
     def __init__(self, body: str, aperture: str = "aperture") -> None:
         self._names = body, aperture
-        self._samples: dict[int, _Sample] = {}
+        self._times: list[float] = []
+        self._samples: list[_Sample] = []
 
     def begin(self, world: World) -> None:
         """Finds body and aperture.
@@ -121,26 +127,38 @@ class Passage:
         self._start = x, y
         self._reach = 2.0 + wall.thickness
 
-    def look(self, step: int) -> None:
-        """Keeps what is to be known of a physics step, once the body has set out."""
+    def look(self) -> None:
+        """Keeps what is to be known of a physics step, once the body has set out; in place of what was kept of that time before."""
         data = self._world.mj_data
+        end, ago = float(data.time), float(self._world.mj_model.opt.timestep)
         x, y, _ = data.xpos[self._body.root].tolist()
-        if math.dist((x, y), self._start) < SET_OUT:
-            self._samples.pop(step, None)
-            return
+        new = [] if math.dist((x, y), self._start) < SET_OUT else [self._sample(x, y, end - ago, ago)]
+        place = slice(bisect_right(self._times, end - ago + TINY), bisect_right(self._times, end + TINY))
+        self._times[place] = [end] * len(new)
+        self._samples[place] = new
+
+    def _sample(self, x: float, y: float, time: float, ago: float) -> _Sample:
+        """Returns what is to be known of a moment.
+
+        Args:
+            x: Where the body's axis is [m].
+            y: The same.
+            time: When [s].
+            ago: How much further the joints have gone already [s].
+        """
+        data = self._world.mj_data
         forward, left = self._ahead
         before = (self._wall.position[0] - x) * forward + (self._wall.position[1] - y) * left
         (x1, y1, _), (x2, y2, _) = (data.geom_xpos[geom].tolist() for geom in self._shoulders)
         dx, dy = x1 - x2, y1 - y2
         angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
         # The integrator has moved the joints on from the geometry, with these speeds.
-        ago = self._world.scene.timestep
         logged = sum(share * float(data.qpos[q] - ago * data.qvel[v]) for q, v, share in self._hinges)
-        touches = felt(self._body)
+        touches = last_felt(self._body)
         force = max((touch.force for touch in touches), default=0.0)
         pairs = frozenset((touch.part, touch.other) for touch in touches)
         room = self._room() if abs(before) < self._reach else None
-        self._samples[step] = _Sample(before, angle, logged, room, pairs, force)
+        return _Sample(time, before, angle, logged, room, pairs, force)
 
     def _room(self) -> tuple[float, float] | None:
         """Returns the smallest distances of the body to the segments [m]; None where nothing of it is between their faces."""
@@ -174,33 +192,33 @@ class Passage:
         box = self._body.extent.box(np.array([x, y, 0.0]), np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), held)
         return box.lower[0], box.upper[0]
 
-    def result(self, steps: int, *, over: bool) -> PassageResult:
-        """Returns what has been measured of the first `steps` physics steps."""
-        samples = [(step, sample) for step, sample in sorted(self._samples.items()) if step < steps]
-        timestep = self._world.scene.timestep
-        at_wall = next(((step, sample) for step, sample in samples if sample.before <= 0), None)
-        onset = next(((step, sample) for step, sample in samples if sample.angle >= TURNED), None)
-        rooms = [sample.room for _, sample in samples if sample.room is not None]
+    def result(self, *, over: bool) -> PassageResult:
+        """Returns what has been measured up to now."""
+        now = float(self._world.mj_data.time)
+        samples = self._samples[: bisect_right(self._times, now + TINY)]
+        at_wall = next((sample for sample in samples if sample.before <= 0), None)
+        onset = next((sample for sample in samples if sample.angle >= TURNED), None)
+        rooms = [sample.room for sample in samples if sample.room is not None]
         touches, before = 0, frozenset[tuple[str, str]]()
-        for _, sample in samples:
+        for sample in samples:
             touches += len(sample.touches - before)
             before = sample.touches
         last = at_wall or (samples[-1] if samples else None)
-        way = samples[0][1].before - last[1].before if last is not None else 0.0
-        walked = (last[0] - samples[0][0]) * timestep if last is not None else 0.0
+        way = samples[0].before - last.before if last is not None else 0.0
+        walked = last.time - samples[0].time if last is not None else 0.0
         return PassageResult(
-            outcome=_outcome(samples[-1][1] if samples else None, over),
-            peak_angle_deg=_degrees(max(sample.angle for _, sample in samples)) if samples else None,
-            wall_angle_deg=_degrees(at_wall[1].angle) if at_wall else None,
-            logged_angle_deg=_degrees(abs(at_wall[1].logged)) if at_wall else None,
-            onset_distance_m=round(onset[1].before, 4) if onset else None,
-            onset_time_s=round(onset[0] * timestep, 3) if onset else None,
+            outcome=_outcome(samples[-1] if samples else None, over),
+            peak_angle_deg=_degrees(max(sample.angle for sample in samples)) if samples else None,
+            wall_angle_deg=_degrees(at_wall.angle) if at_wall else None,
+            logged_angle_deg=_degrees(abs(at_wall.logged)) if at_wall else None,
+            onset_distance_m=round(onset.before, 4) if onset else None,
+            onset_time_s=round(onset.time, 3) if onset else None,
             contacts=touches,
-            max_force_n=round(max((sample.force for _, sample in samples), default=0.0), 1),
+            max_force_n=round(max((sample.force for sample in samples), default=0.0), 1),
             clearance_left_m=round(min(left for left, _ in rooms), 4) if rooms else None,
             clearance_right_m=round(min(right for _, right in rooms), 4) if rooms else None,
             speed_m_s=round(way / walked, 3) if walked else None,
-            time_s=round(steps * timestep, 3),
+            time_s=round(now, 3),
         )
 
 

@@ -74,7 +74,7 @@ class Simulation:
         self._period = self._steps * self.world.scene.timestep_us
         self._journal = Journal(trace)
         if limits is not None and limits.trace is not None:
-            self._journal.tell_program(limits.trace)
+            self._journal.tell_program(limits.trace, limits.recorder)
         self._course = Course(self.world, self._begin, self._journal)
         self._random = GlobalRandom()
         self._onlookers = Onlookers(self._random)
@@ -275,7 +275,7 @@ class Simulation:
         if self._measure is None:
             return None
         minds = self._course.lockstep.minds
-        return self._measure.result(self.world.steps, over=minds.stopped or minds.done)
+        return self._measure.result(over=minds.stopped or minds.done)
 
     def conclude(self) -> Any:
         """Returns the result, and tells the trace of it: the run is not to go on."""
@@ -311,11 +311,15 @@ class Simulation:
         """
         if self._course.begun:
             raise SimulationError("a recording holds a run from its start on, and this one has begun already")
-        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
         sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
         recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
         self._journal.record(recording)
+        recording.ending = self._end_recording
         return recording
+
+    def _end_recording(self) -> None:
+        self._journal.end_recording(whole=self._course.begun and not self._course.lockstep.broken)
 
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.ticks)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from actr3d.camera import View
@@ -55,6 +56,15 @@ class Looks:
         found, before = self._now.features(query), self._before
         if before is None or self._now.time - before.time > RECENT:
             return found
-        known = {feature.key: feature for feature in reversed(before.features(query))}
+        known: dict[Any, list[Feature]] = {}
+        for feature in before.features(query):
+            known.setdefault(feature.key, []).append(feature)
         elapsed = seconds(self._now.time - before.time)
-        return tuple(feature if (old := known.get(feature.key)) is None else feature.since(old, elapsed) for feature in found)
+        return tuple(_since(feature, known.get(feature.key, ()), elapsed) for feature in found)
+
+
+def _since(feature: Feature, before: Sequence[Feature], elapsed: float) -> Feature:
+    """Returns a feature with what is known from the look before; of several that may be it (windows in one wall), the nearest."""
+    if not before:
+        return feature
+    return feature.since(min(before, key=lambda old: abs(old.direction - feature.direction)), elapsed)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from actr3d.actr.answers import plain_answer
-from actr3d.actr.modules.port import Port, Request, place_of_caller
+from actr3d.actr.modules.port import Request, place_of_caller
 from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.actr.searches import Searching, outcome_of
 from actr3d.camera import View
 from actr3d.clock import MICROSECONDS
 from actr3d.vision.detectors import DETECTORS
@@ -23,7 +25,7 @@ BITS = 64
 """Of the seed of a look's noise."""
 
 
-class Vision(WithParameters, Port):
+class Vision(WithParameters, Searching):
     """Looks for features with a body's eye, and brings one of those it notices to a buffer, as a chunk.
 
     The view is private: a mind gets features only, with opaque labels and no names. A request is answered from what is visible at
@@ -104,7 +106,7 @@ class Vision(WithParameters, Port):
         self._bottom_up: Search | None = None
         self._waiting: Search | None = None
         self._brought: tuple[Any, int] = (None, 0)
-        self._last: Search | None = None
+        self._last: dict[bool, Search] = {}
 
     # -- what it is asked
 
@@ -112,7 +114,7 @@ class Vision(WithParameters, Port):
         """Looks for a feature: `request('feature:opening', width='>?w', height='>1.5')`.
 
         A slot takes comparisons (`'>0.5'`, `'<2'`, `'>=?w <3'`), labels take `'?l'` or `'!?l'`. A bare number is the least of a
-        size, and the most of a distance or time. Angles are in degrees.
+        size, and the most of a distance or time. Angles are in degrees. All that is asked must hold.
 
         Args:
             pattern: The feature, and slots if one likes: `'feature:opening height:1.5'`.
@@ -125,8 +127,9 @@ class Vision(WithParameters, Port):
         Raises:
             VisionError: If there is no such feature or slot, or a value is not what it takes.
             ChunkError: If a variable is not bound.
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
+        self._joined("view")
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
         trace = self.sch.trace
         if trace is not None and trace.all:
@@ -157,7 +160,7 @@ class Vision(WithParameters, Port):
         Raises:
             SimulationError: If the agent has no body.
         """
-        self._tell_of("gaze", math.radians(left), math.radians(up))
+        self._tell("gaze", math.radians(left), math.radians(up))
 
     def _ask_bottom_up(self, query: Query) -> Search:
         """Begins a bottom-up search, or lets it wait; it takes the place of an earlier one."""
@@ -176,7 +179,7 @@ class Vision(WithParameters, Port):
 
     def _begin(self, search: Search, delay: float) -> Search:
         """Asks the body for a view, which it answers at the end of the present tick."""
-        embodiment = self._joined()
+        embodiment = self._joined("view")
         if self.delay_sd is not None:
             delay = max(0.0, self.random.gauss(delay, self.delay_sd))
         search.begun = self.sch.now_us
@@ -207,7 +210,8 @@ class Vision(WithParameters, Port):
         else:
             search.sift(self._looks.features(search.query), self._saliences[search.query.detector.name])
             search.choose(self.rule, self.random)
-        self.__dict__["_last"] = search
+        search.seen = sch.now_us
+        self._last[search.bottom_up] = search
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "search", search.to_data())
         if search.feature is not None and not search.bottom_up:
@@ -241,12 +245,7 @@ class Vision(WithParameters, Port):
     def _turn_eye(self, search: Search, begun: int, left: float, up: float) -> None:
         """Turns the eye to what a search has found, unless another one has taken its place."""
         if search is self._top_down and search.begun == begun:
-            self._tell_of("saccade", left, up)
-
-    def _tell_of(self, word: str, *values: float) -> None:
-        embodiment = self._joined()
-        self._trace_request(word, left=values[0], up=values[1])
-        embodiment.outbox.append(Request(embodiment.body, word, values, {}, place_of_caller(), self))
+            self._tell("saccade", left, up)
 
     # -- what comes of it
 
@@ -282,11 +281,14 @@ class Vision(WithParameters, Port):
             self._brought = (self._buffer.chunk, self.sch.now_us)
         elif slots is not None and not held:
             self._buffer.set(slots)
+        data = {"bottom_up": search.bottom_up, "failed": slots is None, **({"held": True} if held else {})}
+        search.outcome = outcome_of(data)
         trace = self.sch.trace
         if trace is not None and trace.all:
-            found = {} if slots is None else {"chunk": slots}
-            data = {"bottom_up": search.bottom_up, "failed": slots is None, **found, **({"held": True} if held else {})}
-            trace.emit(self.sch.now_us, self._path, "sight", data)
+            trace.emit(self.sch.now_us, self._path, "sight", data if slots is None else {**data, "chunk": slots})
+
+    def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:
+        return [(search.seen, search.to_data(), search.outcome) for _, search in sorted(self._last.items())]
 
     def _is_held(self) -> bool:
         """Tells whether the buffer has what a top-down request has just brought."""

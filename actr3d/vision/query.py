@@ -12,7 +12,7 @@ from actr3d.actr.chunk import as_text, parse_slots, variable_value
 from actr3d.errors import VisionError, did_you_mean
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.feature import Feature, slot_names
-from actr3d.vision.units import LABEL, units_of
+from actr3d.vision.units import LABEL, PLAIN, units_of
 
 _PIECE = re.compile(r"(>=|<=|>|<|!)?(\?\w+|[\w.+-]+)$")
 SAYS = {">": "above ", ">=": "at least ", "<": "below ", "<=": "at most ", "is": "", "!": "other than "}
@@ -143,17 +143,17 @@ class _Reader:
         unit = self._units[slot]
         tests: list[Test] = []
         for sign, part in self._pieces(word, value):
-            if unit is LABEL or isinstance(part, bool) or (not sign and _number(part) is None):
+            if unit is LABEL or (unit is PLAIN and sign in ("", "!")):
                 if sign not in ("", "!"):
                     raise VisionError(f"{self._what}: {word} cannot be compared by size (got {value!r})")
                 tests.append(Test(slot, sign or "is", as_text(part)))
                 continue
-            sign = sign or self._kind.bare.get(slot, "")
-            if sign in ("", "!"):
-                raise VisionError(f"{self._what}: {word} is measured; say '>{as_text(part)}' or '<{as_text(part)}' (got {value!r})")
             number = _number(part)
             if number is None:
                 raise VisionError(f"{self._what}: {word} is compared with a number in {unit.name or 'its unit'} (got {value!r})")
+            sign = sign or self._kind.bare.get(slot, "")
+            if sign in ("", "!"):
+                raise VisionError(f"{self._what}: {word} is measured; say '>{as_text(part)}' or '<{as_text(part)}' (got {value!r})")
             tests.append(Test(slot, sign, number))
         return tests
 

@@ -15,7 +15,7 @@ from actr3d.vision.salience import Function, share, survivors, weigh
 class Search(Reading):
     """A request that is under way; `yield` it to wait until it is over."""
 
-    __slots__ = ("begun", "bottom_up", "chosen", "due", "noticed", "query", "refused", "weights", "why")
+    __slots__ = ("begun", "bottom_up", "chosen", "due", "noticed", "outcome", "query", "refused", "seen", "weights", "why")
     noticed: Sequence[Feature]
     """What is as was asked for."""
     weights: Sequence[float]
@@ -26,6 +26,8 @@ class Search(Reading):
     """Which of those noticed is brought."""
     why: str | None
     """Why none is brought, though some are noticed."""
+    outcome: str
+    """What came of it, in a word."""
 
     def __init__(self, query: Query, *, bottom_up: bool, begun: int, due: int) -> None:
         super().__init__("view")
@@ -35,12 +37,14 @@ class Search(Reading):
         """When it was begun [us]."""
         self.due = due
         """When it ends [us], unless the view comes later."""
+        self.seen = begun
+        """When its view was taken in [us]."""
         self.clear()
         self._value = None
 
     def clear(self) -> None:
         """Forgets what it has found; it begins anew."""
-        self.noticed, self.weights, self.refused, self.chosen, self.why = (), (), [], None, None
+        self.noticed, self.weights, self.refused, self.chosen, self.why, self.outcome = (), (), [], None, None, "pending"
 
     def sift(self, features: Sequence[Feature], salience: Function) -> None:
         """Notes what of the features is as was asked for and how salient it is, and what is not.

@@ -70,6 +70,9 @@ class Anatomy:
     hands: tuple[str, ...] = ()
     """Weld equalities, one a hand, that can hold an object."""
 
+    fastest: tuple[float, float, float] | None = None
+    """The fastest that it can be told to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None has no limits."""
+
     push: tuple[str, str, str] | None = None
     """The servos that walk forward, to the left and turn; None cannot walk."""
 

@@ -31,8 +31,9 @@ class Imported(Configuration):
 
     The file, with those it includes and mentions, is read once, when the part is described, and only from inside its folder.
     Meshes may be of any format that `Mesh` reads, and are repaired as there. What speaks of the whole world (`option`, `size`,
-    `statistic`, `visual`, `keyframe`) is left out: the scene's holds. Shapes that are only for contacts are not seen: in MJCF
-    those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
+    `statistic`, `visual`, `keyframe`) is left out: the scene's holds, and a warning says so of `option` and `keyframe`. Skins and
+    soft things (flexes) are drawn and, soft things, touched; the Geometric Camera warns that it does not see them. Shapes that are
+    only for contacts are not seen: in MJCF those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
     """
 
     name: Name

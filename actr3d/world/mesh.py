@@ -82,7 +82,8 @@ class Mesh(Configuration):
     """[kg], spread evenly over its volume (over its convex hull where it is not closed); `None` fixes it in its place."""
 
     collision: Literal["hull", "parts", "none"] = "hull"
-    """What meets other bodies: its convex hull, convex parts that follow its hollows (slow to make, once a process), or nothing."""
+    """What meets other bodies: its convex hull, convex parts that follow its hollows, or nothing.
+    Parts are slow to make, and then kept in the user's cache folder."""
 
     coarseness: Annotated[float, Ge(0.01), Le(1)] = 0.05
     """For `parts`: how far they may differ from it, as a share of its size. Source of the default: CoACD."""

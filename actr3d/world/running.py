@@ -67,6 +67,7 @@ class Running:
             x, y, _, _ = self.waypoint
             self.waypoint = None
             base.place = (x, y, base.place[2])
+            body.holding.stand()
             base.drive((0.0, 0.0, 0.0), body)
 
     def turning(self) -> float:
@@ -92,11 +93,13 @@ class Running:
             rest = self._rest(name)
             if abs(rest) <= THERE:
                 base.place = (x, y, heading + rest)
-                base.drive((*base.commanded[:2], 0.0), body)
+                body.holding.stand()
+                base.drive((*body.holding.commanded[:2], 0.0), body)
                 return True
         elif abs(target - body.joints[name].position) <= THERE:
             body.joints[name].put(target)
-            body.joints[name].drive(0.0, body.free)
+            body.holding.stand(name)
+            body.joints[name].drive(0.0, body)
             return True
         return False
 
@@ -104,13 +107,13 @@ class Running:
         """Moves one joint on."""
         joint = self._body.joints[name]
         target, speed = self.targets[name]
-        joint.drive(_bounded((target - joint.position) / duration, speed), self._body.free)
+        joint.drive(_bounded((target - joint.position) / duration, speed), self._body)
 
     def _turn(self, name: str, duration: float) -> None:
         """Turns the base on."""
-        base = self._body.base
-        forward, left, _ = base.commanded
-        base.drive((forward, left, _bounded(self._rest(name) / duration, self.targets[name][1])), self._body)
+        body, base = self._body, self._body.base
+        forward, left, _ = body.holding.commanded
+        base.drive((forward, left, _bounded(self._rest(name) / duration, self.targets[name][1])), body)
 
     def _rest(self, name: str) -> float:
         """Returns how far the base still has to turn [rad]."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from hashlib import blake2b
 from typing import Any
 
 import mujoco
@@ -15,9 +16,10 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
+from actr3d.world.pace import Pace
 from actr3d.world.parts import Aperture
 from actr3d.world.scene import Scene
-from actr3d.world.sensors.touch import Touches
+from actr3d.world.sensors.touch import step_and_feel
 from actr3d.world.servo import fit_servos
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
@@ -36,6 +38,9 @@ class WorldState:
 
     steps: int
     """Physics steps since the start."""
+
+    scene: str
+    """The fingerprint of the compiled scene that it is of."""
 
     mj_state: NDArray[np.float64]
     """`mjSTATE_INTEGRATION` of the data; less than that drifts (platform-facts)."""
@@ -84,9 +89,12 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
-        self.watchers: list[Callable[[int], None]] = []
-        """Who looks at every physics step, and changes nothing: called after each with its number, from 0. The geometry, contacts and
-        forces of `mj_data` are those of the step's beginning then."""
+        self.fingerprint = _fingerprint(self.mj_model)
+        """Two worlds have the same one where their scenes are compiled to the same bytes."""
+        self._pace = Pace(self, list(self.bodies.values()))
+        self.watchers: list[Callable[[], None]] = []
+        """Who looks at every physics step, or part of one, and changes nothing: called after each. The geometry, contacts and forces
+        of `mj_data` are those of its beginning then, `time` and `opt.timestep` tell when it ended and how long it was."""
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -94,11 +102,6 @@ class World:
     def time(self) -> int:
         """Time since the start [us], counted in whole steps: it cannot drift."""
         return self._steps * self.scene.timestep_us
-
-    @property
-    def steps(self) -> int:
-        """How many physics steps it has gone."""
-        return self._steps
 
     def step(self, steps: int = 1) -> None:
         """Advances the physics by a number of steps: one tick. Commands that are on their way choose their speeds
@@ -113,10 +116,12 @@ class World:
         for commands in running:
             commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
-        if feeling or self.watchers:
-            self._step_singly(feeling, steps)
+        taken = self._watched(self._pace.steps(steps)) if self.watchers else self._pace.steps(steps)
+        if feeling:
+            step_and_feel(taken, feeling)
         else:
-            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+            for _ in taken:
+                pass
         self._steps += steps
         self.changed()
         for commands in running:
@@ -125,15 +130,11 @@ class World:
         if self._warnings.any():
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
 
-    def _step_singly(self, feeling: list[Body], steps: int) -> None:
-        """Advances the physics as a whole tick does, while skins feel, and watchers look at, every step."""
-        touches = Touches(feeling)
-        for number in range(self._steps, self._steps + steps):
-            mujoco.mj_step(self.mj_model, self.mj_data)
-            touches.feel()
+    def _watched(self, taken: Iterator[None]) -> Iterator[None]:
+        for _ in taken:
             for watcher in self.watchers:
-                watcher(number)
-        touches.keep()
+                watcher()
+            yield
 
     def changed(self) -> None:
         """Notes that positions, speeds or commands are not those that were last computed with."""
@@ -175,7 +176,7 @@ class World:
         mj_state = np.empty(self._state_size)
         mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         bodies = tuple((name, body.state()) for name, body in self.bodies.items())
-        return WorldState(steps=self._steps, mj_state=mj_state, bodies=bodies)
+        return WorldState(steps=self._steps, scene=self.fingerprint, mj_state=mj_state, bodies=bodies)
 
     def state_bytes(self) -> bytes:
         """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
@@ -190,6 +191,8 @@ class World:
         """
         if state.mj_state.shape != (self._state_size,):
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
+        if state.scene != self.fingerprint:
+            raise WorldError(f"the state is of another scene: that one compiles to {state.scene}, this one to {self.fingerprint}")
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._warnings[:] = 0
         self._steps = state.steps
@@ -272,3 +275,10 @@ class World:
     def _mocap(self, name: str) -> int:
         body: Any = self.mj_model.body(name)
         return int(self.mj_model.body_mocapid[body.id])
+
+
+def _fingerprint(mj_model: MjModel) -> str:
+    """Returns a hash of a compiled scene: of all its numbers and names."""
+    image = np.empty(mujoco.mj_sizeModel(mj_model), np.uint8)
+    mujoco.mj_saveModel(mj_model, None, image)
+    return blake2b(image.tobytes(), digest_size=8).hexdigest()

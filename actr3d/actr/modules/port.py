@@ -54,7 +54,6 @@ class Request:
     place: str
     """`file:line` where the modeller asked, for error messages."""
     port: Port
-    """Who gets the answer."""
     reading: Reading | None = None
     """Where the answer goes; None where something is to be done and nothing answered."""
     to_buffer: bool = False
@@ -86,21 +85,29 @@ class Port(Model):
     def _tell(self, word: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
         """Tells the body to do something, for the modeller's line at `place`, or for the one that is running."""
         named = {} if named is None else named
+        embodiment = self._joined(word)
         self._trace_request("set", word=word, **_given(values, named))
-        self._send(Request(self._joined().body, word, values, named, place or place_of_caller(), self))
+        embodiment.outbox.append(Request(embodiment.body, word, values, named, place or place_of_caller(), self))
 
     def _inquire(
         self, word: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, place: str | None = None, **how: bool
     ) -> Reading:
         """Asks the body what it senses."""
+        embodiment = self._joined(word)
         reading = Reading(word)
-        self._send(Request(self._joined().body, word, values, options or {}, place or place_of_caller(), self, reading, **how))
+        embodiment.outbox.append(Request(embodiment.body, word, values, options or {}, place or place_of_caller(), self, reading, **how))
         return reading
 
-    def _send(self, request: Request) -> None:
-        self._joined().outbox.append(request)
+    def _joined(self, word: str) -> Embodiment:
+        """Returns the body that a word is for.
 
-    def _joined(self) -> Embodiment:
+        Raises:
+            SimulationError: If the agent has none, or does not live yet.
+        """
+        if not self._converted:
+            raise SimulationError(
+                f"'{word}' is said to a body before the agent lives; say it while its Simulation runs: in `init`, `start`, a production"
+            )
         embodiment = self._find_embodiment()
         if embodiment is None:
             kind = "port" if isinstance(self, BodyPort) else type(self).__name__
@@ -150,7 +157,7 @@ class BodyPort(Port):
         """Tells the body to do something: `set("walk", 1.2)`.
 
         Raises:
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
         self._tell(word, *values, named=named)
 
@@ -158,25 +165,27 @@ class BodyPort(Port):
         """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
 
         Raises:
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
-        self._trace_request("get", word=word, **_given(values, options))
-        return self._ask(word, values, options, to_buffer=False)
+        return self._ask("get", word, values, options)
 
     def request(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses; the answer comes as a chunk: the word, then what was sensed, by name or in order.
 
         Raises:
-            SimulationError: If the agent has no body, or the port no buffer.
+            SimulationError: If the agent has no body, or does not live yet; or if the port has no buffer.
         """
+        self._joined(word)
         if self._buffer is None:
             raise SimulationError(f"port '{self._path}' has no buffer to put the answer to '{word}' into; give it one: BodyPort(buffer)")
-        self._trace_request("request", word=word, **_given(values, options))
-        self.error = False
-        return self._ask(word, values, options, to_buffer=True)
+        return self._ask("request", word, values, options)
 
-    def _ask(self, word: str, values: tuple[Any, ...], options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
-        reading = self._inquire(word, values, options, to_buffer=to_buffer)
+    def _ask(self, call: str, word: str, values: tuple[Any, ...], options: Mapping[str, Any]) -> Reading:
+        self._joined(word)
+        self._trace_request(call, word=word, **_given(values, options))
+        if call == "request":
+            self.error = False
+        reading = self._inquire(word, values, options, to_buffer=call == "request")
         self._outstanding += 1
         self.busy = True
         return reading

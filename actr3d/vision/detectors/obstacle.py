@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -31,6 +31,8 @@ class Obstacle(Feature):
     """Between its uppermost and its lowest visible edges."""
     top: Metres
     """Its uppermost visible edge, above the eye."""
+    bottom: Metres
+    """Its lowest visible edge, above the eye, mostly below 0."""
     leftmost: Radians
     """The direction of its leftmost visible point."""
     rightmost: Radians
@@ -46,7 +48,7 @@ class Obstacle(Feature):
         moved = super().since(before, elapsed)
         nearer = (before.distance - self.distance) / elapsed
         if self.time_to_contact is None and nearer > 0:
-            return replace(moved, time_to_contact=self.distance / nearer)
+            return moved._changed(time_to_contact=self.distance / nearer)
         return moved
 
 
@@ -62,11 +64,12 @@ def obstacle(view: View, *, bearing: Radians = math.pi, speed: MetresPerSecond |
         speed: How fast the agent walks straight ahead; None where that is not known.
     """
     extents = view.extents
-    if not len(extents):
-        return ()
-    surfaces = np.empty(int(extents["label"].max()) + 1, SURFACE)
-    detect.surfaces()(extents, view.optics, view.axes, bearing, np.empty((len(extents), 2, 4)), surfaces)
-    found: list[Any] = surfaces.tolist()
+    points, surfaces, find = np.empty((len(extents), 2, 4)), np.empty(32, SURFACE), detect.surfaces()
+    most = find(extents, view.optics, view.axes, bearing, points, surfaces)
+    if most >= len(surfaces):
+        surfaces = np.empty(most + 1, SURFACE)
+        find(extents, view.optics, view.axes, bearing, points, surfaces)
+    found: list[Any] = surfaces[: most + 1].tolist()
     return tuple(_obstacle(speed, *numbers) for numbers in found if numbers[1] < math.inf)
 
 
@@ -89,6 +92,7 @@ def _obstacle(
         width=math.hypot(lefts[0] - rights[0], lefts[1] - rights[1]),
         height=top - bottom,
         top=top,
+        bottom=bottom,
         leftmost=float(lefts[2]),
         rightmost=float(rights[2]),
         object=label,

@@ -17,6 +17,9 @@ from actr3d.vision.kernel.gaps import GAP
 from actr3d.vision.kernel.openings import OPENING
 from actr3d.vision.units import Label, Metres
 
+SHOWN = 11
+"""How many of the numbers of an opening are told; the others are the kernel's own."""
+
 APART = 0.1
 """How far the edges of one opening may be apart from one row to the next [m]: an edge that leans by 45 degrees, seen from 8 m
 on the default screen. Ours."""
@@ -54,6 +57,11 @@ class Opening(Feature):
     cut: bool = False
     """Whether it leaves the field of view above or below: then it is at least as high as `height`."""
 
+    @property
+    def key(self) -> tuple[int, int]:
+        """What tells it apart from others, from look to look: what bounds it at the sides."""
+        return self.left, self.right
+
     def at_most(self, slot: str, value: Any) -> Any:
         """Returns infinity for the height of one that leaves the field of view: no bound was seen."""
         return math.inf if slot == "height" and self.cut else value
@@ -84,7 +92,7 @@ def opening(view: View, *, step: Metres = 0.02) -> tuple[Opening, ...]:
         elif there > len(openings):
             openings = np.empty(there, OPENING)
         else:
-            return tuple(_opening(*numbers) for numbers in openings[:there].tolist())
+            return tuple(_opening(*numbers[:SHOWN]) for numbers in openings[:there].tolist())
 
 
 def _opening(

@@ -15,7 +15,7 @@ from actr3d.vision.kernel.points import set_points
 from actr3d.vision.kernel.surfaces import set_surfaces
 
 Gaps: TypeAlias = Callable[[Records, Array, Array, float, float, Array, Records, Records], tuple[int, int]]
-Surfaces: TypeAlias = Callable[[Records, Array, Array, float, Array, Records], None]
+Surfaces: TypeAlias = Callable[[Records, Array, Array, float, Array, Records], int]
 
 
 @cache
@@ -31,7 +31,9 @@ def gaps() -> Gaps:
 
 @cache
 def surfaces() -> Surfaces:
-    """Returns the function that finds surfaces; it takes: the extents, optics, axes, a bearing, room for points, and surfaces."""
+    """Returns the function that finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
+    and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
+    """
     return _surfaces_of(_digest())
 
 
@@ -57,20 +59,21 @@ def _find(
     extents: Records, optics: Record, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
 ) -> tuple[int, int]:
     set_points(extents, optics, axes, points)
-    count = find_gaps(extents, points, step, gaps)
+    count = find_gaps(extents, points, optics, axes[1, 2], step, gaps)
     if count > len(gaps):
         return count, 0
     there = link_gaps(extents, points, gaps, count, apart)
     if there <= len(openings):
-        set_openings(extents, points, gaps, count, optics, axes[1, 2], openings[:there])
+        set_openings(extents, points, gaps, count, optics.rows, openings[:there])
     return count, there
 
 
 def _surfaces_of(digest: int) -> Surfaces:
     @kept
-    def find(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> None:
-        if digest != 0:
-            set_points(extents, optics[0], axes, points)
-            set_surfaces(extents, points, bearing, surfaces)
+    def find(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
+        if digest == 0:
+            return 0
+        set_points(extents, optics[0], axes, points)
+        return set_surfaces(extents, points, bearing, surfaces)
 
     return find

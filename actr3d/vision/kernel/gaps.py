@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import Array, Records
+from actr3d.camera.kernel.layout import Array, Record, Records
+from actr3d.camera.kernel.screen import row_tangent
 
 NARROWEST = 1e-6
 """Parts of the screen's width below this are no gap: edges that touch."""
@@ -25,7 +26,8 @@ GAP = np.dtype(
         ("along", "f8", (2,)),  # the direction from left to right in which its width is meant (ahead, left)
         ("width", "f8"),  # [m]
         ("deep", "f8"),  # how far it is free behind, square to its width [m]
-        ("depth", "f8"),  # of its two edges along the line of sight, their mean [m]
+        ("high", "f8"),  # where its row ends above and below, above the eye [m]
+        ("low", "f8"),
         ("far", "f8"),  # the distance of the farther edge from the eye [m]
     ],
     align=True,
@@ -34,11 +36,11 @@ GAP = np.dtype(
 
 
 @compiled
-def find_gaps(extents: Records, points: Array, step: float, gaps: Records) -> int:
+def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: float, gaps: Records) -> int:
     """Writes all gaps, by rows; returns how many there are, also those for which there is no room.
 
     A gap goes from the right edge of one extent to the left edge of another on the same row, if all between them is farther
-    than both by `step` at least [m], or nothing is there.
+    than both by `step` at least [m], or nothing is there. `up` is how upright the eye is, the cosine of its tilt.
     """
     count, first, total = 0, 0, len(extents)
     while first < total:
@@ -57,6 +59,7 @@ def find_gaps(extents: Records, points: Array, step: float, gaps: Records) -> in
                         gaps[count].row, gaps[count].left, gaps[count].right = extents[first].row, i, j
                         gaps[count].far = max(extents[i].d2, extents[j].d1)
                         measure(points, gaps, count)
+                        _set_levels(points, gaps[count], optics, up)
                     count += 1
         first = last
     return count
@@ -98,7 +101,16 @@ def measure(points: Array, gaps: Records, number: int) -> None:
         for side in range(2):
             deep = min(deep, x * points[k, side, 0] + y * points[k, side, 1])
     gap.deep = max(0.0, deep - max(near_left, near_right))
-    gap.depth = 0.5 * (left[3] + right[3])
+
+
+@compiled
+def _set_levels(points: Array, gap: Record, optics: Record, up: float) -> None:
+    """Sets where the row of a gap ends above and below, half way to the next rows."""
+    left, right = points[gap.left, 1], points[gap.right, 0]
+    middle, deep = 0.5 * (left[2] + right[2]), 0.5 * (left[3] + right[3])
+    here = row_tangent(gap.row, optics)
+    gap.high = middle + deep * up * (row_tangent(gap.row - 0.5, optics) - here)
+    gap.low = middle + deep * up * (row_tangent(gap.row + 0.5, optics) - here)
 
 
 @compiled

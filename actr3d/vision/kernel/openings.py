@@ -8,7 +8,6 @@ import numpy as np
 
 from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.layout import Array, Record, Records
-from actr3d.camera.kernel.screen import row_tangent
 
 BESIDE = 0.35
 """How much farther than a gap's edges something above or below it may be, to be what bounds it there [m]. Ours: a wall's thickness."""
@@ -26,13 +25,16 @@ OPENING = np.dtype(
         ("above", "i8"),
         ("below", "i8"),
         ("cut", "i8"),  # whether it goes on above or below the field of view
+        ("first", "i8"),  # the numbers of its uppermost and its lowest gap
+        ("last", "i8"),
+        ("area", "f8"),  # [m^2]
     ],
     align=True,
 )
 
 
 @compiled
-def set_openings(extents: Records, points: Array, gaps: Records, count: int, optics: Record, up: float, openings: Records) -> None:
+def set_openings(extents: Records, points: Array, gaps: Records, count: int, rows: int, openings: Records) -> None:
     """Writes each opening: the largest upright rectangle that fits between the edges of its gaps.
 
     Args:
@@ -40,64 +42,51 @@ def set_openings(extents: Records, points: Array, gaps: Records, count: int, opt
         points: Where their edges are.
         gaps: All gaps.
         count: How many there are.
-        optics: The eye's.
-        up: How upright the eye is, the cosine of its tilt.
+        rows: How many the view has.
         openings: Where they are written, as many as there are.
     """
     for number in range(len(openings)):
-        most, top, bottom, lowest = -1.0, -1, -1, -1
-        low_edge, high_edge = 0.0, 0.0
-        for i in range(count - 1, -1, -1):
-            if gaps[i].number != number:
-                continue
-            lowest = max(lowest, i)
-            # From each row upwards: where the edges come nearest to each other decides.
-            x, y = gaps[i].along[0], gaps[i].along[1]
-            low, high = -math.inf, math.inf
-            k = i
-            while k >= 0:
-                left, right = points[gaps[k].left, 1], points[gaps[k].right, 0]
-                low, high = max(low, x * left[0] + y * left[1]), min(high, x * right[0] + y * right[1])
-                if high <= low:
-                    break
-                area = (high - low) * (_level(points, gaps[k], optics, up, -0.5) - _level(points, gaps[i], optics, up, 0.5))
-                if area > most * (1.0 + 1e-9):
-                    most, top, bottom, low_edge, high_edge = area, k, i, low, high
-                k = gaps[k].before
-        if top < 0:
-            top = bottom = lowest
-        _set(extents, points, gaps, top, bottom, high_edge - low_edge, optics, up, openings[number])
+        openings[number].area = -1.0
+    for i in range(count):
+        opening = openings[gaps[i].number]
+        # From each row upwards: where the edges come nearest to each other decides.
+        x, y = gaps[i].along[0], gaps[i].along[1]
+        low, high = -math.inf, math.inf
+        k = i
+        while k >= 0:
+            left, right = points[gaps[k].left, 1], points[gaps[k].right, 0]
+            low, high = max(low, x * left[0] + y * left[1]), min(high, x * right[0] + y * right[1])
+            if high <= low and k < i:
+                break
+            area = max(0.0, high - low) * (gaps[k].high - gaps[i].low)
+            if area > opening.area * (1.0 + 1e-9):
+                opening.area, opening.width = area, max(0.0, high - low)
+                opening.first, opening.last = k, i
+            k = gaps[k].before
+    for number in range(len(openings)):
+        _finish(extents, points, gaps, rows, openings[number])
 
 
 @compiled
-def _set(
-    extents: Records, points: Array, gaps: Records, top: int, bottom: int, width: float, optics: Record, up: float, opening: Record
-) -> None:
-    """Writes the opening between two gaps of it."""
-    opening.width = width
-    opening.top, opening.bottom = _level(points, gaps[top], optics, up, -0.5), _level(points, gaps[bottom], optics, up, 0.5)
-    opening.cut = gaps[top].row == 0 or gaps[bottom].row == optics.rows - 1
-    middle, deep, k = bottom, math.inf, bottom
+def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: Record) -> None:
+    """Writes what follows from the first and the last gap of an opening."""
+    first, last = gaps[opening.first], gaps[opening.last]
+    opening.top, opening.bottom = first.high, last.low
+    opening.cut = first.row == 0 or last.row == rows - 1
+    opening.deep = math.inf
+    middle = k = opening.last
     while True:
-        deep = min(deep, gaps[k].deep)
-        if 2 * gaps[k].row >= gaps[top].row + gaps[bottom].row:
+        opening.deep = min(opening.deep, gaps[k].deep)
+        if 2 * gaps[k].row >= first.row + last.row:
             middle = k
-        if k == top:
+        if k == opening.first:
             break
         k = gaps[k].before
-    opening.deep = deep
     left, right = points[gaps[middle].left, 1], points[gaps[middle].right, 0]
     opening.ahead, opening.aside = 0.5 * (left[0] + right[0]), 0.5 * (left[1] + right[1])
     opening.left, opening.right = extents[gaps[middle].left].label, extents[gaps[middle].right].label
-    opening.above = _bound(extents, gaps[top], gaps[top].row - 1)
-    opening.below = _bound(extents, gaps[bottom], gaps[bottom].row + 1)
-
-
-@compiled
-def _level(points: Array, gap: Record, optics: Record, up: float, rows: float) -> float:
-    """Returns how high above the eye a gap is [m], some rows below the middle of its row."""
-    middle = 0.5 * (points[gap.left, 1, 2] + points[gap.right, 0, 2])
-    return middle + gap.depth * up * (row_tangent(gap.row + rows, optics) - row_tangent(gap.row, optics))
+    opening.above = _bound(extents, first, first.row - 1)
+    opening.below = _bound(extents, last, last.row + 1)
 
 
 @compiled

@@ -26,8 +26,10 @@ SURFACE = np.dtype(
 
 
 @compiled
-def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Records) -> None:
+def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Records) -> int:
     """Writes, at the place of its label, what is seen of each object; a distance is infinite where it is not in the bearing.
+
+    Returns the highest label; if there is no room for that, nothing is written.
 
     Between its edges on a row an object is taken to be as near as the straight line between them.
 
@@ -37,6 +39,11 @@ def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Reco
         bearing: How far to the left and right of ahead the nearest points are looked for [rad].
         surfaces: One for each label and one for none.
     """
+    most = 0
+    for i in range(len(extents)):
+        most = max(most, extents[i].label)
+    if most >= len(surfaces):
+        return most
     for i in range(len(surfaces)):
         surfaces[i].label, surfaces[i].distance = 0, math.inf
     for i in range(len(extents)):
@@ -57,6 +64,7 @@ def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Reco
         distance = math.sqrt(ahead * ahead + aside * aside)
         if distance < surface.distance:
             surface.distance, surface.ahead, surface.aside = distance, ahead, aside
+    return most
 
 
 @compiled

@@ -55,6 +55,8 @@ class BodyPlan:
     """What it has names for."""
     actuators: tuple[str, ...]
     """The words that it can be told."""
+    fastest: tuple[float, float, float] | None
+    """The fastest that it can be told to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None has no limits."""
 
 
 @sensor
@@ -68,7 +70,8 @@ def anatomy(body: Body) -> BodyPlan:
     parts = tuple(
         PartPlan(name=name, on=names.get(int(model.body_parentid[number])), joints=tuple(joints[number])) for number, name in names.items()
     )
-    return BodyPlan(name=body.name, parts=parts, movements=body.anatomy.movements, actuators=body.actuators)
+    known = body.anatomy
+    return BodyPlan(name=body.name, parts=parts, movements=known.movements, actuators=body.actuators, fastest=known.fastest)
 
 
 def _plan(model: Any, joint: Joint) -> JointPlan:

@@ -36,7 +36,7 @@ class Touch:
 
 @sensor
 def contacts(body: Body) -> tuple[Touch, ...]:
-    """Senses what touches the skin, in the order of names: the hardest moments of the last tick."""
+    """Senses what touches the skin and how hard [N], in the order of names: the hardest moments of the last tick."""
     if body.touched is None:
         body.touched = present(body)
     return body.touched
@@ -45,34 +45,28 @@ def contacts(body: Body) -> tuple[Touch, ...]:
 def present(body: Body) -> tuple[Touch, ...]:
     """Returns what touches the skin in the present state, in the order of names. For observers: it starts no watch."""
     body.world.solve()
-    return felt(body)
+    return last_felt(body)
 
 
-class Touches:
-    """What the skins of some bodies feel in one tick: the hardest moment of each touch.
+def step_and_feel(steps: Iterable[None], bodies: Iterable[Body]) -> None:
+    """Takes single steps of the physics, and gives each of some bodies the hardest moments of all its touches.
 
     Args:
-        bodies: Who feels.
+        steps: Takes the next step whenever it is asked for the next item.
+        bodies: Those that feel, all of one world.
     """
-
-    def __init__(self, bodies: Iterable[Body]) -> None:
-        self._felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
-
-    def feel(self) -> None:
-        """Feels the physics step that is just over."""
-        for body, hardest in self._felt:
-            for touch in felt(body):
+    felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
+    for _ in steps:
+        for body, hardest in felt:
+            for touch in last_felt(body):
                 known = hardest.get((touch.part, touch.other))
                 if known is None or touch.force > known.force:
                     hardest[touch.part, touch.other] = touch
-
-    def keep(self) -> None:
-        """Gives each body what it has felt, at the end of the tick."""
-        for body, hardest in self._felt:
-            body.touched = tuple(touch for _, touch in sorted(hardest.items()))
+    for body, hardest in felt:
+        body.touched = tuple(touch for _, touch in sorted(hardest.items()))
 
 
-def felt(body: Body) -> tuple[Touch, ...]:
+def last_felt(body: Body) -> tuple[Touch, ...]:
     """Returns the touches that the solver has last found, in the order of names. For observers of single steps."""
     model, data = body.world.mj_model, body.world.mj_data
     if data.ncon == 0:
