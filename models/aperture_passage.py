@@ -52,6 +52,8 @@ TIGHT = 1.03
 """An opening this many times as wide as it is lets it through, if it cannot turn any further. Ours."""
 NEAR = 0.5
 """Where an obstacle is as near as this and no opening is found, it stops walking [m]. Ours: it takes some 0.2 s for that."""
+BEHIND = 0.8
+"""How far it goes on behind the middle of an opening [m]: more than its own depth, sideways. Ours."""
 DOOR = "feature:opening height:>1.5 depth:>0.5"
 """What one can walk through [m]. Source: the original's requests."""
 
@@ -167,7 +169,13 @@ class Eyes(ACTR):
         b_turn.set("watch:yes way:clear")
         way.go((float(far) + BEHIND) / speed)
 
-    def give_up(b_turn="do:wait near:True", vision="busy:False error:True"):
+    def notice(b_turn="do:wait way:clear", vision="busy:False error:True"):
+        """What was wide enough is so no longer."""
+        b_context.set("way:narrow")
+        b_interrupt.set("planning_unit:squeeze when:now")
+        b_turn.modify(way="unknown")
+
+    def give_up(b_turn="do:wait near:True way:unknown", vision="busy:False error:True"):
         motor.stop()
         print(f"{self.now():.2f} s: stops before the wall")
         self.stop()
@@ -176,10 +184,10 @@ class Eyes(ACTR):
 class EyesInPieces(Eyes):
     """Stops turning with each answer, scans again, and turns on."""
 
-    def not_found(b_turn="do:wait near:False", vision="busy:False error:True"):
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True"):
         shoulders.stop()
         scan.go(0.05)
-        b_turn.set("watch:no way:unknown near:False do:scan")
+        b_turn.modify(do="scan")
 
     def search_again(b_turn="do:scan", scan="state:over"):
         scan.reset()
@@ -197,13 +205,13 @@ class EyesInPieces(Eyes):
 class EyesAtOnce(Eyes):
     """Turns on until an opening is found."""
 
-    def not_found(b_turn="do:wait near:False", vision="busy:False error:True", motor="torso_busy:False", near="state:!over"):
-        b_turn.modify(do="turn", way="unknown")
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:False", near="state:!over"):
+        b_turn.modify(do="turn")
 
-    def go_on(b_turn="do:wait near:False", vision="busy:False error:True", motor="torso_busy:True", near="state:!over"):
+    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:True", near="state:!over"):
         b_turn.modify(do="ask")
 
-    def beware(b_turn="do:wait near:False", vision="busy:False error:True", near="state:over"):
+    def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over"):
         near.reset()
         vision.request("feature:obstacle", bottom_up=True, radius=NEAR, bearing=BEARING)
         b_turn.modify(do="beware")
@@ -214,10 +222,6 @@ class EyesAtOnce(Eyes):
     def see_the_wall(b_turn="do:beware", vision="watching:False", b_visual="feature:obstacle"):
         b_visual.clear()
         b_turn.modify(do="ask", near=True)
-
-
-BEHIND = 0.8
-"""How far it goes on behind the middle of an opening [m]: more than its own depth, sideways. Ours."""
 
 
 class Walker(SGOMS):

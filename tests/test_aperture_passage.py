@@ -175,12 +175,12 @@ def outcome(simulation: Simulation) -> tuple[Any, ...]:
     return simulation.world.state_bytes(), simulation.result(), [event.to_json() for event in simulation.trace]
 
 
-def scene_with(model: Any, names: tuple[str, str, str], variant: str) -> Simulation:
+def scene_with(model: Any, names: tuple[str, str, str], variant: str, width: float = 0.5) -> Simulation:
     floor, aperture, walker = names
-    parameters = model.Parameters(variant=variant, aperture=0.5, group="large")
+    parameters = model.Parameters(variant=variant, aperture=width, group="large")
     body = model.body_of(parameters)
     person = Mannequin(**{field: getattr(body, field) for field in ("height", "shoulder_width", "trunk", "depth")}, name=walker)
-    scene = Scene(parts=(Floor(name=floor), Aperture(name=aperture, width=0.5), person))
+    scene = Scene(parts=(Floor(name=floor), Aperture(name=aperture, width=width), person))
     simulation = Simulation(scene, {walker: lambda: model.mind_of(parameters)}, seed=1, trace="all")
     simulation.measure(Passage(walker, aperture))
     return simulation
@@ -276,3 +276,16 @@ def test_impossible_parameters_are_told_in_one_line(words: list[str], message: s
     told = capsys.readouterr()
     assert (told.out, told.err.count("\n")) == ("", 1)
     assert message in told.err
+
+
+def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
+    scene = scene_with(model, ("floor", "aperture", "walker"), "human", 0.7)
+    scene.run(9.5)
+    assert scene.trace is not None
+    responses = [event for event in scene.trace.select("planning_unit") if event.data["name"] == "squeeze"]
+    assert [event.data["what"] for event in responses] == ["begun", "ended"]
+    scene.command("aperture", 0.42)
+    scene.run()
+    responses = [event for event in scene.trace.select("planning_unit") if event.data["name"] == "squeeze"]
+    assert [event.data["what"] for event in responses] == ["begun", "ended", "begun", "ended"]
+    assert (scene.result().outcome, scene.result().contacts) == ("passed", 0)
