@@ -34,6 +34,10 @@ class ConfigurationError(Actr3dError):
     """A field of a configuration has a wrong name, type or value."""
 
 
+class SettingError(ConfigurationError):
+    """A model's parameter is set that it does not have, or to a value that it does not take."""
+
+
 class WorldError(Actr3dError):
     """A scene cannot be built, or something in a world is not there or cannot be done."""
 

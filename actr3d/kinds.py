@@ -30,6 +30,7 @@ KINDS: Mapping[str, Kind] = {
     "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
     "output": Kind("production", "model", "text", "a mind prints a line; or a program, to a recording and with `--json`"),
+    "result": Kind("production", "top model", "...", "a run is over that something was measured of: what was measured"),
     "planning_unit": Kind(
         "production",
         "SGOMS buffer",

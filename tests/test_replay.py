@@ -16,8 +16,9 @@ from actr3d.cli import main
 from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.running.building import build
+from actr3d.running.options import read_settings
 from actr3d.running.replay import replay
-from actr3d.running.run import has_build, run_model, settings_of
+from actr3d.running.run import has_build, run_model
 from actr3d.trace import Trace
 
 ROOT = Path(__file__).parent.parent
@@ -362,19 +363,19 @@ def test_a_replay_that_fails_differs(
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("code", "words", "message"),
     [
-        (["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'?; it has: times, height, word"),
-        (["--set", "times"], "a parameter is set by name=value (got 'times')"),
-        (["--record", "falling.py"], "cannot write the recording 'falling.py': it exists already"),
-        (["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
+        (2, ["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'?; it has: times, height, word"),
+        (2, ["--set", "times"], "a parameter is set by name=value (got 'times')"),
+        (1, ["--record", "falling.py"], "cannot write the recording 'falling.py': it exists already"),
+        (1, ["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
     ],
 )
 def test_wrong_options_of_run_are_told(
-    words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    code: int, words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(file.parent)
-    assert main(["run", "falling.py", *words]) == 1
+    assert main(["run", "falling.py", *words]) == code
     assert f"error: {message}" in capsys.readouterr().err
     assert file.read_text(encoding="utf-8") == BUILT
 
@@ -382,7 +383,7 @@ def test_wrong_options_of_run_are_told(
 def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY, encoding="utf-8")
-    assert main(["run", str(file), "--set", "a=1"]) == 1
+    assert main(["run", str(file), "--set", "a=1"]) == 2
     assert "so there are no parameters to set" in capsys.readouterr().err
     with pytest.raises(ParameterError, match=r"a recording holds every event: trace 'all', or none \(got 'production'\)"):
         run_model(file, RunLimits(trace=Trace("production")), record=tmp_path / "run")
@@ -423,7 +424,7 @@ def test_other_functions_called_build_are_none(text: str) -> None:
 
 
 def test_settings_are_values_or_texts() -> None:
-    given: dict[str, Any] = settings_of(["a=1", "b=0.5", "c=None", "d=(1, 2)", "e=box", "f=x=y", "g="])
+    given: dict[str, Any] = read_settings(["a=1", "b=0.5", "c=None", "d=(1, 2)", "e=box", "f=x=y", "g="], ())
     assert given == {"a": 1, "b": 0.5, "c": None, "d": (1, 2), "e": "box", "f": "x=y", "g": ""}
 
 

@@ -20,6 +20,7 @@ from actr3d.actr.loading import load_text, run_text
 from actr3d.cli import event_line
 from actr3d.errors import ParameterError
 from actr3d.kinds import KINDS, LEVELS
+from actr3d.simulation import Passage
 from actr3d.trace import Trace, TraceEvent
 
 ROOT = Path(__file__).parent.parent
@@ -87,7 +88,9 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     done = subprocess.run(arguments, capture_output=True, text=True, check=True, timeout=60)
     printed = [TraceEvent(0, line["source"], line["kind"], line["data"]) for line in map(json.loads, done.stdout.splitlines())]
     simulation = driving("all")
+    simulation.measure(Passage("walker"))
     simulation.run(0.1)
+    simulation.conclude()
     mover, motor = moving(trace="all")
     motor.rotate_torso(2)
     motor.rotate_torso(1)

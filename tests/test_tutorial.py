@@ -16,14 +16,20 @@ from itertools import zip_longest
 from pathlib import Path
 
 import pytest
-from golden.make import EMBODIED, GOLDEN, MODELS, OURS, ROOT, command, golden_file, golden_names, model_names, options, record
+from golden.make import EMBODIED, GOLDEN, MODELS, OURS, ROOT, command, golden_file, golden_names, model_file, model_names, options, record
 
 from actr3d.actr.sweep import parameters
 from actr3d.cli import main
 
 NAMES = model_names()
 TUTORIAL = [name for name in NAMES if name.startswith("tutorial/")]
-NOISY = {"tutorial/partial_matching", "tutorial/sos_vision", "tutorial/utility_learning"}
+NOISY = {
+    "aperture_passage",
+    "aperture_passage@replication",
+    "tutorial/partial_matching",
+    "tutorial/sos_vision",
+    "tutorial/utility_learning",
+}
 """The models that draw random numbers which make a difference."""
 LARGEST = 300_000
 """No golden trace is larger [bytes]."""
@@ -97,7 +103,7 @@ def test_prints_the_same_under_python_actr(name: str, seed: str, tmp_path: Path)
 @pytest.mark.parametrize("until", ["0.01", "0.12", "3"])
 @pytest.mark.parametrize("name", NAMES)
 def test_can_be_ended_early(name: str, until: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", str(MODELS / f"{name}.py"), "--seed", "1", "--until", until, "--trace", "production"]) == 0
+    assert main(["run", str(ROOT / model_file(name)), "--seed", "1", "--until", until, "--trace", "production"]) == 0
     printed = capsys.readouterr()
     assert printed.err == ""
     moments = [float(line.split()[0]) for line in printed.out.splitlines() if " select " in line]

@@ -170,6 +170,8 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
         else:
             if begun:
                 simulation._course.repeat_commands()
+            if "ended" in recorded.facts:
+                simulation.conclude()
             if "whole" in recorded.facts:
                 simulation._journal.voice.finish()
             simulation._journal.check()

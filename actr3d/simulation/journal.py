@@ -130,6 +130,11 @@ class Journal:
             run = self.run
             self.trace.emit(0 if run is None else run.now_us() or 0, "model", "output", {"text": text})
 
+    def result(self, time: int, data: dict[str, Any]) -> None:
+        """Takes what was measured of the run, which is over at a time [us]."""
+        if self.trace is not None and self.trace.production:
+            self.trace.emit(time, "top", "result", data)
+
     @contextmanager
     def holding(self) -> Generator[None]:
         """Holds events back inside the block: whether they belong to the known run or to a new one is decided there."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.journal import Journal, Listener
 from actr3d.simulation.lockstep import Lockstep
+from actr3d.simulation.measuring import Measure
 from actr3d.simulation.minds import Factory
 from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
@@ -79,6 +81,7 @@ class Simulation:
         self._random = GlobalRandom()
         self._onlookers = Onlookers(self._random)
         self._submitted = Submissions()
+        self._measure: Measure | None = None
         self._owner = threading.get_ident()
 
     def _begin(self) -> Lockstep:
@@ -257,6 +260,34 @@ class Simulation:
     def observe(self, observer: Observer) -> None:
         """Calls an observer with a `Glimpse` after each tock, and after `seek`; it sees copies and can change nothing."""
         self._onlookers.add(observer)
+
+    def measure(self, measure: Measure) -> None:
+        """Lets a measure look at every physics step from the start of the run on; what it finds is the run's result.
+
+        Raises:
+            SimulationError: If the run has begun already, or has a measure.
+            Exception: What the measure raises, of what it does not find in the world.
+        """
+        if self._course.begun or self._measure is not None:
+            raise SimulationError("a run has one measure, which looks at it from its start on")
+        measure.begin(self.world)
+        self.world.watchers.append(measure.look)
+        self._measure = measure
+
+    def result(self) -> Any:
+        """Returns what has been measured of the run up to now; None where nothing is."""
+        if self._measure is None:
+            return None
+        minds = self._course.lockstep.minds
+        return self._measure.result(over=minds.stopped or minds.done)
+
+    def conclude(self) -> Any:
+        """Returns the result, and tells the trace of it: the run is not to go on."""
+        result = self.result()
+        if result is not None:
+            self._journal.result(self._course.lockstep.minds.time, asdict(result))
+            self._journal.check()
+        return result
 
     def listen(self, listener: Listener) -> None:
         """Calls a listener with every event of the trace from now on; not with those that `seek` goes through again.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from hashlib import blake2b
 from typing import Any
@@ -96,6 +96,9 @@ class World:
         self.fingerprint = _fingerprint(self.mj_model)
         """Two worlds have the same one where their scenes are compiled to the same bytes."""
         self._pace = Pace(self, list(self.bodies.values()))
+        self.watchers: list[Callable[[], None]] = []
+        """Who looks at every physics step, or part of one, and changes nothing: called after each. The geometry, contacts and forces
+        of `mj_data` are those of its beginning then, `time` and `opt.timestep` tell when it ended and how long it was."""
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -116,6 +119,7 @@ class World:
         running = [body.running for body in self.bodies.values() if body.running]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
         taken = self._stepped(steps, running) if running else self._pace.steps(steps)
+        taken = self._watched(taken) if self.watchers else taken
         if feeling:
             step_and_feel(taken, feeling)
         else:
@@ -137,6 +141,12 @@ class World:
             for commands in running:
                 commands.after_step()
                 self.changed()
+
+    def _watched(self, taken: Iterator[None]) -> Iterator[None]:
+        for _ in taken:
+            for watcher in self.watchers:
+                watcher()
+            yield
 
     def changed(self) -> None:
         """Notes that positions, speeds or commands are not those that were last computed with."""

@@ -45,7 +45,7 @@ def contacts(body: Body) -> tuple[Touch, ...]:
 def present(body: Body) -> tuple[Touch, ...]:
     """Returns what touches the skin in the present state, in the order of names. For observers: it starts no watch."""
     body.world.solve()
-    return _touches(body)
+    return last_felt(body)
 
 
 def step_and_feel(steps: Iterable[None], bodies: Iterable[Body]) -> None:
@@ -58,7 +58,7 @@ def step_and_feel(steps: Iterable[None], bodies: Iterable[Body]) -> None:
     felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
     for _ in steps:
         for body, hardest in felt:
-            for touch in _touches(body):
+            for touch in last_felt(body):
                 known = hardest.get((touch.part, touch.other))
                 if known is None or touch.force > known.force:
                     hardest[touch.part, touch.other] = touch
@@ -66,8 +66,8 @@ def step_and_feel(steps: Iterable[None], bodies: Iterable[Body]) -> None:
         body.touched = tuple(touch for _, touch in sorted(hardest.items()))
 
 
-def _touches(body: Body) -> tuple[Touch, ...]:
-    """Returns the touches that the solver has last found."""
+def last_felt(body: Body) -> tuple[Touch, ...]:
+    """Returns the touches that the solver has last found, in the order of names. For observers of single steps."""
     model, data = body.world.mj_model, body.world.mj_data
     if data.ncon == 0:
         return ()
