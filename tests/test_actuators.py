@@ -43,6 +43,16 @@ def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: 
     assert joint.position == near(target, abs=1e-6)
 
 
+def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
+    world, body = living()
+    body.set("position", "torso_yaw", 0.7, 2.0)
+    world.step(100)
+    assert body.joints["torso_yaw"].position == near(0.4, abs=1e-3)
+    world.step(1000)
+    assert body.joints["torso_yaw"].position == near(0.7, abs=1e-6)
+    assert not body.running
+
+
 def test_a_posture_moves_several_joints_while_walking() -> None:
     world, body = living()
     body.set("walk", 1.4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from hashlib import blake2b
 from typing import Any
@@ -15,8 +16,9 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
-from actr3d.world.pace import Pace
+from actr3d.world.pace import TICK, Pace
 from actr3d.world.parts import Aperture
+from actr3d.world.running import Running
 from actr3d.world.scene import Scene
 from actr3d.world.sensors.touch import step_and_feel
 from actr3d.world.servo import fit_servos
@@ -100,8 +102,8 @@ class World:
         return self._steps * self.scene.timestep_us
 
     def step(self, steps: int = 1) -> None:
-        """Advances the physics by a number of steps: one tick. Commands that are on their way choose their speeds
-        once, before it.
+        """Advances the physics by a number of steps: one tick, whose touches the skin remembers. Commands that are on their way
+        choose their speeds before it, and in a long one every 10 ms.
 
         Raises:
             WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is not one.
@@ -109,10 +111,8 @@ class World:
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"the physics goes on by a whole number of steps (got {steps!r})")
         running = [body.running for body in self.bodies.values() if body.running]
-        for commands in running:
-            commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
-        taken = self._pace.steps(steps)
+        taken = self._stepped(steps, running) if running else self._pace.steps(steps)
         if feeling:
             step_and_feel(taken, feeling)
         else:
@@ -120,11 +120,20 @@ class World:
                 pass
         self._steps += steps
         self.changed()
-        for commands in running:
-            commands.after_step()
-            self.changed()
         if self._warnings.any():
             raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
+
+    def _stepped(self, steps: int, running: list[Running]) -> Iterator[None]:
+        """Takes steps while commands are on their way, which look every 10 ms how far they are: a brake must not go on backwards."""
+        most = max(1, round(TICK / self.scene.timestep))
+        for first in range(0, steps, most):
+            count = min(most, steps - first)
+            for commands in running:
+                commands.before_step(count * self.scene.timestep)
+            yield from self._pace.steps(count)
+            for commands in running:
+                commands.after_step()
+                self.changed()
 
     def changed(self) -> None:
         """Notes that positions, speeds or commands are not those that were last computed with."""
