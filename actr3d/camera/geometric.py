@@ -30,7 +30,8 @@ class GeometricCamera:
     """Sees the edges of what is visible from one place of a MuJoCo model: exactly, and without pixels, names or meanings.
 
     Every geom is seen as MuJoCo's rays see it: not if its colour is fully transparent, planes from their front only, and
-    from inside a geom its inner sides. Flexes and skins are not seen, and a warning names them. What is changed in `mj_model`
+    from inside a geom its inner sides; but signed distance fields as the meshes that MuJoCo draws of them, a little beside where its
+    rays go. Flexes and skins are not seen, and a warning names them. What is changed in `mj_model`
     (sizes, colours, heights, poses) is seen at the next look; only what geoms there are, and of what type, is read once.
 
     A camera is for one thread at a time.
@@ -57,7 +58,7 @@ class GeometricCamera:
             parameters: What may be set; None: `CameraParameters()`.
 
         Raises:
-            CameraError: If there is no such eye, if `background` names no geom, or if a geom cannot be seen at all.
+            CameraError: If there is no such eye, or if `background` names no geom.
             ModelWarning: (a warning) Names flexes and skins, which are not seen.
         """
         _warn_of_unseen(mj_model)
