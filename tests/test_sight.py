@@ -83,6 +83,8 @@ def test_what_does_not_fit_is_told() -> None:
         ({"background": ("flor",)}, "no geom 'flor'; did you mean 'floor'"),
         ({"noise": 0.1}, "its fields have different units; name them"),
         ({"noise": {"d3": 0.1}}, "no field 'd3'"),
+        ({"noise": {1: 0.1}}, r"walker: noise of view: a field is named by text \(got 1\)"),
+        ({"rows": "ten"}, r"CameraParameters\.rows: must be a whole number \(got 'ten'\)"),
     ]
     for options, message in wrong:
         with pytest.raises(Actr3dError, match=message):
@@ -97,6 +99,14 @@ def test_noise_of_a_view_is_seeded_and_leaves_the_view_alone() -> None:
     assert noisy.extents["d1"].tolist() != plain.extents["d1"].tolist()
     assert noisy.extents.tobytes() == second.get("view", noise={"d1": 0.05}).extents.tobytes()
     assert first.get("view") is plain
+
+
+def test_numbers_may_come_as_text() -> None:
+    first, second = doorway().bodies["walker"], doorway().bodies["walker"]
+    plain = first.get("view", rows=7, range=5.5, noise={"d1": 0.05})
+    noise: Any = {"d1": "0.05"}
+    assert second.get("view", rows="7", range="5.5", noise=noise).extents.tobytes() == plain.extents.tobytes()
+    assert second.get("view", rows=7, range=5.5) is second.get("view", rows="7", range="5.5")
 
 
 SEEING: Any = load_text(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from actr3d.camera.geometric import GeometricCamera
@@ -58,10 +59,19 @@ def view(body: Body, **options: Any) -> View:
 
     Args:
         body: Whose.
-        options: The fields of `CameraParameters`; looks with the same options share their labels.
+        options: The fields of `CameraParameters`; looks with the same options share their labels. Numbers may come as text.
 
     Raises:
         ConfigurationError: If an option is no field, or a value is not what it takes.
         CameraError: If something named as background is not there.
     """
-    return body.sense(Sight, CameraParameters.from_mapping(options)).look()
+    named = {name: _meant(value) for name, value in options.items()}
+    return body.sense(Sight, CameraParameters.from_mapping(named)).look()
+
+
+def _meant(value: Any) -> Any:
+    """Returns the number that a text says: what a pattern binds is text; no option is one."""
+    for kind in (int, float) if isinstance(value, str) else ():
+        with suppress(ValueError):
+            return kind(value)
+    return value
