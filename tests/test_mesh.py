@@ -259,6 +259,12 @@ BROKEN: list[tuple[str, Callable[[], str | bytes], str]] = [
     ("mesh.obj", lambda: "Dear all,\nthis is not a mesh.\n" * 9, r"'mesh\.obj' has no triangles: is it a mesh file at all"),
     ("mesh.obj", lambda: TETRAHEDRON.split("f")[0], r"'mesh\.obj' has no triangles: only 4 points or lines"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("f 2 3 4", "f 2 3 9"), r"'mesh\.obj' cannot be read as obj: index 8 is out of bounds"),
+    (
+        "mesh.obj",
+        lambda: TETRAHEDRON.replace("f 2 3 4", "f 0 1 2"),
+        r"'mesh\.obj', line 8: a triangle refers to vertex 0; OBJ files count from 1",
+    ),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("f 2 3 4", "f 2 3 -5"), r"line 8: a triangle refers to number -5 of 4 before it"),
     ("mesh.ply", lambda: ply("0 0 0\n1 0 0\n0 1 0\n0 0 1", "3 0 1 7\n3 0 1 2"), r"refers to vertex \[0, 1, 7\]; there are 4 vertices"),
     ("mesh.ply", lambda: ply("0 0 0\n1 0 0\n0 1 0\n0 0 1", "3 0 1 -7\n3 0 1 2"), r"triangle 0 refers to vertex \[0, 1, -7\]"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 nan"), r"'mesh\.obj': a vertex is not finite: \[0\.0, 0\.0, nan\]"),
@@ -358,6 +364,18 @@ def test_a_mesh_with_a_hole_weighs_and_meets_as_its_hull(tmp_path: Path) -> None
     assert Mesh(name="m", path=path, collision="none").digest, "nothing is said where nothing depends on it"
     with pytest.raises(MeshError, match=r"Mesh 'm' \(mesh\.ply\): only a closed surface, .* can be cut into parts"):
         Mesh(name="m", path=path, collision="parts")
+
+
+def test_corners_may_be_counted_backwards(tmp_path: Path) -> None:
+    far = "v 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\n"
+    forwards = TETRAHEDRON + far + "f 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n"
+    backwards = TETRAHEDRON + far + "f -4 -2 \\\n -3 # first\nf -4/ -3 -1//\nf -4 -1 -2\n\tf -3 -2 -1\n"
+    worlds = [
+        World(Scene(parts=(Mesh(name="m", path=file(tmp_path, text, name)),)))
+        for name, text in (("one.obj", forwards), ("two.obj", backwards))
+    ]
+    assert worlds[0].mj_model.nmeshface == 8
+    assert worlds[0].fingerprint == worlds[1].fingerprint
 
 
 def test_a_flat_sheet_is_seen_from_both_sides(tmp_path: Path) -> None:
