@@ -430,12 +430,15 @@ def test_instances_are_counted_before_they_are_made(tmp_path: Path) -> None:
         ({"path": "one.stl", "quaternion": (1, 0, 0, 0), "heading": 1}, r"Mesh 'm': give a heading, or a quaternion"),
         ({"path": "one.stl", "files": (("two.stl", b""),)}, r"'two\.stl' is empty"),
         ({"path": "link.stl"}, r"'link\.stl' lies outside the folder 'here'"),
+        ({"path": "loop.stl"}, r"'loop\.stl' cannot be read: Symlink loop|no file 'loop\.stl'"),
+        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no path that can be read: Symlink loop|no file 'one\.stl'"),
     ],
 )
 def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     here = tmp_path / "here"
     here.mkdir()
     written(tmp_path, wedge(), "stl").rename(here / "one.stl")
+    (here / "loop.stl").symlink_to(here / "loop.stl")
     (here / "link.stl").symlink_to(file(tmp_path, stl(1), "outside.stl"))
     monkeypatch.chdir(here)
     with pytest.raises(Actr3dError, match=message):
