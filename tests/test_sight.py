@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +101,14 @@ def test_noise_of_a_view_is_seeded_and_leaves_the_view_alone() -> None:
     assert noisy.extents["d1"].tolist() != plain.extents["d1"].tolist()
     assert noisy.extents.tobytes() == second.get("view", noise={"d1": 0.05}).extents.tobytes()
     assert first.get("view") is plain
+
+
+def test_without_the_camera_the_word_says_where_it_is() -> None:
+    look = "from actr3d.world import Mannequin, Scene, World; World(Scene(parts=(Mannequin(),))).bodies['mannequin'].get('view')"
+    alone = subprocess.run([sys.executable, "-c", look], check=False, capture_output=True, text=True)
+    assert "mannequin: the sensor 'view' is the camera's: import actr3d.camera before the world is made" in alone.stderr
+    for package in ("actr3d.camera", "actr3d.simulation"):
+        assert subprocess.run([sys.executable, "-c", f"import {package}; {look}"], check=True, capture_output=True).stderr == b""
 
 
 def test_numbers_may_come_as_text() -> None:

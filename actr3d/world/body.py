@@ -162,6 +162,8 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is not what it takes.
         """
+        if word == "view" and word not in SENSORS:
+            raise WorldError(f"{self.name}: the sensor 'view' is the camera's: import actr3d.camera before the world is made")
         known(word, self.sensors, self.name, "sensor")
         reading = SENSORS[word](self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
