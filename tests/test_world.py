@@ -100,6 +100,12 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
         (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
         (lambda: doorway().step(-1), r"the physics goes on by a whole number of steps \(got -1\)"),
+        (lambda: doorway().set_aperture_width(1, 3), "no aperture '3' in this scene"),  # pyright: ignore[reportArgumentType]
+        (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
+        (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),
+        (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' cannot be a name"),
+        (lambda: Track(points=((0, 0), (1, 0), (1, 0))), r"Track 'track'\.points: the points 1 and 2 are the same, \(1\.0, 0\.0\)"),
+        (lambda: World(Floor()), r"a world is made of a Scene \(got Floor"),  # pyright: ignore[reportArgumentType]
         (lambda: World(Scene(), seed=-1), r"the seed of a world must be a whole number from 0 on \(got -1\)"),
     ],
 )
@@ -112,6 +118,16 @@ def test_physics_that_diverges_says_so() -> None:
     world = doorway()
     world.mj_data.qvel[0] = 1e20
     with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
+
+
+def test_what_has_diverged_is_named() -> None:
+    near_one, far = Loose(name="near"), Loose(name="far", position=(1e12, 0, 0))
+    with pytest.raises(Actr3dError, match=r"the physics diverged near 0\.002 s, at 'far'"):
+        World(Scene(parts=(Mannequin(), near_one, far))).step()
+    world = World(Scene(parts=(Mannequin(), near_one, Loose(name="last", position=(9, 0, 1)))))
+    world.mj_data.qvel[world.mj_model.joint("last").dofadr[0] + 2] = 1e20
+    with pytest.raises(Actr3dError, match=r"the physics diverged near .*, at 'last'"):
         world.step()
 
 

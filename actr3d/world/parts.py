@@ -164,6 +164,17 @@ class Track(Configuration):
     colour: Colour = (0.95, 0.95, 0.95, 1.0)
     """Red, green, blue, alpha in 0 to 1."""
 
+    def __post_init__(self) -> None:
+        """Checks the fields.
+
+        Raises:
+            ConfigurationError: If a field is wrong, or two points in a row are the same.
+        """
+        super().__post_init__()
+        for n, (one, other) in enumerate(pairwise(self.points)):
+            if one == other:
+                raise ConfigurationError(f"Track '{self.name}'.points: the points {n} and {n + 1} are the same, {one}")
+
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds one thin box for each piece of each line, all in one fixed body."""
         body = mj_spec.worldbody.add_body(name=self.name)

@@ -58,12 +58,15 @@ class World:
         seed: Where the noise of sensors comes from.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene, and says what MuJoCo said; or if the seed is not a whole number from 0 on.
+        WorldError: If MuJoCo cannot compile the scene, and says what MuJoCo said; if it is none; or if the seed is
+            not a whole number from 0 on.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
         if not isinstance(seed, int) or seed < 0:  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a file
             raise WorldError(f"the seed of a world must be a whole number from 0 on (got {seed!r})")
+        if not isinstance(scene, Scene):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"a world is made of a Scene (got {scene!r})")
         self.scene = scene
         self.seed = seed
         try:
@@ -121,7 +124,7 @@ class World:
         self._steps += steps
         self.changed()
         if self._warnings.any():
-            raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
+            raise WorldError(f"the physics diverged near {seconds(self.time)} s{self._culprit()}: forces or speeds without bounds")
 
     def _stepped(self, steps: int, running: list[Running]) -> Iterator[None]:
         """Takes steps while commands are on their way, which look every 10 ms how far they are: a brake must not go on backwards."""
@@ -267,9 +270,18 @@ class World:
         return self._root_name(body) if body else str(self.mj_model.geom(geom).name)
 
     def _aperture(self, name: str) -> Aperture:
-        if name not in self._apertures:
-            raise WorldError(f"no aperture '{name}' in this scene{did_you_mean(name, self._apertures)}")
+        if not isinstance(name, str) or name not in self._apertures:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"no aperture '{name}' in this scene{did_you_mean(str(name), self._apertures)}")
         return self._apertures[name]
+
+    def _culprit(self) -> str:
+        """Returns which object has the number that MuJoCo found to be no good."""
+        model: Any = self.mj_model
+        kind = int(np.argmax(self._warnings))
+        number = int(self.mj_data.warning.lastinfo[_DIVERGED][kind])
+        # MuJoCo counts the first kind, bad positions, by position, the others by degree of freedom.
+        joint = int(np.searchsorted(model.jnt_qposadr, number, side="right")) - 1 if kind == 0 else int(model.dof_jntid[number])
+        return f", at '{self._root_name(int(model.jnt_bodyid[joint]))}'"
 
     def _mocap(self, name: str) -> int:
         body: Any = self.mj_model.body(name)
