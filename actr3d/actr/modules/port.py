@@ -110,8 +110,7 @@ class Port(Model):
             )
         embodiment = self._find_embodiment()
         if embodiment is None:
-            kind = "port" if isinstance(self, BodyPort) else type(self).__name__
-            raise SimulationError(f"{kind} '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
+            raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
         return embodiment
 
     def _find_embodiment(self) -> Embodiment | None:
