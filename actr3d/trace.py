@@ -249,9 +249,9 @@ def top_path(number: int) -> str:
     return "top" if number == 1 else f"top#{number}"
 
 
-def _rank(what: str, level: str) -> int:
+def _rank(what: str, level: Any) -> int:
     if level not in LEVELS:
-        raise ParameterError(f"{what}: no level {level!r}; use one of {', '.join(LEVELS)}{did_you_mean(level, LEVELS)}")
+        raise ParameterError(f"{what}: no level {level!r}; use one of {', '.join(LEVELS)}{did_you_mean(str(level), LEVELS)}")
     return LEVELS.index(level)
 
 

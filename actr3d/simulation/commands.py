@@ -87,7 +87,7 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
         SimulationError: If there is no such body, or more than one, or a value is not plain.
     """
     bodies: Mapping[str, Any] = world.bodies
-    given: tuple[Any, Any] = (word, body or "")
+    given: tuple[Any, Any] = (word, "" if body is None else body)
     for text in given:
         if not isinstance(text, str):
             raise SimulationError(f"a command is a word, and its body is named by one (got {text!r})")
