@@ -57,6 +57,11 @@ class Pace:
         self._others = [_others(body) for body in bodies]
         self._radii = [radius(body) for body in bodies]
 
+    def stretches(self, steps: int) -> Iterator[int]:
+        """Divides a number of steps into stretches of 10 ms, or what is left; between them bodies look where they are."""
+        for start in range(0, steps, self._tick):
+            yield min(self._tick, steps - start)
+
     def steps(self, steps: int) -> Iterator[None]:
         """Advances the physics by whole steps, cut into parts where a body is fast; yields after each part.
 
@@ -64,8 +69,7 @@ class Pace:
             WorldError: If a body gets faster than any number of parts is enough for: the physics has diverged.
         """
         model, data = cast("Any", self._world.mj_model), self._world.mj_data
-        for start in range(0, steps, self._tick):
-            count = min(self._tick, steps - start)
+        for count in self.stretches(steps):
             fine = self._prepare(count)
             for _ in range(count):
                 parts = self._needed() if fine else 1

@@ -16,7 +16,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
-from actr3d.world.pace import TICK, Pace
+from actr3d.world.pace import Pace
 from actr3d.world.parts import Aperture
 from actr3d.world.running import Running
 from actr3d.world.scene import Scene
@@ -132,9 +132,7 @@ class World:
 
     def _stepped(self, steps: int, running: list[Running]) -> Iterator[None]:
         """Takes steps while commands are on their way, which look every 10 ms how far they are: a brake must not go on backwards."""
-        most = max(1, round(TICK / self.scene.timestep))
-        for first in range(0, steps, most):
-            count = min(most, steps - first)
+        for count in self._pace.stretches(steps):
             for commands in running:
                 commands.before_step(count * self.scene.timestep)
             yield from self._pace.steps(count)
