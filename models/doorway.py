@@ -41,7 +41,6 @@ class Walker(ACTR):
     felt = Buffer()
     eye = BodyPort(seen)
     skin = BodyPort(felt)
-    speed = 1.2
 
     def init():
         goal.set("approach")

@@ -164,7 +164,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, output: ToldO
         return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
     simulation._journal.raise_level("all")
     simulation._journal.listen(events.take)
-    simulation._course.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
+    simulation.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
     difference: str | None = None
     try:
         for tick, state, count in recorded.states():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from actr3d.kinds import KINDS, LEVELS
 from actr3d.trace import Run, Trace, TraceEvent, top_path
@@ -40,6 +41,12 @@ class ProgramRun:
         return source if self._number == 1 else top if source == "top" else f"{top}.{source}"
 
     # -- what the trace asks of it
+
+    @property
+    def model(self) -> Any:
+        """The environment of its minds; None where it is gone."""
+        present = self._present()
+        return None if present is None else present.model
 
     def now_us(self) -> int | None:
         """Returns its present [us]; None where it is gone."""
