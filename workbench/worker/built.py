@@ -1,0 +1,251 @@
+"""A run of what a model file builds: minds and bodies in a world, which can go back and another way."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.picture import picture_of
+from actr3d.clock import MICROSECONDS, microseconds, seconds
+from actr3d.errors import SimulationError
+from actr3d.recording import Recording
+from actr3d.running.building import build
+from actr3d.running.complaint import complaint
+from actr3d.running.printed import BuiltOutput
+from actr3d.simulation import Command, Simulation
+from actr3d.trace import Trace
+from actr3d.values import to_json
+from actr3d.world import Aperture, Floor, Mannequin
+from actr3d.world.sensors.touch import present
+from workbench import protocol as say
+from workbench.loader import Listing
+from workbench.worker.answers import answer
+from workbench.worker.conductor import Conductor
+from workbench.worker.messages import Facts, Notice
+from workbench.worker.watch import Touches
+
+BLOCK = 0.004
+"""For about so long [s] the run goes on before it looks whether a user has said something."""
+MOST_TICKS = 64
+"""And for no more ticks than these."""
+
+
+class BuiltRun:
+    """Runs a simulation as a conductor says.
+
+    Args:
+        conductor: Says when it goes on.
+        listing: What the model's text says of itself.
+    """
+
+    def __init__(self, conductor: Conductor, listing: Listing) -> None:
+        self._conductor = conductor
+        self._listing = listing
+        self._start = conductor.link.start
+        self._recording: Recording | None = None
+        self._tick_time = 0.0
+        self._simulation: Simulation
+
+    def play(self) -> None:
+        """Builds and runs it, until the worker is to leave.
+
+        Raises:
+            Exception: What the model raises in being built.
+        """
+        start = self._start
+        limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
+        with limits, suppress(EndOfRun), BuiltOutput(limits) as output:
+            random.seed(limits.program_seed)
+            simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder))
+            output.lead_to(simulation)
+            self._simulation = simulation
+            self._prepare(limits, parameters)
+            try:
+                self._conductor.run = self
+                self._conductor.link.post(self._facts(limits, parameters))
+                self._conductor.show()
+                while True:
+                    self._conductor.attend()
+                    self._go_on(output.finish)
+            finally:
+                if self._recording is not None:
+                    self._recording.close()
+
+    def _prepare(self, limits: RunLimits, parameters: dict[str, Any]) -> None:
+        simulation, start = self._simulation, self._start
+        simulation.traced()
+        if start.record is not None:
+            facts = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
+            self._recording = simulation.record(start.record, **facts, program_seed=limits.program_seed)
+        if start.commands:
+            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
+
+    def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
+        model = self._simulation.world.mj_model
+        saved = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+        mujoco.mj_saveModel(model, None, saved)
+        return Facts(
+            kind="simulation",
+            seed=limits.program_seed,
+            period=self._simulation.period,
+            parameters=to_json(parameters).encode(),
+            world=to_json(self._world_facts()).encode(),
+            mj_model=saved.tobytes(),
+        )
+
+    def _world_facts(self) -> dict[str, Any]:
+        world = self._simulation.world
+        people = {part.name: part.shoulder_width for part in world.scene.parts if isinstance(part, Mannequin)}
+        bodies = {
+            name: {
+                "shoulders": people.get(name),
+                "eye": body.eye,
+                "root": body.root,
+                "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
+            }
+            for name, body in world.bodies.items()
+        }
+        return {"bodies": bodies, "apertures": [part.name for part in world.scene.parts if isinstance(part, Aperture)]}
+
+    def _go_on(self, finish: Callable[[], None]) -> None:
+        """Goes on by a few ticks."""
+        conductor, simulation = self._conductor, self._simulation
+        ticks = self._allowance()
+        begin = perf_counter()
+        try:
+            report = simulation.run(ticks * simulation.period)
+        except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
+            told = complaint(error)
+            conductor.tell(Notice(level="error", text=told.message, file=told.file, line=told.line, detail=told.text))
+            conductor.end("failed", told.message)
+            return
+        self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
+        conductor.passed()
+        if report.ended_by == "stop" or simulation.done:
+            finish()
+            by = "stop" if report.ended_by == "stop" else "done"
+            if self._recording is not None:
+                self._recording.fact("ended", {"by": by})
+            conductor.end("ended", "a mind said stop" if by == "stop" else "no mind has anything left to do")
+        else:
+            conductor.pace(self.clock)
+
+    def _allowance(self) -> int:
+        """Returns how many ticks to go before looking again what users want."""
+        conductor = self._conductor
+        if conductor.watch.fine:
+            return 1
+        most = min(MOST_TICKS, int(BLOCK / self._tick_time)) if self._tick_time > 0 else 1
+        if conductor.factor is not None:
+            most = min(most, int(conductor.factor * BLOCK * MICROSECONDS / self.period))
+        if conductor.watch.goal is not None:
+            most = min(most, -(-(conductor.watch.goal - self.clock) // self.period))
+        return max(1, most)
+
+    # -- what the conductor asks
+
+    @property
+    def clock(self) -> int:
+        """How much time has passed since its start [us]."""
+        return self._simulation.ticks * self.period
+
+    @property
+    def furthest(self) -> int:
+        """How far it has come [us]."""
+        return microseconds(self._simulation.furthest)
+
+    @property
+    def period(self) -> int:
+        """A tick [us]."""
+        return microseconds(self._simulation.period)
+
+    @property
+    def trace(self) -> Trace | None:
+        """The trace up to now."""
+        return self._simulation.trace
+
+    def do(self, command: Any) -> None:
+        """Does what a user wants of the simulation.
+
+        Raises:
+            SimulationError: If it cannot be done.
+            Exception: What the world, a body or a mind raises.
+        """
+        match command:
+            case say.Back():
+                self._seek(max(0, self._simulation.ticks - command.ticks))
+            case say.Seek():
+                self._seek(round(command.time * MICROSECONDS / self.period))
+            case say.Aperture():
+                self._command("aperture", (command.width,), {"name": command.name}, None)
+            case say.Say():
+                self._command(command.word, command.values, command.named, command.body)
+            case say.Set():
+                parameter = self._listing.parameter(command.name)
+                if parameter.live is None:
+                    raise SimulationError(f"'{command.name}' cannot change while a run goes on; begin again with the new value")
+                parameter.check(command.value)
+                live = parameter.live
+                self._command(live.word, (*live.before, command.value), {}, live.body)
+            case _:
+                raise SimulationError(f"'{command.type}' is nothing that is said to a run")
+
+    def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None) -> None:
+        trace = self._simulation.trace
+        before = 0 if trace is None else len(trace)
+        self._simulation.command(word, *values, body=body, **named)
+        self._conductor.goes_another_way(before)
+
+    def _seek(self, tick: int) -> None:
+        self._simulation.seek(seconds(tick * self.period))
+        self._conductor.went_back()
+
+    def answer(self, question: Any) -> Any:
+        """Returns what is asked.
+
+        Raises:
+            Exception: Says why it cannot be told.
+        """
+        return answer(question, self.trace, list(self._simulation.minds.values()), self._simulation.world)
+
+    def scene(self) -> tuple[bytes | None, dict[str, float]]:
+        """Returns the physics' state, and how wide apertures are."""
+        world = self._simulation.world
+        names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
+        return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+
+    def parts(self) -> dict[str, dict[str, Any]]:
+        """Returns what all parts of all minds are like."""
+        told: dict[str, dict[str, Any]] = {}
+        for mind in self._simulation.minds.values():
+            told |= picture_of(mind)
+        return told
+
+    def touches(self) -> Touches:
+        """Returns what touches a body now, the ground left out."""
+        world = self._simulation.world
+        ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
+        return frozenset(
+            (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
+        )
+
+
+def _finite(limit: float) -> float | None:
+    return None if limit in (float("inf"), float("-inf")) else limit
+
+
+def check(source: str, filename: str, folder: Path) -> dict[str, Any]:
+    """Loads a model and builds what it describes with its defaults; runs nothing. Returns the values of its parameters."""
+    limits = RunLimits(seed=0)
+    with limits, BuiltOutput(limits):
+        _, parameters = build(source, filename, {}, folder)
+    return json.loads(to_json(parameters))
