@@ -215,7 +215,8 @@ def _of_first_lines(source: str) -> Iterator[Parameter]:
         default = _default(node.value, {})
         if default["known"]:
             value = default["default"]
-            takes = {bool: "switch", int: "number", float: "number", str: "text"}.get(type(value), type(value).__name__)
+            kind = type(value).__name__
+            takes = {"bool": "switch", "int": "number", "float": "number", "str": "text"}.get(kind, kind)
             yield Parameter(name=name, takes=takes, **default, optional=value is None, line=node.lineno)
 
 
@@ -256,7 +257,7 @@ def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
 
 def _productions(tree: ast.Module) -> Iterator[str]:
     """Yields the methods of classes all of whose parameters have defaults."""
-    for kind in tree.body:
-        for node in kind.body if isinstance(kind, ast.ClassDef) else ():
+    for kind in (node for node in tree.body if isinstance(node, ast.ClassDef)):
+        for node in kind.body:
             if isinstance(node, ast.FunctionDef) and node.args.args and len(node.args.defaults) == len(node.args.args):
                 yield f"{kind.name}.{node.name}"

@@ -96,7 +96,7 @@ def _look(body: Any) -> dict[str, Any]:
 
     view = glance(body)
     extents = view.as_array()
-    return {"body": body.name, "rows": view.rows, "fields": list(extents.dtype.names), "extents": extents.tolist()}
+    return {"body": body.name, "rows": view.rows, "fields": list(extents.dtype.names or ()), "extents": extents.tolist()}
 
 
 def _stand(body: Any) -> dict[str, Any]:

@@ -1,0 +1,422 @@
+"""A session: one model, its present run in a worker, and the browsers that watch it and share control."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import signal
+import time
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from actr3d.actr.limits import fresh_seed
+from actr3d.actr.reading import read_source
+from actr3d.errors import Actr3dError, SimulationError
+from workbench import protocol as say
+from workbench.feed import MOST_NOTICES, EventLog, Feed, Raw
+from workbench.loader import listing_of
+from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Over, Reply, Start, State, Where
+from workbench.worker.workers import Worker, Workers
+
+SILENT = 1.0
+"""A run that goes on and says nothing for so long [s] is asked where it is."""
+MOST_WAITING = 200
+"""So many commands and questions of one session may wait for their answers."""
+MOST_PRINTED = 200
+"""So many lines that a worker prints past its model's `print` are told of; the rest is left out."""
+
+Watcher = Callable[["Session", Facts | State | None], None]
+
+
+class Session:
+    """Runs one model, again and again, and tells all who watch.
+
+    Args:
+        name: What it is called.
+        path: The model file.
+        workers: Who gives workers.
+        recording: Returns a new file for a recording of a model of that name.
+        shown_path: The model as pages call it.
+    """
+
+    def __init__(self, name: str, path: Path, workers: Workers, recording: Callable[[str], Path], shown_path: str) -> None:
+        self.name = name
+        self.path = path
+        self.model = shown_path
+        self.feeds: list[Feed] = []
+        self.watchers: list[Watcher] = []
+        """Are told of the facts of each new run, of each state, and by None of the end."""
+        self.run = self.epoch = self.state_version = self.facts_version = 0
+        self.log = EventLog()
+        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
+        self.state: State | None = None
+        self.facts: Facts | None = None
+        self.start: Start | None = None
+        """What the present run began with."""
+        self.speed: float | None = None
+        self.breakpoints: tuple[str, ...] = ()
+        self.has_scene = False
+        """Whether there is a 3D view to look at."""
+        self._workers = workers
+        self._new_recording = recording
+        self._worker: Worker | None = None
+        self._tasks: set[asyncio.Task[Any]] = set()
+        self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
+        self._number = self._notice_number = 0
+        self._heard = time.monotonic()
+        self._controlled_by = ""
+        self._ending = ""
+        self._stuck: dict[str, Any] | None = None
+        self._loading: Worker | None = None
+        self._asked: set[Worker] = set()
+        """The workers that were asked to end."""
+
+    # -- its runs
+
+    async def begin(
+        self,
+        settings: dict[str, Any] | None = None,
+        *,
+        seed: int | None = None,
+        record: bool = True,
+        run: bool = False,
+        source: str | None = None,
+        commands: list[tuple[int, dict[str, Any]]] | None = None,
+    ) -> None:
+        """Begins a new run in a new worker; the old one stays until this one is built, so that an error leaves it on screen.
+
+        Args:
+            settings: Values of parameters; None for those of the present run.
+            seed: None for a fresh one.
+            record: Whether it is recorded.
+            run: Whether it goes on at once.
+            source: The model's text; None for what is in the file now.
+            commands: What users did in an earlier run, to be done again.
+
+        Raises:
+            ModelFileError: If the file cannot be read.
+            OSError: If no worker can be started.
+        """
+        text = read_source(self.path) if source is None else source
+        before = self.start.settings if self.start is not None else {}
+        start = Start(
+            path=str(self.path),
+            source=text,
+            folder=str(self.path.parent),
+            settings=before if settings is None else settings,
+            seed=fresh_seed() if seed is None else seed,
+            record=str(self._new_recording(self.path.stem)) if record else None,
+            commands=commands or [],
+            factor=self.speed,
+            breakpoints=self.breakpoints,
+            run=run,
+        )
+        worker = await self._workers.launch()
+        if self._loading is not None:
+            self._leave(self._loading)
+        self._loading = worker
+        self._ending = ""
+        self._heard = time.monotonic()
+        worker.send(start)
+        self._keep(self._serve(worker, start))
+        self._changed(facts=True)
+
+    async def _serve(self, worker: Worker, start: Start) -> None:
+        """Takes what a worker says, until it is gone; then tells how it ended."""
+        printing = asyncio.create_task(self._print(worker))
+        watching = asyncio.create_task(self._watch(worker))
+        over = False
+        try:
+            while (message := await worker.receive()) is not None:
+                over |= isinstance(message, Over)
+                self._take(worker, start, message)
+        except (ValueError, msgspec.MsgspecError) as error:
+            self.tell(Notice(level="error", text=f"the worker said what nobody understands, and was ended ({error})"))
+        watching.cancel()
+        if not over:
+            await worker.stop()
+        status = await worker.exit
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(printing, 1)
+        self._take_end(worker, status, over=over)
+
+    def _take(self, worker: Worker, start: Start, message: FromWorker) -> None:
+        """Takes one message of a worker."""
+        if isinstance(message, Reply):
+            waiting = self._waiting.pop(message.id, None)
+            if waiting is not None and not waiting[1].done():
+                waiting[1].set_result(message)
+            return
+        if isinstance(message, Facts) and worker is self._loading:
+            self._swap(worker, start, message)
+        if worker not in (self._worker, self._loading):
+            return
+        self._heard = time.monotonic()
+        match message:
+            case State() if worker is self._worker:
+                if self._stuck is not None:
+                    self._stuck = None
+                    self._changed(facts=True)
+                self.state = message
+                self.state_version += 1
+                self._tell_watchers(message)
+            case News() if worker is self._worker:
+                self.log.add(message.first, message.events)
+            case Cut() if worker is self._worker:
+                self.epoch += 1
+                self.log.cut(message.events)
+                for feed in self.feeds:
+                    feed.cut(message.events)
+            case Notice():
+                self.tell(message)
+            case At():
+                self._stuck = {"file": message.file, "line": message.line, "function": message.function}
+                self._changed(facts=True)
+            case _:
+                pass
+        self._changed()
+
+    def _swap(self, worker: Worker, start: Start, facts: Facts) -> None:
+        """Shows the run of a worker that has been built, in place of the one before."""
+        before, self._worker, self._loading = self._worker, worker, None
+        if before is not None:
+            self._leave(before)
+        self.run += 1
+        self.epoch += 1
+        self.log = EventLog()
+        self.start, self.facts, self.state, self._stuck = start, facts, None, None
+        self._tell_watchers(facts)
+        self._changed(facts=True)
+
+    def _take_end(self, worker: Worker, status: int, *, over: bool) -> None:
+        """Tells how a worker has ended."""
+        for number in [number for number, (asked, _) in self._waiting.items() if asked is worker]:
+            _, waiting = self._waiting.pop(number)
+            if not waiting.done():
+                waiting.set_result(Reply(id=number, error="the run has ended"))
+        asked = worker in self._asked
+        self._asked.discard(worker)
+        if worker not in (self._worker, self._loading):
+            return
+        self._ending = "stopped" if asked else _why(status) if not over else ""
+        if not (asked or over):
+            where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
+            self.tell(Notice(level="error", text=f"{self._ending}{where}"))
+        if worker is self._loading:
+            self._loading = None
+        else:
+            self._worker = None
+            self._stuck = None
+            if self.state is not None and self.state.status not in ("ended", "failed"):
+                status_now = "failed" if self._ending != "stopped" else "ended"
+                reason = self._ending or "the worker has ended"
+                self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
+                self.state_version += 1
+        self._changed(facts=True)
+
+    def _leave(self, worker: Worker) -> None:
+        """Ends a worker, without waiting for it."""
+        self._asked.add(worker)
+        self._keep(worker.stop())
+
+    async def stop(self) -> None:
+        """Ends the workers, whatever they do; at the latest after two seconds they are gone."""
+        workers = [worker for worker in (self._worker, self._loading) if worker is not None]
+        self._asked.update(workers)
+        await asyncio.gather(*(worker.stop() for worker in workers))
+
+    async def close(self) -> None:
+        """Ends everything."""
+        await self.stop()
+        for watcher in self.watchers:
+            watcher(self, None)
+        for task in self._tasks:
+            task.cancel()
+
+    async def _print(self, worker: Worker) -> None:
+        """Tells what a worker prints past its model's `print`."""
+        count = 0
+        while True:
+            try:
+                line = await worker.output.readline()
+            except ValueError:  # a line that is longer than the stream takes
+                continue
+            if not line:
+                return
+            count += 1
+            text = line.decode(errors="replace").rstrip()
+            if count <= MOST_PRINTED and text:
+                self.tell(Notice(level="info", text=text))
+            elif count == MOST_PRINTED + 1:
+                self.tell(Notice(level="warning", text="the model's process prints much more; that is left out"))
+
+    async def _watch(self, worker: Worker) -> None:
+        """Asks a worker where it is when it goes on and says nothing."""
+        while True:
+            await asyncio.sleep(SILENT / 4)
+            busy = worker is self._loading or bool(self._waiting) or (self.state is not None and self.state.status == "running")
+            if busy and worker in (self._worker, self._loading) and time.monotonic() - self._heard > SILENT:
+                worker.send(Where())
+
+    # -- what is said to it
+
+    async def carry_out(self, said: Any, who: str = "") -> Reply:
+        """Does what somebody wants, or answers what is asked; what comes of it is told, errors too.
+
+        Args:
+            said: One of `protocol.Anything`.
+            who: Who says it, as others are told.
+        """
+        if not isinstance(said, (say.Explain, say.Rows, say.Look, say.Body, say.Events)) and who and who != self._controlled_by:
+            self._controlled_by = who
+            self._changed(facts=True)
+        try:
+            match said:
+                case say.Stop():
+                    await self.stop()
+                case say.Restart():
+                    seed = said.seed if said.seed is not None or said.new_seed or self.start is None else self.start.seed
+                    await self.begin(said.settings, seed=seed, record=said.record, run=said.run)
+                case _:
+                    self._note(said)
+                    return await self._ask(said)
+        except (Actr3dError, OSError) as error:
+            return Reply(id=0, error=str(error))
+        return Reply(id=0)
+
+    def _note(self, said: Any) -> None:
+        """Keeps what holds for later runs, too."""
+        if isinstance(said, say.Speed):
+            self.speed = said.factor
+        elif isinstance(said, say.Breakpoints):
+            self.breakpoints = said.productions
+            self._changed(facts=True)
+
+    async def _ask(self, said: Any) -> Reply:
+        worker = self._worker
+        if worker is None:
+            raise SimulationError("there is no run: begin one")
+        if len(self._waiting) >= MOST_WAITING:
+            raise SimulationError("too much waits for its answer already; is the model busy?")
+        self._number += 1
+        number = self._number
+        waiting: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
+        self._waiting[number] = worker, waiting
+        if len(self._waiting) == 1:
+            self._heard = max(self._heard, time.monotonic())
+        worker.send(Do(id=number, say=said.model_dump_json().encode()))
+        return await waiting
+
+    # -- what is told of it
+
+    def tell(self, notice: Notice) -> None:
+        """Tells all who watch something."""
+        told = {"level": notice.level, "text": notice.text, "file": self._shown_file(notice.file), "line": notice.line}
+        self.notices.append((self._notice_number, msgspec.json.encode({"number": self._notice_number, **told, "detail": notice.detail})))
+        self._notice_number += 1
+        self._changed()
+
+    def _shown_file(self, file: str | None) -> str | None:
+        """Returns a file of the model's folder as pages call it."""
+        if file == str(self.path):
+            return self.model
+        return file
+
+    def facts_json(self) -> bytes:
+        """Returns what is known of the session and its run."""
+        facts, start = self.facts, self.start
+        told: dict[str, Any] = {
+            **self.summary(),
+            "stuck": self._stuck,
+            "scene": self.has_scene,
+            "breakpoints": self.breakpoints,
+            "settings": start.settings if start is not None else {},
+            "seed": facts.seed if facts is not None else None,
+            "stale": start is not None and self._text_differs(start),
+            "recording": Path(start.record).stem if start is not None and start.record is not None else None,
+        }
+        if facts is not None:
+            told |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters), "world": Raw(facts.world)}
+        return msgspec.json.encode(told)
+
+    def summary(self) -> dict[str, Any]:
+        """Returns what a list of sessions tells of it."""
+        return {
+            "id": self.name,
+            "model": self.model,
+            "run": self.run,
+            "alive": self._worker is not None,
+            "loading": self._loading is not None,
+            "ending": self._ending,
+            "status": None if self.state is None else self.state.status,
+            "watching": [feed.name for feed in self.feeds],
+            "controlled_by": self._controlled_by,
+        }
+
+    def state_json(self) -> bytes:
+        """Returns the newest state."""
+        state = self.state
+        if state is None:
+            return b"null"
+        told = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
+        return msgspec.json.encode({**told, "apertures": state.apertures, "parts": Raw(state.parts)})
+
+    def listing(self) -> Any:
+        """Returns what the model's text, as the present run has it, says of itself."""
+        return listing_of(self.start.source if self.start is not None else read_source(self.path), str(self.path))
+
+    def scene_ready(self) -> None:
+        """Takes note that there is a 3D view now."""
+        self.has_scene = True
+        self._changed(facts=True)
+
+    def file_changed(self) -> None:
+        """Takes note that the model's file has been saved: the run may be stale now."""
+        self._changed(facts=True)
+
+    def _text_differs(self, start: Start) -> bool:
+        try:
+            return read_source(self.path) != start.source
+        except Actr3dError:
+            return True
+
+    # -- who watches
+
+    def join(self, name: str) -> Feed:
+        """Lets one more browser watch."""
+        feed = Feed(self, name)
+        self.feeds.append(feed)
+        self._changed(facts=True)
+        return feed
+
+    def part(self, feed: Feed) -> None:
+        """Takes note that a browser is gone."""
+        self.feeds.remove(feed)
+        self._changed(facts=True)
+
+    def _changed(self, *, facts: bool = False) -> None:
+        self.facts_version += facts
+        for feed in self.feeds:
+            feed.wake()
+
+    def _tell_watchers(self, what: Facts | State) -> None:
+        for watcher in self.watchers:
+            watcher(self, what)
+
+    def _keep(self, work: Any) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+
+def _why(status: int) -> str:
+    """Says how a process ended that nobody has asked to end."""
+    if status >= 0:
+        return f"the model ended its process, with exit code {status}"
+    name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)
+    more = {"SIGKILL": ": the system ended it, maybe for want of memory", "SIGSEGV": ": a crash in compiled code"}.get(name, "")
+    return f"the model's process was ended by {name}{more}"
