@@ -139,9 +139,10 @@ class Session:
         watching.cancel()
         if not over:
             await worker.stop()
-        status = await worker.exit
+        status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(printing, 1)
+        worker.release()
         self._take_end(worker, status, over=over)
 
     def _take(self, worker: Worker, start: Start, message: FromWorker) -> None:

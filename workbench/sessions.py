@@ -154,4 +154,5 @@ class Sessions:
         except (ValueError, msgspec.MsgspecError) as error:
             told.append({"level": "error", "message": f"the worker said what nobody understands ({error})", "line": None})
         await worker.stop()
+        worker.release()
         return told

@@ -25,8 +25,7 @@ def picture_of(top: Model) -> dict[str, dict[str, Any]]:
 
 
 def _part(part: Any) -> dict[str, Any]:
-    kind = type(part)
-    told: dict[str, Any] = {"is": _kind(part), "class": kind.__name__}
+    told: dict[str, Any] = {"is": _kind(part), "class": type(part).__name__}
     if isinstance(part, Buffer):
         return {**told, "chunk": traceable(part.chunk)}
     told["state"] = part._state()

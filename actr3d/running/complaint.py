@@ -26,10 +26,15 @@ class Complaint:
     """Its number in that file, from 1."""
 
 
-def complaint(error: BaseException) -> Complaint:
-    """Returns what is told of an error, and of what caused it; a file that cannot be loaded names its own line."""
+def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
+    """Returns what is told of an error, and of what caused it; a file that cannot be loaded names its own line.
+
+    Args:
+        error: The error.
+        hidden: The folder of the program that runs the model, whose lines are left out, too.
+    """
     report = traceback.TracebackException.from_exception(error)
-    _keep_own_lines(report)
+    _keep_own_lines(report, hidden)
     if isinstance(error, ModelFileError):
         report.stack.clear()
     text = "".join(report.format())
@@ -41,6 +46,8 @@ def complaint(error: BaseException) -> Complaint:
     if name in PYTHON_2_NAMES and isinstance(error, (NameError, ImportError, AttributeError)):
         text += f"'{name}' is a name of Python 2: this file is written for Python 2; convert it to Python 3\n"
     file, line = _place(error, report)
+    # A text's own name for tracebacks is a kind of text of its own.
+    file = None if file is None else str(file)
     message = str(error) if isinstance(error, Actr3dError) else "".join(report.format_exception_only()).strip()
     return Complaint(message=message, text=text, file=file, line=line)
 
@@ -56,10 +63,14 @@ def _place(error: BaseException, report: traceback.TracebackException) -> tuple[
     return None, None
 
 
-def _keep_own_lines(report: traceback.TracebackException | None) -> None:
+def _keep_own_lines(report: traceback.TracebackException | None, hidden: str | None) -> None:
     """Leaves the library's own lines, and the loader's, out of a report and out of those of its causes."""
     if report is not None:
-        own = [frame for frame in report.stack if not (is_library(frame.filename) or frame.filename.startswith("<frozen"))]
-        report.stack = traceback.StackSummary.from_list([frame for frame in own if Path(frame.filename).name != "actr3d"])
-        _keep_own_lines(report.__cause__)
-        _keep_own_lines(report.__context__)
+        report.stack = traceback.StackSummary.from_list([frame for frame in report.stack if not _is_ours(frame.filename, hidden)])
+        _keep_own_lines(report.__cause__, hidden)
+        _keep_own_lines(report.__context__, hidden)
+
+
+def _is_ours(file: str, hidden: str | None) -> bool:
+    loader = file.startswith("<frozen") or Path(file).name == "actr3d"
+    return loader or is_library(file) or (hidden is not None and file.startswith(hidden))

@@ -19,7 +19,6 @@ from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.running.building import build
-from actr3d.running.complaint import complaint
 from actr3d.running.printed import BuiltOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
@@ -30,7 +29,8 @@ from workbench import protocol as say
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor
-from workbench.worker.messages import Facts, Notice
+from workbench.worker.messages import Facts
+from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
 BLOCK = 0.004
@@ -124,9 +124,8 @@ class BuiltRun:
         try:
             report = simulation.run(ticks * simulation.period)
         except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
-            told = complaint(error)
-            conductor.tell(Notice(level="error", text=told.message, file=told.file, line=told.line, detail=told.text))
-            conductor.end("failed", told.message)
+            conductor.link.post(notice_of(error))
+            conductor.end("failed", told_of(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
         conductor.passed()

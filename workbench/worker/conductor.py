@@ -9,12 +9,12 @@ from typing import Any, Protocol
 from actr3d.actr.limits import EndOfRun
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import Actr3dError
-from actr3d.running.complaint import complaint
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.worker.link import Link
-from workbench.worker.messages import Cut, Do, Leave, Notice, Reply, State, Status
+from workbench.worker.messages import Cut, Do, Leave, Reply, State, Status, whole
+from workbench.worker.trouble import told_of
 from workbench.worker.watch import Touches, Watch
 
 SHOWN = 1 / 30
@@ -157,7 +157,7 @@ class Conductor:
 
     def pause(self, reason: str) -> None:
         """Holds the run."""
-        self.status, self.reason = "paused", reason
+        self.status, self.reason = "paused", whole(reason)
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
@@ -190,8 +190,7 @@ class Conductor:
             self.link.post(Reply(id=message.id))
             raise
         except Exception as error:  # noqa: BLE001 - whatever it is, who has said it is told
-            text = str(error) if isinstance(error, Actr3dError) else complaint(error).message
-            self.link.post(Reply(id=message.id, error=text or type(error).__name__))
+            self.link.post(Reply(id=message.id, error=told_of(error)))
             return
         self.link.post(Reply(id=message.id, result=to_json(result).encode()))
 
@@ -293,10 +292,6 @@ class Conductor:
         )
         self.link.show(state, self._sent, [to_json([e.time_us, e.source, e.kind, e.data]).encode() for e in news])
         self._sent = max(self._sent, count)
-
-    def tell(self, notice: Notice) -> None:
-        """Tells the user something."""
-        self.link.post(notice)
 
     def _halt(self) -> None:
         self._anchor = None

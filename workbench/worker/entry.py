@@ -14,12 +14,13 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.actr.limits import EndOfRun
-from actr3d.running.complaint import complaint
+from actr3d.actr.reading import compile_source
 from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.conductor import Conductor
 from workbench.worker.link import Link
-from workbench.worker.messages import Notice, Over, Reply
+from workbench.worker.messages import Over, Reply, notice
+from workbench.worker.trouble import notice_of
 
 MEGABYTE = 1 << 20
 
@@ -42,10 +43,8 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
         _run(link, conductor)
     except EndOfRun:
         pass
-    except MemoryError as error:
-        _complain(link, error, f"the model used more memory than it may, {memory:,} MB")
     except BaseException as error:  # noqa: BLE001 - SystemExit, too, is how a model ended
-        _complain(link, error, "")
+        link.post(notice_of(error))
     link.post(Over())
     link.close()
     with suppress(OSError):
@@ -56,6 +55,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
 
 def _run(link: Link, conductor: Conductor) -> None:
     start = link.start
+    compile_source(start.source, start.path)  # what is wrong with the text is told before anything else
     listing = listing_of(start.source, start.path)
     if start.job == "check":
         from workbench.worker.built import check
@@ -115,14 +115,6 @@ def _told_to(link: Link) -> Any:
     """Returns what takes the place of `warnings.showwarning`."""
 
     def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:
-        link.post(Notice(level="warning", text=str(message), file=filename, line=lineno))
+        link.post(notice("warning", str(message), filename, lineno))
 
     return show
-
-
-def _complain(link: Link, error: BaseException, reason: str) -> None:
-    told = complaint(error)
-    text = reason or told.message
-    if isinstance(error, SystemExit):
-        text = f"the model ended its process (SystemExit: {error.code})"
-    link.post(Notice(level="error", text=text, file=told.file, line=told.line, detail=told.text))

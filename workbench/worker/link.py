@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from time import perf_counter
 from types import FrameType
 
-from workbench.worker.messages import LENGTH, TO_WORKER, At, Do, Leave, Message, News, Start, State, Where, framed
+from workbench.worker.messages import LENGTH, TO_WORKER, At, Do, Leave, Message, News, Start, State, Where, framed, whole
 
 MOST_EVENTS = 50_000
 """So many events may wait to be sent; beyond that the oldest are left out, and the numbers tell so."""
@@ -90,7 +90,7 @@ class Link:
         lines: list[traceback.FrameSummary] = [] if frame is None else list(traceback.extract_stack(frame))
         folder = self.start.folder + os.sep
         own = [line for line in lines if line.filename == self.start.path or line.filename.startswith(folder)]
-        return At(file=own[-1].filename, line=own[-1].lineno, function=own[-1].name) if own else At(file=None, line=None)
+        return At(file=whole(own[-1].filename), line=own[-1].lineno, function=whole(own[-1].name)) if own else At(file=None, line=None)
 
     # -- what goes
 

@@ -13,6 +13,11 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_fiel
     """The base of all messages."""
 
 
+def whole(text: str) -> str:
+    """Returns a text that can be sent: half characters, which no encoding has, are written as escapes."""
+    return str(text).encode("utf-8", "backslashreplace").decode("utf-8")
+
+
 # -- to the worker
 
 
@@ -115,6 +120,13 @@ class Notice(Message, frozen=True, kw_only=True):
     file: str | None = None
     line: int | None = None
     detail: str = ""
+
+
+def notice(
+    level: Literal["info", "warning", "error"], text: str, file: str | None = None, line: int | None = None, detail: str = ""
+) -> Notice:
+    """Returns a notice of any texts, such as models make."""
+    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail))
 
 
 class Reply(Message, frozen=True, kw_only=True):

@@ -14,7 +14,6 @@ from actr3d.actr.sweep import with_values
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
-from actr3d.running.complaint import complaint
 from actr3d.running.printed import ProgramOutput
 from actr3d.trace import Trace, TraceEvent
 from actr3d.values import to_json
@@ -22,7 +21,8 @@ from workbench import protocol as say
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor, Leaving
-from workbench.worker.messages import Facts, Notice
+from workbench.worker.messages import Facts
+from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
 PERIOD = 10_000
@@ -108,9 +108,8 @@ class ProgramRun:
         except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
             if self._left:
                 return
-            told = complaint(error)
-            conductor.tell(Notice(level="error", text=told.message, file=told.file, line=told.line, detail=told.text))
-            self._end("failed", told.message)
+            conductor.link.post(notice_of(error))
+            self._end("failed", told_of(error))
             return
         if not self._left:
             if self._recording is not None:

@@ -21,6 +21,9 @@ PRINTED = 8192
 """So much of what a worker prints past its model's `print` is read at once [bytes]."""
 
 
+Output = tuple[asyncio.StreamReader, asyncio.BaseTransport]
+
+
 class Worker:
     """One worker process, as the server has it.
 
@@ -31,9 +34,9 @@ class Worker:
         output: What it prints past its model's `print`.
     """
 
-    def __init__(self, pid: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, output: asyncio.StreamReader) -> None:
+    def __init__(self, pid: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, output: Output) -> None:
         self.pid = pid
-        self.output = output
+        self.output, self._pipe = output
         self._reader = reader
         self._writer = writer
         self.exit: asyncio.Future[int] = asyncio.get_running_loop().create_future()
@@ -66,13 +69,17 @@ class Worker:
                 break
             self._signal(sign)
         await asyncio.shield(self.exit)
-        self._signal(signal.SIGKILL)  # processes that the model has started
-        self._writer.close()
+        self.kill()
 
     def kill(self) -> None:
-        """Ends it at once."""
+        """Ends it at once, and all processes that its model has started."""
         self._signal(signal.SIGKILL)
         self._writer.close()
+
+    def release(self) -> None:
+        """Lets go of what it was spoken to by; it is gone."""
+        self._writer.close()
+        self._pipe.close()
 
     async def _ended(self, wait: float) -> bool:
         with suppress(TimeoutError):
@@ -159,7 +166,8 @@ class Workers:
                 elif what == BORN:
                     self._born.put_nowait(pid)
                 elif (worker := self._alive.pop(pid, None)) is not None:
-                    worker.exit.set_result(status)
+                    if not worker.exit.done():
+                        worker.exit.set_result(status)
                 else:
                     self._early[pid] = status
         self._control = None
@@ -185,8 +193,8 @@ class Workers:
                 await asyncio.to_thread(self._zygote.wait)
 
 
-async def _stream(descriptor: int) -> asyncio.StreamReader:
+async def _stream(descriptor: int) -> Output:
     reader = asyncio.StreamReader(limit=PRINTED)
     protocol = asyncio.StreamReaderProtocol(reader)
-    await asyncio.get_running_loop().connect_read_pipe(lambda: protocol, os.fdopen(descriptor, "rb", buffering=0))
-    return reader
+    transport, _ = await asyncio.get_running_loop().connect_read_pipe(lambda: protocol, os.fdopen(descriptor, "rb", buffering=0))
+    return reader, transport

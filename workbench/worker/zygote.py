@@ -51,7 +51,10 @@ def main(number: int) -> None:
             _bury(control, children)
         if control not in ready:
             continue
-        data, descriptors, _, _ = socket.recv_fds(control, ASK.size, 2)
+        try:
+            data, descriptors, _, _ = socket.recv_fds(control, ASK.size, 2)
+        except ConnectionError:
+            break
         if not data:
             break
         pid = os.fork()
