@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Sequence
+from itertools import islice
 from typing import Any, Protocol
 
 import msgspec
@@ -14,6 +15,9 @@ MOST_EVENTS = 50_000
 MOST_NOTICES = 500
 AT_ONCE = 2_000
 """So many events go in one message."""
+
+MOST_BYTES = 500_000
+"""And no more than so many bytes of them, but for a single event that is larger."""
 
 Raw = msgspec.Raw
 
@@ -50,7 +54,14 @@ class EventLog:
     def since(self, number: int, most: int = AT_ONCE) -> tuple[int, list[bytes]]:
         """Returns events from a number on, and the number of the first of them: another where older ones are gone."""
         begin = max(0, number - self.first)
-        return self.first + begin, [self._events[n] for n in range(begin, min(len(self._events), begin + most))]
+        found: list[bytes] = []
+        size = 0
+        for event in islice(self._events, begin, begin + most):
+            size += len(event)
+            if found and size > MOST_BYTES:
+                break
+            found.append(event)
+        return self.first + begin, found
 
 
 class Shown(Protocol):

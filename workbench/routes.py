@@ -245,7 +245,7 @@ async def open_recording(request: Request, recording: Id) -> dict[str, Any]:
 async def replay(request: Request, recording: Id) -> dict[str, Any]:
     """Runs a recording again, in a process of its own, and says whether every byte agrees."""
     path = _sessions(request).recordings.path(recording)
-    command = [sys.executable, "-m", "actr3d", "replay", str(path)]
+    command = [sys.executable, "-m", "actr3d.cli", "replay", str(path)]
     environment = {**os.environ, "PYTHONHASHSEED": "0"}
     process = await asyncio.create_subprocess_exec(
         *command, stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT, env=environment

@@ -140,14 +140,16 @@ class SceneView:
             if not secrets.compare_digest(told, self._secret):
                 inner._live_connections.pop(client.client_id, None)
                 inner._client_state_from_id.pop(client.client_id, None)
-                raise PermissionError("only the workbench's bridge may connect")
+                if connection is not None:
+                    await connection.close(1008, "only the workbench's bridge may connect")
+                raise asyncio.CancelledError  # which ends this connection's task, and nothing else
 
         inner._client_connect_cb.insert(0, check)
         # Any browser could ask for a tunnel that opens this server to the world.
         inner.unregister_handler(_messages.ShareUrlRequest)
         inner.unregister_handler(_messages.ShareUrlDisconnect)
         inner.disconnect_all_clients()
-        server.gui.configure_theme(control_layout="collapsible", show_logo=False, show_share_button=False)
+        server.gui.configure_theme(show_logo=False, show_share_button=False)
         server.scene.set_up_direction("+z")
         server.on_client_connect(self._place_camera)
         return server

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import signal
 import time
 from collections import deque
@@ -129,6 +128,20 @@ class Session:
         """Takes what a worker says, until it is gone; then tells how it ended."""
         printing = asyncio.create_task(self._print(worker))
         watching = asyncio.create_task(self._watch(worker))
+        try:
+            over = await self._listen(worker, start)
+            if not over:
+                await worker.stop()
+            status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
+            await asyncio.wait([printing], timeout=1)
+            self._take_end(worker, status, over=over)
+        finally:
+            printing.cancel()
+            watching.cancel()
+            worker.release()
+
+    async def _listen(self, worker: Worker, start: Start) -> bool:
+        """Takes what a worker says; tells whether it ends in good order."""
         over = False
         try:
             while (message := await worker.receive()) is not None:
@@ -136,14 +149,7 @@ class Session:
                 self._take(worker, start, message)
         except (ValueError, msgspec.MsgspecError) as error:
             self.tell(Notice(level="error", text=f"the worker said what nobody understands, and was ended ({error})"))
-        watching.cancel()
-        if not over:
-            await worker.stop()
-        status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(printing, 1)
-        worker.release()
-        self._take_end(worker, status, over=over)
+        return over
 
     def _take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Takes one message of a worker."""
@@ -235,8 +241,12 @@ class Session:
         await self.stop()
         for watcher in self.watchers:
             watcher(self, None)
-        for task in self._tasks:
+        tasks = list(self._tasks)
+        if tasks:
+            await asyncio.wait(tasks, timeout=1)
+        for task in tasks:
             task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _print(self, worker: Worker) -> None:
         """Tells what a worker prints past its model's `print`."""

@@ -120,9 +120,8 @@ class Talk:
     @property
     def events(self) -> list[list[Any]]:
         """All events that the server knows."""
-        first, events = self.session.log.since(0, 10**9)
-        assert first == 0
-        return [json.loads(event) for event in events]
+        assert self.session.log.first == 0
+        return [json.loads(event) for event in list(self.session.log._events)]
 
     def wait_for_notice(self, text: str) -> dict[str, Any]:
         """Waits for something that the user is told; returns it."""
