@@ -30,7 +30,8 @@ export function changed(...names) {
   names.forEach((name) => waiting.add(name));
   if (asked) return;
   asked = true;
-  requestAnimationFrame(() => {
+  // Not with the next picture: the 3D view may take long for one, and a page in the background draws none.
+  setTimeout(() => {
     asked = false;
     const due = new Set([...waiting].flatMap((name) => [...(listeners.get(name) ?? [])]));
     waiting.clear();

@@ -82,12 +82,18 @@ class SceneView:
             facts, self._facts = self._facts, None
             if facts is not None:
                 await asyncio.to_thread(self._build, facts)
+            # Where nobody looks, nothing is drawn; who comes is shown the newest.
+            if self.ready.is_set() and not self._watched():
+                continue
             state, self._state = self._state, None
             if state is not None and self._scene is not None:
                 await asyncio.to_thread(self._draw, state)
                 if not self.ready.is_set():
                     self.ready.set()
                     self._session.scene_ready()
+
+    def _watched(self) -> bool:
+        return self._server is None or bool(self._server.get_clients())
 
     # -- the bridge's side
 
@@ -185,7 +191,8 @@ class SceneView:
         return np.array(data.xpos[moving[0]] if moving.size else np.zeros(3))
 
     def _place_camera(self, client: Any) -> None:
-        """Gives a browser that comes a view from the side."""
+        """Gives a browser that comes a view from the side, of the newest state."""
+        self._loop.call_soon_threadsafe(self._changed.set)
         if self._data is None:
             return
         base = self._base(self._data)
