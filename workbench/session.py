@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import signal
-import time
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -16,17 +14,14 @@ from actr3d.actr.limits import fresh_seed
 from actr3d.actr.reading import read_source
 from actr3d.errors import Actr3dError, SimulationError
 from workbench import protocol as say
+from workbench.attendant import Attendant
 from workbench.feed import MOST_NOTICES, EventLog, Feed, Raw
 from workbench.loader import listing_of
-from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Over, Reply, Start, State, Where
+from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 
-SILENT = 1.0
-"""A run that goes on and says nothing for so long [s] is asked where it is."""
 MOST_WAITING = 200
 """So many commands and questions of one session may wait for their answers."""
-MOST_PRINTED = 200
-"""So many lines that a worker prints past its model's `print` are told of; the rest is left out."""
 
 Watcher = Callable[["Session", Facts | State | None], None]
 
@@ -66,7 +61,6 @@ class Session:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
         self._number = self._notice_number = 0
-        self._heard = time.monotonic()
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
@@ -119,40 +113,11 @@ class Session:
             self._leave(self._loading)
         self._loading = worker
         self._ending = ""
-        self._heard = time.monotonic()
-        worker.send(start)
-        self._keep(self._serve(worker, start))
+        self._keep(Attendant(worker, start, self).serve())
         self._changed(facts=True)
 
-    async def _serve(self, worker: Worker, start: Start) -> None:
-        """Takes what a worker says, until it is gone; then tells how it ended."""
-        printing = asyncio.create_task(self._print(worker))
-        watching = asyncio.create_task(self._watch(worker))
-        try:
-            over = await self._listen(worker, start)
-            if not over:
-                await worker.stop()
-            status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
-            await asyncio.wait([printing], timeout=1)
-            self._take_end(worker, status, over=over)
-        finally:
-            printing.cancel()
-            watching.cancel()
-            worker.release()
-
-    async def _listen(self, worker: Worker, start: Start) -> bool:
-        """Takes what a worker says; tells whether it ends in good order."""
-        over = False
-        try:
-            while (message := await worker.receive()) is not None:
-                over |= isinstance(message, Over)
-                self._take(worker, start, message)
-        except (ValueError, msgspec.MsgspecError) as error:
-            self.tell(Notice(level="error", text=f"the worker said what nobody understands, and was ended ({error})"))
-        return over
-
-    def _take(self, worker: Worker, start: Start, message: FromWorker) -> None:
-        """Takes one message of a worker."""
+    def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
+        """Takes what a worker says."""
         if isinstance(message, Reply):
             waiting = self._waiting.pop(message.id, None)
             if waiting is not None and not waiting[1].done():
@@ -162,7 +127,6 @@ class Session:
             self._swap(worker, start, message)
         if worker not in (self._worker, self._loading):
             return
-        self._heard = time.monotonic()
         match message:
             case State() if worker is self._worker:
                 if self._stuck is not None:
@@ -199,8 +163,8 @@ class Session:
         self._tell_watchers(facts)
         self._changed(facts=True)
 
-    def _take_end(self, worker: Worker, status: int, *, over: bool) -> None:
-        """Tells how a worker has ended."""
+    def take_end(self, worker: Worker, ending: str) -> None:
+        """Takes how a worker ended, and tells it; nothing where it was in good order."""
         for number in [number for number, (asked, _) in self._waiting.items() if asked is worker]:
             _, waiting = self._waiting.pop(number)
             if not waiting.done():
@@ -209,8 +173,8 @@ class Session:
         self._asked.discard(worker)
         if worker not in (self._worker, self._loading):
             return
-        self._ending = "stopped" if asked else _why(status) if not over else ""
-        if not (asked or over):
+        self._ending = "stopped" if asked else ending
+        if ending and not asked:
             where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
             self.tell(Notice(level="error", text=f"{self._ending}{where}"))
         if worker is self._loading:
@@ -224,6 +188,11 @@ class Session:
                 self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
                 self.state_version += 1
         self._changed(facts=True)
+
+    def busy(self, worker: Worker) -> bool:
+        """Tells whether a worker is to be saying something."""
+        going_on = self.state is not None and self.state.status == "running"
+        return worker is self._loading or (worker is self._worker and (going_on or bool(self._waiting)))
 
     def _leave(self, worker: Worker) -> None:
         """Ends a worker, without waiting for it."""
@@ -247,31 +216,6 @@ class Session:
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-
-    async def _print(self, worker: Worker) -> None:
-        """Tells what a worker prints past its model's `print`."""
-        count = 0
-        while True:
-            try:
-                line = await worker.output.readline()
-            except ValueError:  # a line that is longer than the stream takes
-                continue
-            if not line:
-                return
-            count += 1
-            text = line.decode(errors="replace").rstrip()
-            if count <= MOST_PRINTED and text:
-                self.tell(Notice(level="info", text=text))
-            elif count == MOST_PRINTED + 1:
-                self.tell(Notice(level="warning", text="the model's process prints much more; that is left out"))
-
-    async def _watch(self, worker: Worker) -> None:
-        """Asks a worker where it is when it goes on and says nothing."""
-        while True:
-            await asyncio.sleep(SILENT / 4)
-            busy = worker is self._loading or bool(self._waiting) or (self.state is not None and self.state.status == "running")
-            if busy and worker in (self._worker, self._loading) and time.monotonic() - self._heard > SILENT:
-                worker.send(Where())
 
     # -- what is said to it
 
@@ -317,8 +261,6 @@ class Session:
         number = self._number
         waiting: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
         self._waiting[number] = worker, waiting
-        if len(self._waiting) == 1:
-            self._heard = max(self._heard, time.monotonic())
         worker.send(Do(id=number, say=said.model_dump_json().encode()))
         return await waiting
 
@@ -422,12 +364,3 @@ class Session:
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
-
-
-def _why(status: int) -> str:
-    """Says how a process ended that nobody has asked to end."""
-    if status >= 0:
-        return f"the model ended its process, with exit code {status}"
-    name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)
-    more = {"SIGKILL": ": the system ended it, maybe for want of memory", "SIGSEGV": ": a crash in compiled code"}.get(name, "")
-    return f"the model's process was ended by {name}{more}"
