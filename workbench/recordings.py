@@ -9,7 +9,8 @@ import itertools
 import re
 import secrets
 import time
-from collections.abc import Iterator
+from array import array
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -158,8 +159,6 @@ def states_csv(path: Path) -> Iterator[str]:
     Raises:
         RecordingError: If it cannot be read.
     """
-    from array import array
-
     with Recorded(path) as recorded:
         period = recorded.facts.get("period_us", 0)
         for tick, state, _ in recorded.states():
@@ -167,6 +166,32 @@ def states_csv(path: Path) -> Iterator[str]:
             if tick == 0:
                 yield _csv_line(("time [s]", *(f"state_{n}" for n in range(len(numbers)))))
             yield _csv_line((seconds(tick * period), *numbers))
+
+
+def curves(path: Path, names: Sequence[str], most: int) -> dict[str, Any]:
+    """Returns how joints moved in a recorded run: the times, and the values of each curve that is asked for.
+
+    Args:
+        path: The recording.
+        names: Which curves: names of joints for their positions [rad] [m], and with ` speed` for their speeds.
+        most: How many times at most; of more every second, third and so on is left out.
+
+    Raises:
+        RecordingError: If it cannot be read.
+    """
+    with Recorded(path) as recorded:
+        columns: dict[str, int] = recorded.facts.get("columns", {})
+        wanted = {name: columns[name] for name in names if name in columns}
+        every = max(1, -(-(recorded.ticks + 1) // most))
+        times: list[float] = []
+        values: dict[str, list[float]] = {name: [] for name in wanted}
+        for tick, state, _ in recorded.states() if wanted else ():
+            if tick % every == 0:
+                numbers = array("d", state)
+                times.append(seconds(tick * recorded.facts["period_us"]))
+                for name, column in wanted.items():
+                    values[name].append(numbers[column])
+        return {"names": list(columns), "times": times, "curves": values}
 
 
 def _csv_line(values: tuple[Any, ...]) -> str:

@@ -19,7 +19,7 @@ from pydantic import Field
 from workbench import protocol as say
 from workbench.files import ModelFile
 from workbench.loader import listing_of
-from workbench.recordings import compare, events_csv, states_csv
+from workbench.recordings import compare, curves, events_csv, states_csv
 from workbench.sessions import Sessions
 
 router = APIRouter(prefix="/api")
@@ -233,6 +233,17 @@ def download(request: Request, recording: Id, form: Literal["sqlite", "events.cs
     make: Callable[[Path], Iterator[str]] = events_csv if form == "events.csv" else states_csv
     headers = {"content-disposition": f'attachment; filename="{name}"'}
     return StreamingResponse(make(path), media_type="text/csv; charset=utf-8", headers=headers)
+
+
+@router.get("/recordings/{recording}/curves")
+def recorded_curves(
+    request: Request,
+    recording: Id,
+    name: Annotated[list[say.Name] | None, Query(max_length=100)] = None,
+    most: Annotated[int, Query(ge=10, le=20_000)] = 2_000,
+) -> dict[str, Any]:
+    """Gives how joints moved in a recorded run, also one that goes on: their names, and the curves that are named."""
+    return curves(_sessions(request).recordings.path(recording), name or [], most)
 
 
 @router.post("/recordings/{recording}/open", status_code=201)

@@ -15,8 +15,8 @@ from actr3d.actr.reading import read_source
 from actr3d.errors import Actr3dError, SimulationError
 from workbench import protocol as say
 from workbench.attendant import Attendant
-from workbench.feed import MOST_NOTICES, EventLog, Feed, Raw
-from workbench.loader import listing_of
+from workbench.feed import MOST_NOTICES, EventLog, Feed
+from workbench.telling import Telling
 from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 
@@ -26,7 +26,7 @@ MOST_WAITING = 200
 Watcher = Callable[["Session", Facts | State | None], None]
 
 
-class Session:
+class Session(Telling):
     """Runs one model, again and again, and tells all who watch.
 
     Args:
@@ -273,55 +273,6 @@ class Session:
         self._notice_number += 1
         self._changed()
 
-    def _shown_file(self, file: str | None) -> str | None:
-        """Returns a file of the model's folder as pages call it."""
-        if file == str(self.path):
-            return self.model
-        return file
-
-    def facts_json(self) -> bytes:
-        """Returns what is known of the session and its run."""
-        facts, start = self.facts, self.start
-        told: dict[str, Any] = {
-            **self.summary(),
-            "stuck": self._stuck,
-            "scene": self.has_scene,
-            "breakpoints": self.breakpoints,
-            "settings": start.settings if start is not None else {},
-            "seed": facts.seed if facts is not None else None,
-            "stale": start is not None and self._text_differs(start),
-            "recording": Path(start.record).stem if start is not None and start.record is not None else None,
-        }
-        if facts is not None:
-            told |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters), "world": Raw(facts.world)}
-        return msgspec.json.encode(told)
-
-    def summary(self) -> dict[str, Any]:
-        """Returns what a list of sessions tells of it."""
-        return {
-            "id": self.name,
-            "model": self.model,
-            "run": self.run,
-            "alive": self._worker is not None,
-            "loading": self._loading is not None,
-            "ending": self._ending,
-            "status": None if self.state is None else self.state.status,
-            "watching": [feed.name for feed in self.feeds],
-            "controlled_by": self._controlled_by,
-        }
-
-    def state_json(self) -> bytes:
-        """Returns the newest state."""
-        state = self.state
-        if state is None:
-            return b"null"
-        told = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
-        return msgspec.json.encode({**told, "apertures": state.apertures, "parts": Raw(state.parts)})
-
-    def listing(self) -> Any:
-        """Returns what the model's text, as the present run has it, says of itself."""
-        return listing_of(self.start.source if self.start is not None else read_source(self.path), str(self.path))
-
     def scene_ready(self) -> None:
         """Takes note that there is a 3D view now."""
         self.has_scene = True
@@ -330,12 +281,6 @@ class Session:
     def file_changed(self) -> None:
         """Takes note that the model's file has been saved: the run may be stale now."""
         self._changed(facts=True)
-
-    def _text_differs(self, start: Start) -> bool:
-        try:
-            return read_source(self.path) != start.source
-        except Actr3dError:
-            return True
 
     # -- who watches
 

@@ -85,7 +85,8 @@ class BuiltRun:
         simulation.traced()
         if start.record is not None:
             facts = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
-            self._recording = simulation.record(start.record, **facts, program_seed=limits.program_seed)
+            columns = columns_of(simulation.world.mj_model)
+            self._recording = simulation.record(start.record, **facts, program_seed=limits.program_seed, columns=columns)
         if start.commands:
             simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
 
@@ -236,6 +237,17 @@ class BuiltRun:
         return frozenset(
             (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
         )
+
+
+def columns_of(mj_model: mujoco.MjModel) -> dict[str, int]:
+    """Returns where in MuJoCo's integration state the positions and speeds of joints are, by their names."""
+    columns: dict[str, int] = {}
+    for number in range(mj_model.njnt):
+        joint: Any = mj_model.joint(number)
+        if joint.name and int(joint.type[0]) in (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE)):
+            columns[joint.name] = 1 + int(joint.qposadr[0])  # the first number is the time
+            columns[f"{joint.name} speed"] = 1 + mj_model.nq + int(joint.dofadr[0])
+    return columns
 
 
 def _finite(limit: float) -> float | None:
