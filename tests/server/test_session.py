@@ -16,7 +16,6 @@ from tests.server.desk import Desk, RefusedError, Talk
 MODELS = Path(__file__).parents[2] / "models"
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
 COUNTING = (MODELS / "tutorial" / "counting.py").read_text(encoding="utf-8")
-LIVE = DOORWAY.replace("Le(3)] = 0.5", 'Le(3), Live("aperture")] = 0.5').replace("import Configuration", "import Configuration, Live")
 
 
 def fires(events: list[list[Any]]) -> list[tuple[float, str]]:
@@ -174,7 +173,7 @@ def test_a_user_makes_the_run_go_another_way(desk: Desk, tmp_path: Path) -> None
 
 
 def test_a_live_parameter_acts_at_once_and_others_do_not(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, LIVE)
+    talk = desk.begin(tmp_path, DOORWAY)
     talk.say("set", name="width", value=0.7)
     talk.wait(lambda: round(talk.state["apertures"]["aperture"], 9) == 0.7)
     with pytest.raises(RefusedError, match="'speed' cannot change while a run goes on"):
