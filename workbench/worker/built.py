@@ -73,6 +73,7 @@ class BuiltRun:
                 self._conductor.run = self
                 self._conductor.link.post(self._facts(limits, parameters))
                 self._conductor.show()
+                self._conductor.link.flush()  # whatever the model does next, that it was built is known
                 while True:
                     self._conductor.attend()
                     self._go_on(output.finish)

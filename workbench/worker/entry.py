@@ -46,7 +46,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     except BaseException as error:  # noqa: BLE001 - SystemExit, too, is how a model ended
         link.post(notice_of(error))
     link.post(Over())
-    link.close()
+    link.flush()
     with suppress(OSError):
         wire.shutdown(socket.SHUT_WR)
     sys.stderr.flush()

@@ -126,7 +126,7 @@ class Link:
         """Whether the latest state has been sent, so that a new one is worth making."""
         return self._state is None and not self._sending
 
-    def close(self, timeout: float = 2.0) -> None:
+    def flush(self, timeout: float = 2.0) -> None:
         """Waits until everything is sent, but not for ever."""
         end = perf_counter() + timeout
         with self._something:

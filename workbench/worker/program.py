@@ -95,6 +95,7 @@ class ProgramRun:
             conductor.went_back()
         if self._rush is None:
             conductor.show()
+            conductor.link.flush()  # whatever the program does next, that it has begun is known
             with suppress(_Again):
                 conductor.attend()
         try:

@@ -30,7 +30,6 @@ def main(number: int) -> None:
         number: The file descriptor of the socket to the server.
     """
     import workbench.worker.preload  # pyright: ignore[reportUnusedImport] # noqa: F401
-    from workbench.worker.entry import main as work
 
     control = socket.socket(fileno=number)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -57,23 +56,31 @@ def main(number: int) -> None:
             break
         if not data:
             break
-        pid = os.fork()
-        if pid == 0:
-            signal.set_wakeup_fd(-1)
-            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            for descriptor in (woken, wake):
-                os.close(descriptor)
-            control.close()
-            wire, output = descriptors
-            work(socket.socket(fileno=wire), output, ASK.unpack(data)[0])
-            os._exit(0)
-        for descriptor in descriptors:
-            os.close(descriptor)
+        pid = _born(control, (woken, wake), descriptors, ASK.unpack(data)[0])
         children.add(pid)
         control.sendall(ANSWER.pack(BORN, pid, 0))
     for pid in children:
         with suppress(OSError):
             os.killpg(pid, signal.SIGKILL)
+
+
+def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int], memory: int) -> int:
+    """Forks a worker, and returns its process number; in the worker it does not return."""
+    from workbench.worker.entry import main as work
+
+    pid = os.fork()
+    if pid == 0:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        for descriptor in pipe:
+            os.close(descriptor)
+        control.close()
+        wire, output = descriptors
+        work(socket.socket(fileno=wire), output, memory)
+        os._exit(0)
+    for descriptor in descriptors:
+        os.close(descriptor)
+    return pid
 
 
 def _woken(_: int, __: object) -> None:
