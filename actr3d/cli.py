@@ -9,18 +9,23 @@ import sys
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
 from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
-from actr3d.errors import Actr3dError
+from actr3d.actr.reading import read_source
+from actr3d.errors import Actr3dError, SettingError
+from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.running.complaint import complaint
-from actr3d.running.run import run_model, settings_of
+from actr3d.running.options import options_help, read_options, read_settings
+from actr3d.running.run import has_build, run_model
 from actr3d.trace import LEVELS, Trace, TraceEvent
+from actr3d.values import to_json
 
 
 def event_line(event: TraceEvent) -> str:
@@ -45,26 +50,55 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         printed = ModelOutput(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
     if level != "none":
         show = TraceEvent.to_json if options.json else event_line
-        # Lines that the model prints are shown as they are, or by `printed`.
-        trace.listen(lambda event: None if out.closed or event.kind == "output" else print(show(event), file=out), level)
+        # Lines that the model prints are shown as they are, or by `printed`; a result at the end.
+        trace.listen(lambda event: None if out.closed or event.kind in ("output", "result") else print(show(event), file=out), level)
     limits.last_resort = partial(_leave, out, printed)
     trouble: Exception | None = None
+    result: Any = None
     try:
         with warnings.catch_warnings(), printing_to(printed or out):
             warnings.showwarning = _show_warning
-            run_model(options.file, limits, settings=settings_of(options.set), record=options.record)
+            result = run_model(options.file, limits, settings=partial(_settings, options), record=options.record)
     except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
         trouble = error
     except (SystemExit, KeyboardInterrupt):
         if unwritten := all_written(out, printed):
             return _complain_of_output(unwritten)
         raise
+    if result is not None and not out.closed:
+        if printed is not None:
+            printed.finish()
+        with suppress(OSError):  # told below
+            print(to_json({"event": "result", **asdict(result)}) if options.json else result, file=out)
     unwritten = all_written(out, printed)
     if trouble is not None and not (unwritten and isinstance(trouble, OSError)):
         _complain(trouble)
     if unwritten:
         return _complain_of_output(unwritten)
-    return 0 if trouble is None else 1
+    return 0 if trouble is None else 2 if isinstance(trouble, SettingError) else 1
+
+
+def _settings(options: argparse.Namespace, fields: Sequence[Field]) -> dict[str, Any]:
+    """Returns the values of parameters that the command line gives."""
+    return {**read_settings(options.set, fields), **read_options(options.words, fields, options.parser._option_string_actions)}
+
+
+def _help(run: argparse.ArgumentParser, file: str | None) -> int:
+    """Tells of the options of a model file, if one is named, besides those that all have."""
+    run.print_help()
+    if file is None:
+        return 0
+    try:
+        source = read_source(Path(file))
+        if has_build(source):
+            from actr3d.running.building import Blueprint
+
+            with RunLimits(), printing_to(sys.stderr):
+                fields = Blueprint(source, file, Path(file).parent).fields
+            print(f"\noptions of {file}, after its name:\n{options_help(fields) or '  none'}")
+    except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
+        return _complain(error)
+    return 0
 
 
 def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
@@ -132,24 +166,40 @@ def _seconds(text: str) -> float:
     return value
 
 
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 on (got {text})")
+    return int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    run = commands.add_parser("run", help="run a model file", description="Runs a Python ACT-R model file, unchanged.")
-    run.add_argument("file", metavar="FILE", help="the model file")
+    run = commands.add_parser(
+        "run",
+        help="run a model file",
+        description="Runs a Python ACT-R model file, unchanged, or what a model file builds; run FILE --help tells of its own options.",
+        epilog="Exit codes: 0 the model ran, whatever came of it; 1 it failed, or the output could not be written; 2 wrong options; "
+        "130 it was interrupted.",
+        add_help=False,
+        allow_abbrev=False,
+    )
+    run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
+    run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file")
     run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)")
     run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest")
     run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)")
     run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
     run.add_argument("--record", metavar="RECORDING", help="record everything to this new file")
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds")
-    run.set_defaults(function=run_command)
+    run.set_defaults(function=run_command, parser=run)
     again = commands.add_parser("replay", help="run a recording again", description="Runs a recording again: does every byte agree?")
     again.add_argument("file", metavar="RECORDING", help="the recording")
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core", "camera", "lockstep"], help="what to measure")
+    bench.add_argument("name", choices=["core", "camera", "lockstep", "aperture"], help="what to measure")
+    bench.add_argument("--trials", type=_count, metavar="N", help="of the aperture: how many trials a cell (30)")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
@@ -160,6 +210,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _bench(options: argparse.Namespace) -> int:
     bench: Any = importlib.import_module(f"actr3d.bench.{options.name}")
+    if options.name == "aperture":
+        return bench.main(json_output=options.json, trials=options.trials)
     return bench.main(json_output=options.json)
 
 
@@ -169,12 +221,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _order_sets()
     if sys.stdout is None:  # it was closed before we came
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays until the end
-    options: Any = _parser().parse_args(arguments)
+    parser = _parser()
+    options, words = parser.parse_known_args(arguments)
+    if options.command == "run":
+        if options.help:
+            return _help(options.parser, options.file)
+        _check_run(options, words, list(sys.argv[1:] if arguments is None else arguments))
+    elif words:
+        parser.error(f"unrecognized arguments: {' '.join(words)}")
     try:
         return options.function(options)
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 130
+
+
+def _check_run(options: argparse.Namespace, words: list[str], arguments: list[str]) -> None:
+    """Makes sure that a model file is named, and that what it is to read itself comes after its name."""
+    file: str | None = options.file
+    if file is None:
+        options.parser.error("the following arguments are required: FILE")
+    elif words and arguments.index(words[0]) < arguments.index(file):
+        options.parser.error(f"{words[0]} is no option of every run; those of the model file come after its name")
+    options.words = words
 
 
 def _order_sets() -> None:

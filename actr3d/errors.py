@@ -34,6 +34,10 @@ class ConfigurationError(Actr3dError):
     """A field of a configuration has a wrong name, type or value."""
 
 
+class SettingError(ConfigurationError):
+    """A model's parameter is set that it does not have, or to a value that it does not take."""
+
+
 class WorldError(Actr3dError):
     """A scene cannot be built, or something in a world is not there or cannot be done."""
 
@@ -54,8 +58,16 @@ class GridError(Actr3dError):
     """A grid world cannot be made, or a body in it placed or moved, as asked."""
 
 
+class PlanError(Actr3dError):
+    """A planning unit cannot be declared, begun, interrupted or resumed as asked."""
+
+
 class CameraError(Actr3dError):
     """A camera cannot be made, or cannot look: unknown eye or geom, poses that are missing or no numbers."""
+
+
+class VisionError(Actr3dError):
+    """A vision module cannot be made, or look for something, as asked: unknown feature, slot, parameter or comparison."""
 
 
 class ModelFileError(Actr3dError):

@@ -29,7 +29,17 @@ KINDS: Mapping[str, Kind] = {
     "changed": Kind("production", "system", "production", "a chosen production matches no longer and does not fire"),
     "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
     "reward": Kind("production", "system", "value", "an agent gets a reward"),
-    "output": Kind("production", "model", "text", "the model prints a line; told by `actr3d run`, to a recording and with `--json`"),
+    "output": Kind("production", "model", "text", "a mind prints a line; or a program, to a recording and with `--json`"),
+    "result": Kind("production", "top model", "...", "a run is over that something was measured of: what was measured"),
+    "planning_unit": Kind(
+        "production",
+        "SGOMS buffer",
+        "name what path [by]",
+        "a planning unit is «begun», «ended», «interrupted» (by which), «resumed», «cut» (given up) or, where a trace begins, «going on»",
+    ),
+    "unit_task": Kind("production", "SGOMS buffer", "name what path", "likewise a unit task"),
+    "method": Kind("production", "SGOMS buffer", "name what path", "likewise a method"),
+    "operator": Kind("production", "SGOMS buffer", "name what path", "likewise an operator"),
     "buffer": Kind(
         "buffer",
         "buffer",
@@ -67,7 +77,22 @@ KINDS: Mapping[str, Kind] = {
         "[s] and its `outcome`",
     ),
     "retrieval": Kind("all", "memory", "failed [chunk]", "a memory's answer arrives, or its failure"),
-    "answer": Kind("all", "port", "word value", "a body answers what it was asked for"),
+    "answer": Kind("all", "port, vision, motor", "word value", "a body answers what it was asked for"),
+    "search": Kind(
+        "all",
+        "vision",
+        "asked bottom_up noticed refused chosen [why]",
+        "a view arrives: the features that are as was asked for, with their saliences, those that are not and why, and which one is "
+        "brought; `why` says why none is, though some are noticed",
+    ),
+    "sight": Kind(
+        "all", "vision", "bottom_up failed [chunk held]", "what was found comes to the buffer, or nothing; `held` if the buffer is kept"
+    ),
+    "move": Kind(
+        "all", "motor", "movement group speed [to]", "a movement of a muscle group begins; how fast and where to are in radians or metres"
+    ),
+    "moved": Kind("all", "motor", "movement group end", "that ends: «done», «stopped», «limit» or «blocked»"),
+    "refused": Kind("all", "motor", "movement why", "a movement is not made: the muscle group is «busy», or its «limit» is nearer"),
     "add": Kind("all", "memory", "chunk merged size given", "a memory takes in a chunk, or strengthens (merges with) the equal one it has"),
     "chunks": Kind("all", "memory", "by size gone new", "a memory's chunks are changed otherwise: by which method, and which ones"),
 }

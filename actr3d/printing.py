@@ -34,6 +34,10 @@ class _Lines(io.BufferedIOBase):
     def close(self) -> None:
         """Leaves it open: a wrapper that a model puts round it, and lets go, closes what it wraps."""
 
+    def forget(self) -> None:
+        """Drops what was printed without an end of line."""
+        self._rest = b""
+
     def finish(self) -> None:
         """Hands on what was printed without an end of line."""
         rest, self._rest = self._rest, b""
@@ -61,18 +65,17 @@ class ModelOutput(io.TextIOWrapper):
 
 
 class _BothBytes(io.BufferedIOBase):
-    """Takes bytes for the output and for who is told of its lines."""
+    """Takes bytes for an output that is told of."""
 
-    def __init__(self, out: Any, lines: _Lines) -> None:
+    def __init__(self, told: ToldOutput, out: Any) -> None:
+        self._told = told
         self._out = out
-        self._lines = lines
 
     def writable(self) -> bool:
         return True
 
     def write(self, data: Any, /) -> int:
-        self._out.write(data)
-        return self._lines.write(data)
+        return self._told.take(self._out.write, data, bytes(data))
 
     def flush(self) -> None:
         self._out.flush()
@@ -90,7 +93,7 @@ class ToldOutput:
 
     def __init__(self, take: Callable[[str], None]) -> None:
         self._lines = _Lines(take)
-        self._out = sys.stdout
+        self._out: Any = sys.stdout
         self._stack = ExitStack()
 
     def __getattr__(self, name: str) -> Any:
@@ -99,22 +102,36 @@ class ToldOutput:
     @property
     def buffer(self) -> Any:
         """What takes bytes."""
-        return _BothBytes(self._out.buffer, self._lines)
+        return _BothBytes(self, self._out.buffer)
 
     def write(self, text: str, /) -> int:
         """Writes a text."""
-        count = self._out.write(text)
-        self._lines.write(text.encode("utf-8", "surrogatepass"))
-        return count
+        return self.take(self._out.write, text, text.encode("utf-8", "surrogatepass"))
 
     def writelines(self, texts: Iterable[str], /) -> None:
         """Writes several texts."""
         for text in texts:
             self.write(text)
 
+    def take(self, write: Callable[[Any], int], data: Any, encoded: bytes) -> int:
+        """Writes something, and tells of its lines.
+
+        Args:
+            write: What writes it.
+            data: What is written.
+            encoded: The same as bytes of UTF-8.
+        """
+        count = write(data)
+        self._lines.write(encoded)
+        return count
+
     def finish(self) -> None:
         """Hands on what was printed without an end of line."""
         self._lines.finish()
+
+    def forget(self) -> None:
+        """Drops what was printed without an end of line."""
+        self._lines.forget()
 
     def __enter__(self) -> Self:
         self._stack.enter_context(printing_to(cast("TextIO", self)))

@@ -7,6 +7,7 @@ code could put into words, a record keeps the name of its class.
 from __future__ import annotations
 
 import json
+import re
 from collections import deque
 from collections.abc import Callable
 from datetime import date, datetime, time, timedelta
@@ -40,6 +41,19 @@ class Opaque(str):
     """Stands for an object whose own text is another one, or known only to its own code."""
 
     __slots__ = ()
+
+
+class Naming(str):
+    """A text in which parts of a run are named by their paths: `<walker.goal>`."""
+
+    __slots__ = ()
+
+    def renamed(self, name: Callable[[str], str]) -> Naming:
+        """Returns the text with other names of the parts; `name` returns a path's."""
+        return Naming(_PATH.sub(lambda found: f"<{name(found[1])}>", self))
+
+
+_PATH = re.compile(r"<([^<>\s]+)>")
 
 
 def plain(value: Any, name: Namer | None = None) -> Any:

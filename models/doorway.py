@@ -6,7 +6,7 @@ and angles how wide the gap is. At 1.5 m it decides: a gap narrower than 1.3 tim
 and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it turns back and stops.
 
 Expect: with `width=0.5` it turns, and passes without a touch; with `width=0.8` it walks straight on. Try
-`--set width=0.6 --set speed=2`, or a width that is too narrow even for a body turned sideways.
+`--width 0.6 --speed 2`, or a width that is too narrow even for a body turned sideways.
 """
 
 from dataclasses import dataclass

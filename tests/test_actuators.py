@@ -43,6 +43,25 @@ def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: 
     assert joint.position == near(target, abs=1e-6)
 
 
+def test_joints_that_stand_still_hold_while_others_swing() -> None:
+    world, body = living()
+    for n in range(8):
+        body.set("posture", {"torso_yaw": 0.8 * (-1) ** n, "left_shoulder_yaw": 0.3 * (-1) ** n}, speed=4.0)
+        ticks(world, 60)
+    others = [joint.position for name, joint in body.joints.items() if name not in ("torso_yaw", "left_shoulder_yaw")]
+    assert others == near([0] * len(others), abs=math.radians(0.1))
+
+
+def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
+    world, body = living()
+    body.set("position", "torso_yaw", 0.7, 2.0)
+    world.step(100)
+    assert body.joints["torso_yaw"].position == near(0.4, abs=1e-3)
+    world.step(1000)
+    assert body.joints["torso_yaw"].position == near(0.7, abs=1e-6)
+    assert not body.running
+
+
 def test_a_posture_moves_several_joints_while_walking() -> None:
     world, body = living()
     body.set("walk", 1.4)
@@ -51,6 +70,23 @@ def test_a_posture_moves_several_joints_while_walking() -> None:
     ticks(world, 40)
     assert {name: body.joints[name].position for name in targets} == near(targets, abs=1e-3)
     assert body.get("pose").x == near(0.56, abs=0.01)
+
+
+@pytest.mark.parametrize(("by", "speed"), [(1.5, 2.0), (-7.0, 4.0)])
+def test_a_turn_goes_as_far_round_as_told_while_walking(by: float, speed: float) -> None:
+    world, body = living()
+    body.set("walk", 0.5)
+    body.set("turn", by, speed)
+    ticks(world, math.ceil(abs(by) / speed * 100) - 1)
+    assert body.running
+    ticks(world, 1)
+    assert body.base.place[2] == near(by, abs=1e-9)
+    assert not body.running
+    assert body.base.speed == near((0.5, 0, 0), abs=1e-3)
+    body.set("turn", 3.0, 1.0)
+    body.set("heading", 0.0)
+    ticks(world, 300)
+    assert math.remainder(body.base.place[2], 2 * math.pi) == near(0, abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -253,7 +289,7 @@ def test_an_imported_body_shows_its_joints_and_takes_controls() -> None:
         ("walk", ("fast",), "walk: speed: must be a number"),
         ("walk", (math.inf,), "walk: speed: must be a finite number"),
         ("joint", ("torso_yw", 1), "walker has no joint 'torso_yw'; did you mean 'torso_yaw'"),
-        ("position", ("torso_yaw", 1, 0), "position: speed: must be at least 1e-06"),
+        ("position", ("torso_yaw", 1, 0), "position: speed: must be 1e-06 to 16"),
         ("posture", ({"torso_yaw": 1, "tors": 2},), "walker has no joint 'tors'"),
         ("grasp", ("cap",), "no loose object 'cap' in this scene; did you mean 'cup'"),
         ("grasp", ("cup", "middle"), "walker has no hand 'middle'; it has left, right"),

@@ -20,7 +20,7 @@ from seeing import compiled, mujoco, seen
 
 from actr3d.camera import CameraParameters, GeometricCamera
 from actr3d.camera.kernel import jit
-from actr3d.errors import CameraError, ConfigurationError
+from actr3d.errors import CameraError, ConfigurationError, ModelWarning
 
 BALL = '<geom name="ball" type="sphere" size=".3" pos="3 0 1.5"/>'
 CROWD = [
@@ -248,13 +248,24 @@ def test_an_empty_world_is_seen_as_empty() -> None:
     assert view.as_dict() == {0.5 / 3: {}, 1.5 / 3: {}, 2.5 / 3: {}}
 
 
-def test_a_distance_field_is_refused() -> None:
-    field = """<mujoco><extension><plugin plugin="mujoco.sdf.torus"><instance name="t"/></plugin></extension>
-      <asset><mesh name="m"><plugin instance="t"/></mesh></asset>
-      <worldbody><site name="eye"/><geom name="ring" type="sdf" mesh="m"><plugin instance="t"/></geom></worldbody></mujoco>"""
-    mj_model = mujoco.MjModel.from_xml_string(field)
-    with pytest.raises(CameraError, match="geom 'ring' is a signed distance field"):
-        GeometricCamera(mj_model, site="eye")
+def test_a_distance_field_is_seen_as_its_mesh() -> None:
+    ring = """<mujoco><extension><plugin plugin="mujoco.sdf.torus"><instance name="t"><config key="radius1" value="0.35"/>
+      <config key="radius2" value="0.15"/></instance></plugin></extension><asset><mesh name="m"><plugin instance="t"/></mesh></asset>
+      <worldbody><site name="eye"/><body pos="2 .3 0" euler="0 90 0"><geom name="ring" type="sdf" mesh="m"><plugin instance="t"/></geom>
+      </body><geom name="wall" type="box" pos="4 0 0" size=".1 3 3"/></worldbody></mujoco>"""
+    mj_model = mujoco.MjModel.from_xml_string(ring)
+    mj_data = mujoco.MjData(mj_model)
+    mujoco.mj_forward(mj_model, mj_data)
+    camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=1))
+    ((_, extents),) = camera.look(mj_data).as_dict().items()
+    edges: list[float] = []
+    for y in (0.3 + 0.35, 0.3 - 0.35):  # the two circles that the row's plane cuts
+        half = math.asin(0.15 / math.hypot(2, y))
+        edges += [0.5 - math.tan(math.atan2(y, 2) + side * half) / 2 for side in (1, -1)]
+    ring_label, wall_label = camera.label_of("ring") or 0, camera.label_of("wall") or 0
+    found = extents[ring_label]
+    assert [edge for extent in found for edge in extent[:2]] == pytest.approx(edges, abs=1e-4)
+    assert len(extents[wall_label]) == 3, "it is seen through the hole and on both sides"
 
 
 def test_the_library_is_imported_without_the_camera() -> None:
@@ -302,3 +313,24 @@ def test_of_two_things_that_coincide_the_same_one_is_seen_everywhere(shape: str,
         _, other = seen("".join(reversed(crowd)) + twin + twin, rows=20)
         _, alone = seen(twin + "".join(crowd), rows=20)
         assert one.as_dict() == other.as_dict() == alone.as_dict()
+
+
+def test_a_skin_is_named_and_its_body_seen() -> None:
+    text = """<mujoco><worldbody><site name="eye"/><body name="torso" pos="3 0 0"><geom size=".1"/></body></worldbody>
+      <deformable><skin name="cloak" vertex="0 0 0 0 1 0 0 0 1" face="0 1 2">
+      <bone body="torso" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2" vertweight="1 1 1"/></skin></deformable></mujoco>"""
+    mj_model = mujoco.MjModel.from_xml_string(text)
+    mj_data = mujoco.MjData(mj_model)
+    mujoco.mj_forward(mj_model, mj_data)
+    with pytest.warns(ModelWarning, match="the Geometric Camera does not see skin 'cloak': give what should be seen a geom"):
+        camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=3))
+    assert {label for row in camera.look(mj_data).as_dict().values() for label in row} == {1}
+
+
+def test_what_it_cannot_see_is_named() -> None:
+    text = """<mujoco><worldbody><site name="eye"/><body name="cloth" pos="3 0 0">
+      <flexcomp name="sheet" type="grid" count="3 3 1" spacing="1 1 1" dim="2" mass="1" radius="0.01">
+      <edge equality="true"/></flexcomp></body>
+      </worldbody></mujoco>"""
+    with pytest.warns(ModelWarning, match="the Geometric Camera does not see flex 'sheet': give what should be seen a geom"):
+        GeometricCamera(mujoco.MjModel.from_xml_string(text), site="eye")

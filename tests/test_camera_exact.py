@@ -170,6 +170,18 @@ def test_gaps_narrower_than_the_precision_are_closed() -> None:
     assert len(seen(parts, rows=1, precision=gap * 1.1)[1].as_array()) == 1
 
 
+def test_angles_are_exact_over_the_whole_of_the_widest_screen() -> None:
+    fov = math.radians(170)
+    balls = "".join(f'<geom type="sphere" size=".05" pos="1 {y} {1.5 + z}"/>' for y in (0, 0.3, 1, 5, -9) for z in (0, -1, 0.4, 6))
+    _, view = seen(balls, rows=200, horizontal_fov=fov, vertical_fov=fov)
+    edges, most = view.as_array(), math.tan(fov / 2)
+    up = most * (1 - 2 * edges["y"])
+    for x, angle in (("x1", "a1"), ("x2", "a2")):
+        across = most * (2 * edges[x] - 1)
+        assert edges[angle] == pytest.approx(np.degrees(np.arctan(np.hypot(across, up))), rel=1e-12)
+    assert max(edges["a1"]) > 75
+
+
 def test_a_retina_is_fine_in_the_middle() -> None:
     e2 = math.radians(0.75)
     _, view = seen('<geom type="box" size=".1 .5 3" pos="5.1 1.5 1.5"/>', rows=11, retinotopic=True)

@@ -64,3 +64,17 @@ def test_edges_are_where_rays_find_them(seed: int) -> None:
     mj_model, mj_data = random_scene(seed)
     parameters = CameraParameters(rows=23, horizontal_fov=math.radians(70 + seed % 5 * 20), range=5 if seed % 3 == 0 else None)
     assert disagreements(mj_model, mj_data, parameters) == []
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_crowd_on_the_ground_is_seen_as_by_rays(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    things = ['<geom type="plane" size="0 0 .1"/>']
+    for i in range(60):
+        kind = list(SIZES)[i % len(SIZES)]
+        size = random.uniform(0.1, 0.4, SIZES[kind])
+        x, y = random.uniform((1.2, -3), (7, 3))
+        turn = random.uniform(0, 90) if i % 3 else random.uniform(-20, 20)
+        things.append(f'<geom type="{kind}" size="{numbers(size)}" pos="{x} {y} {size.max()}" euler="{turn * (not i % 3)} 0 {turn}"/>')
+    mj_model, mj_data = compiled("".join(things), "", '<site name="eye" pos="0 0 1.5"/>')
+    assert disagreements(mj_model, mj_data, CameraParameters(rows=31)) == []

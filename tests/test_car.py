@@ -79,6 +79,19 @@ def test_brakes_stop_it_where_physics_says_and_hold_it() -> None:
     assert car.get("pose").x == near(there, abs=1e-6)
 
 
+def test_brakes_do_the_same_in_one_long_step() -> None:
+    there: list[float] = []
+    for at_once in (5, 2500):
+        world, car = driving()
+        car.base.speed = (15.0, 0.0, 0.0)
+        car.set("brake", 1.0)
+        for _ in range(2500 // at_once):
+            world.step(at_once)
+        assert car.get("velocity").linear == near((0, 0, 0), abs=1e-6)
+        there.append(car.get("pose").x)
+    assert there[0] == there[1]
+
+
 def test_steering_takes_the_time_that_a_driver_needs() -> None:
     world, car = driving()
     car.set("steering", 2 * math.pi)

@@ -229,7 +229,8 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
         (["run", "model.py", "--until", "soon"], "above 0 and below 1e9 (got soon)"),
         (["run", "model.py", "--seed", "x"], "--seed: invalid int value: 'x'"),
         (["run", "model.py", "--trace", "much"], "--trace: invalid choice: 'much'"),
-        (["run", "model.py", "--fast"], "unrecognized arguments: --fast"),
+        (["run", "--fast", "model.py"], "--fast is no option of every run; those of the model file come after its name"),
+        (["bench", "core", "--fast"], "unrecognized arguments: --fast"),
         (["run"], "the following arguments are required: FILE"),
         ([], "the following arguments are required: COMMAND"),
     ],
@@ -333,3 +334,14 @@ def test_a_helper_of_python_2_is_one_line(tmp_path: Path) -> None:
     done = run(tmp_path, "import old")
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"error: {tmp_path}/old.py:2: this file is written for Python 2 (a print statement); convert it to Python 3\n"
+
+
+def test_the_package_is_the_command(tmp_path: Path) -> None:
+    file = tmp_path / "said.py"
+    file.write_text("import random\nprint('said', {'a', 'b', 'c', 'd', 'e'}, random.random())\n", encoding="utf-8")
+    said = {
+        subprocess.run([sys.executable, *program, "run", str(file), "--seed", "1"], check=True, capture_output=True, timeout=60).stdout
+        for program in (["-m", "actr3d"], ["-m", "actr3d"], ["-m", "actr3d.cli"])
+    }
+    assert len(said) == 1
+    assert said.pop().startswith(b"said {")

@@ -34,3 +34,9 @@ def test_it_turns_below_the_critical_ratio_and_passes_untouched(doorway: Any, ca
     assert walker.get("pose").x > 7.9
     assert f"a gap of {width:.2f} m" in said
     assert ("turns" in said) == turns
+
+
+def test_its_parameters_do_what_they_say(doorway: Any) -> None:
+    simulation = doorway.build(doorway.Parameters(speed=2.0))
+    simulation.run(1)
+    assert simulation.world.bodies["walker"].get("pose").x == pytest.approx(2.0, abs=0.03)

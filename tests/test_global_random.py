@@ -1,27 +1,35 @@
-"""Minds that draw from Python's module `random` do not share it with the rest of the program."""
+"""Minds that draw from Python's module `random`, or from numpy's, do not share it with the rest of the program."""
 
 from __future__ import annotations
 
+import pickle
 import random
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
 from actr3d.world import Scene
 
+NUMPY_RANDOM: Any = np.random
+
 Drawing: Any = load_text(
     """
 import random
+import numpy as np
 from actr3d.actr import *
 
 class Drawing(Model):
     def start(self):
-        self.drawn = [random.random()]
+        self.drawn = []
         while True:
+            self.drawn += [random.random(), np.random.normal(), *np.random.uniform(size=2)]
             yield 0.01
-            self.drawn.append(random.random())
 """,
     "drawing.py",
 ).Drawing
@@ -54,35 +62,81 @@ def test_simulations_that_are_stepped_in_turn_do_not_disturb_each_other() -> Non
     assert drawn(one) == alone(1)
 
 
+def draw() -> list[float]:
+    """Draws with Python's generator and numpy's; of normal numbers numpy makes two at a time, and keeps one."""
+    return [random.random(), np.random.normal(), np.random.uniform()]
+
+
+def seed() -> None:
+    random.seed(7)
+    np.random.seed(7)
+
+
+def test_one_seed_gives_the_same_numbers_in_one_run_or_in_steps_and_another_seed_others() -> None:
+    simulation = drawing(1)
+    for _ in range(20):
+        draw()
+        simulation.step()
+    assert drawn(simulation) == alone(1)
+    assert not set(alone(1)) & set(alone(2))
+
+
 def test_a_simulation_leaves_the_programs_own_numbers_as_they_were() -> None:
-    random.seed(7)
-    expected = [random.random() for _ in range(3)]
-    random.seed(7)
-    found = [random.random()]
+    seed()
+    expected = [draw() for _ in range(3)]
+    seed()
+    found = [draw()]
     simulation = drawing(1)
     simulation.step(3)
-    found.append(random.random())
+    found.append(draw())
     simulation.seek(0.01)
     assert simulation.minds
-    found.append(random.random())
+    found.append(draw())
     assert found == expected
+
+
+def test_a_generator_that_the_program_has_chosen_for_numpy_stays() -> None:
+    before = NUMPY_RANDOM.get_bit_generator()
+    try:
+        NUMPY_RANDOM.set_bit_generator(np.random.PCG64(7))
+        expected = [np.random.normal() for _ in range(3)]
+        NUMPY_RANDOM.set_bit_generator(np.random.PCG64(7))
+        found: list[float] = []
+        for _ in range(3):
+            found.append(np.random.normal())
+            assert alone(1) == alone(1)
+        assert found == expected
+        assert type(NUMPY_RANDOM.get_bit_generator()) is np.random.PCG64
+    finally:
+        NUMPY_RANDOM.set_bit_generator(before)
+
+
+def test_numpys_numbers_can_still_be_kept_copied_and_seeded() -> None:
+    alone(1)
+    np.random.seed(7)
+    assert np.random.normal() == np.random.RandomState(7).normal()
+    kept = np.random.get_state()
+    copied = pickle.loads(pickle.dumps(NUMPY_RANDOM.mtrand._rand))
+    expected = draw()[1:]
+    np.random.set_state(kept)
+    assert draw()[1:] == expected == [copied.normal(), copied.uniform()]
 
 
 def test_whoever_looks_on_may_draw_numbers_of_its_own() -> None:
     simulation = drawing(1)
-    random.seed(7)
-    expected = random.Random(7)
-    seen: list[float] = []
+    seed()
+    expected = random.Random(7), np.random.RandomState(7)
+    seen: list[list[float]] = []
 
     def until(_: Any) -> bool:
-        seen.append(random.random())
+        seen.append(draw())
         return simulation.ticks == 20
 
-    simulation.observe(lambda _: seen.append(random.random()))
-    simulation.listen(lambda _: seen.append(random.random()))
+    simulation.observe(lambda _: seen.append(draw()))
+    simulation.listen(lambda _: seen.append(draw()))
     simulation.run(until=until)
     assert drawn(simulation) == alone(1)
-    assert seen == [expected.random() for _ in seen]
+    assert seen == [[expected[0].random(), expected[1].normal(), expected[1].uniform()] for _ in seen]
     assert len(seen) > 40
 
 
@@ -102,3 +156,36 @@ class Failing(Model):
     with pytest.raises(ValueError, match="no"):
         simulation.run(1)
     assert random.random() == random.Random(7).random()
+
+
+NUMPY = """
+from python_actr import *
+class Noisy(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        import numpy
+        print(numpy.random.normal(), numpy.random.uniform())
+        goal.clear()
+for _ in range(2):
+    Noisy().run()
+"""
+
+
+@pytest.mark.parametrize("first", ["", "import numpy.random; numpy.random.seed(3); numpy.random.normal()"])
+def test_what_a_program_draws_with_numpy_comes_from_its_seed_wherever_it_is_imported(first: str, tmp_path: Path) -> None:
+    file = tmp_path / "noisy.py"
+    file.write_text(NUMPY, encoding="utf-8")
+
+    def said(seed: int) -> list[str]:
+        text = f"import sys; from actr3d.cli import main; {first}\nmain(sys.argv[1:])\n{'print(numpy.random.normal())' if first else ''}"
+        command = [sys.executable, "-c", text, "run", str(file), "--seed", str(seed)]
+        return subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout.splitlines()
+
+    one, again, other = said(1), said(1), said(2)
+    assert one == again
+    assert len(set(one)) == (4 if first else 3)
+    assert one[0] != other[0]
+    if first:
+        assert one[3] == other[3]  # what it was before comes back

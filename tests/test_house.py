@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "saying", "values", "kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "fields", "saying", "values", "kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -26,6 +26,7 @@ PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
     "configuration": {"errors"},
+    "fields": set(),
     "saying": {"errors"},
     "values": set(),
     "kinds": set(),
@@ -37,10 +38,10 @@ PARTS: dict[str, set[str]] = {
     "motor": BASE | BODILY,
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY,
-    "simulation": BASE | BODILY | SENSES | {"recording"},
+    "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
     "running": BASE | BODILY | SENSES | RUNNING | {"printing"},
     "experiment": BASE | BODILY | SENSES | RUNNING,
-    "bench": BASE | BODILY | SENSES | RUNNING | {"experiment"},
+    "bench": BASE | BODILY | SENSES | RUNNING | {"running", "experiment"},
     "printing": set(),
     "output": {"printing"},
     "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "output", "printing"},

@@ -107,7 +107,7 @@ def test_nothing_leaks_out_of_the_file_or_into_it() -> None:
         '<size nuserdata="7"/><statistic extent="55"/><visual><map znear="0.3"/></visual><default>',
         1,
     ).replace("</mujoco>", '<keyframe><key name="k" qpos="0.3"/></keyframe></mujoco>')
-    with pytest.warns(ModelWarning, match=r"Imported 'a': its <option> is left out \(cone, contact, gravity, integrator, timestep\)"):
+    with pytest.warns(ModelWarning, match=r"contact, gravity, integrator, timestep\).*; its <keyframe> is left out \(k\): it starts"):
         arm = Imported(name="a", text=loud)
     scene = (Floor(), Loose(name="box"))
     plain, inside = model(*scene), model(*scene, arm)
@@ -374,7 +374,15 @@ def test_broken_files_are_refused_with_file_and_line(text: str, message: str, tm
         ({"path": "a.xml", "text": ARM}, "Imported 'i': give a path, or a text"),
         ({"path": "gone.xml"}, r"no file 'gone\.xml' in the folder 'here'; did you mean 'one\.xml'"),
         ({"path": "one.xml", "folder": "deeper"}, r"'one\.xml' does not lie in the folder 'deeper'"),
-        ({"text": asset('<mesh file="one.stl"/>')}, r"no 'one\.stl' among the files"),
+        ({"text": asset('<mesh file="one.stl"/>')}, r"'one\.stl' is not read: what a text mentions is read only from a folder"),
+        ({"text": "<mujoco \ud800/>"}, r"the text cannot be written in UTF-8"),
+        ({"path": "loop.xml"}, r"loop\.xml' is no path that can be read: Symlink loop|no file 'loop\.xml'"),
+        ({"path": "one.xml", "folder": "loop.xml"}, r"loop\.xml' is no path that can be read: Symlink loop|does not lie in"),
+        ({"path": "a\0.xml"}, r"is no path that can be read: embedded null|cannot be read: embedded null"),
+        ({"text": asset('<mesh file="loop.xml"/>'), "folder": "."}, r"'loop\.xml' cannot be read: Symlink loop|no file 'loop\.xml'"),
+        ({"text": asset('<texture type="2d" file="loop.xml"/>').replace("</mujoco>", "<x/></mujoco>"), "folder": "."}, "Element 'x'"),
+        ({"path": "klingon.xml"}, r"klingon\.xml, line 1: unknown encoding: klingon; write it in UTF-8"),
+        ({"path": "wide.xml"}, r"wide\.xml, line 1: multi-byte encodings are not supported; write it in UTF-8"),
         (
             {"text": ARM.replace("<worldbody>", '<worldbody><body name="two"/>'), "free": True},
             r"free=True needs one root body without a joint \(there are 2\)",
@@ -385,6 +393,9 @@ def test_broken_files_are_refused_with_file_and_line(text: str, message: str, tm
 )
 def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file(tmp_path, ARM, "here/one.xml")
+    (tmp_path / "here/loop.xml").symlink_to(tmp_path / "here/loop.xml")
+    for name, encoding in (("klingon", "klingon"), ("wide", "shift_jis")):
+        file(tmp_path, f'<?xml version="1.0" encoding="{encoding}"?>{ARM}', f"here/{name}.xml")
     monkeypatch.chdir(tmp_path / "here")
     with pytest.raises(Actr3dError, match=message):
         Imported.from_mapping({"name": "i", **options})

@@ -87,3 +87,15 @@ def test_whatever_an_actuator_pulls_at_it_is_the_body_s_that_it_moves() -> None:
     text = DRIVES.replace("<worldbody>", '<worldbody><site name="hook" pos="1 0 0"/>')
     body = World(Scene(parts=(ImportedBody(name="r", text=text),))).bodies["r"]
     assert list(body.controls) == ["joint", "site", "cord", "sum", "turn", "stick"]
+
+
+def test_an_actuator_with_several_controls_takes_them_all() -> None:
+    text = DRIVES.replace("<worldbody>", '<worldbody><site name="hook" pos="1 0 0"/>')
+    world = World(Scene(parts=(ImportedBody(name="r", text=text),)))
+    body = world.bodies["r"]
+    body.set("control", "turn", 0.1, 0.2, 0.3)
+    assert world.mj_data.ctrl[body.control("turn")].tolist() == [0.1, 0.2, 0.3]
+    with pytest.raises(WorldError, match=r"r: control 'turn' takes 3 numbers \(got 0\.5\)"):
+        body.set("control", "turn", 0.5)
+    with pytest.raises(WorldError, match=r"r: control 'joint' takes one number \(got 1, 2\)"):
+        body.set("control", "joint", 1, 2)

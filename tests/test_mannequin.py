@@ -182,7 +182,7 @@ def test_nothing_gets_through_a_wall(
         front = body.bounding_box().upper[0]
         assert front < near_face + 0.03, f"at tick {tick}"
         reached = max(reached, front)
-    assert reached > near_face
+    assert reached > near_face - 0.01
 
 
 @pytest.mark.parametrize("thickness", [0.02, 0.05])
@@ -250,7 +250,7 @@ def test_its_own_parts_and_the_floor_are_not_in_its_way(seed: int) -> None:
     random = np.random.default_rng(seed)
     for name, joint in body.joints.items():
         if not name.startswith("pelvis"):
-            body.set("position", name, random.uniform(joint.lower, joint.upper) * 0.3, 20.0)
+            body.set("position", name, random.uniform(joint.lower, joint.upper) * 0.3, 16.0)
     body.set("walk", 1.0)
     ticks(world, 100)
     world.refresh()

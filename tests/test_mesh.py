@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
 import struct
 import subprocess
 import sys
@@ -191,8 +192,9 @@ def test_parts_are_the_same_in_every_process(tmp_path: Path) -> None:
         "print(world.mj_model.ngeom, hashlib.sha256(world.mj_model.mesh_vert.tobytes()).hexdigest())"
     )
     run = [sys.executable, "-c", code, str(path)]
-    first, second = (subprocess.run(run, capture_output=True, text=True, check=True).stdout for _ in range(2))
-    assert first == second
+    caches = [{**os.environ, "XDG_CACHE_HOME": str(tmp_path / name)} for name in ("one", "other", "other")]
+    first, second, kept = (subprocess.run(run, capture_output=True, text=True, check=True, env=env).stdout for env in caches)
+    assert first == second == kept
     assert int(first.split()[0]) > 2
 
 
@@ -257,6 +259,12 @@ BROKEN: list[tuple[str, Callable[[], str | bytes], str]] = [
     ("mesh.obj", lambda: "Dear all,\nthis is not a mesh.\n" * 9, r"'mesh\.obj' has no triangles: is it a mesh file at all"),
     ("mesh.obj", lambda: TETRAHEDRON.split("f")[0], r"'mesh\.obj' has no triangles: only 4 points or lines"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("f 2 3 4", "f 2 3 9"), r"'mesh\.obj' cannot be read as obj: index 8 is out of bounds"),
+    (
+        "mesh.obj",
+        lambda: TETRAHEDRON.replace("f 2 3 4", "f 0 1 2"),
+        r"'mesh\.obj', line 8: a triangle refers to vertex 0; OBJ files count from 1",
+    ),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("f 2 3 4", "f 2 3 -5"), r"line 8: a triangle refers to number -5 of 4 before it"),
     ("mesh.ply", lambda: ply("0 0 0\n1 0 0\n0 1 0\n0 0 1", "3 0 1 7\n3 0 1 2"), r"refers to vertex \[0, 1, 7\]; there are 4 vertices"),
     ("mesh.ply", lambda: ply("0 0 0\n1 0 0\n0 1 0\n0 0 1", "3 0 1 -7\n3 0 1 2"), r"triangle 0 refers to vertex \[0, 1, -7\]"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 nan"), r"'mesh\.obj': a vertex is not finite: \[0\.0, 0\.0, nan\]"),
@@ -267,6 +275,7 @@ BROKEN: list[tuple[str, Callable[[], str | bytes], str]] = [
     ("mesh.obj", lambda: "v 0 0 0\nv 1 0 0\nf 1 2 1\nf 2 2 1\n", r"'mesh\.obj': none of its triangles has an area"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 0"), r"is flat: it has no volume; leave it fixed, with collision='none'"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 70000"), r"is 7e\+04 m long; the most is 10000 m\. Is its unit the metre\?"),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 1e30"), r"is 1e\+30 m long; the most is 10000 m"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("v 1", "v 1e-5").replace("0 1", "0 1e-5").replace("1 0", "1e-5 0"), r"the least is 0\.0001 m"),
     ("mesh.off", lambda: "OFF\n4 1 0\n0 0 0\n1 0 0\n", r"'mesh\.off' cannot be read as off"),
     ("mesh.ply", lambda: "ply\nformat ascii 1.0\n", r"'mesh\.ply' cannot be read as ply"),
@@ -358,8 +367,21 @@ def test_a_mesh_with_a_hole_weighs_and_meets_as_its_hull(tmp_path: Path) -> None
         Mesh(name="m", path=path, collision="parts")
 
 
-def test_a_flat_sheet_is_seen_from_both_sides(tmp_path: Path) -> None:
-    path = file(tmp_path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+def test_corners_may_be_counted_backwards(tmp_path: Path) -> None:
+    far = "v 10 0 0\nv 11 0 0\nv 10 1 0\nv 10 0 1\n"
+    forwards = TETRAHEDRON + far + "f 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n"
+    backwards = TETRAHEDRON + far + "f -4 -2 \\\n -3 # first\nf -4/ -3 -1//\nf -4 -1 -2\n\tf -3 -2 -1\n"
+    worlds = [
+        World(Scene(parts=(Mesh(name="m", path=file(tmp_path, text, name)),)))
+        for name, text in (("one.obj", forwards), ("two.obj", backwards))
+    ]
+    assert worlds[0].mj_model.nmeshface == 8
+    assert worlds[0].fingerprint == worlds[1].fingerprint
+
+
+@pytest.mark.parametrize("content", ["v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"])
+def test_a_flat_sheet_is_seen_from_both_sides(content: str, tmp_path: Path) -> None:
+    path = file(tmp_path, content)
     world = World(Scene(parts=(Mesh(name="m", path=path, collision="none", position=(0, 0, 1)),)))
     seen = rays(world, np.array([[0.3, 0.2, 3.0], [0.3, 0.2, 0.0]]), np.array([[0, 0, -1.0], [0, 0, 1]]))
     assert [distance for distance, _ in seen] == near([2, 1], abs=1e-6)
@@ -410,12 +432,15 @@ def test_instances_are_counted_before_they_are_made(tmp_path: Path) -> None:
         ({"path": "one.stl", "quaternion": (1, 0, 0, 0), "heading": 1}, r"Mesh 'm': give a heading, or a quaternion"),
         ({"path": "one.stl", "files": (("two.stl", b""),)}, r"'two\.stl' is empty"),
         ({"path": "link.stl"}, r"'link\.stl' lies outside the folder 'here'"),
+        ({"path": "loop.stl"}, r"'loop\.stl' cannot be read: Symlink loop|no file 'loop\.stl'"),
+        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no path that can be read: Symlink loop|no file 'one\.stl'"),
     ],
 )
 def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     here = tmp_path / "here"
     here.mkdir()
     written(tmp_path, wedge(), "stl").rename(here / "one.stl")
+    (here / "loop.stl").symlink_to(here / "loop.stl")
     (here / "link.stl").symlink_to(file(tmp_path, stl(1), "outside.stl"))
     monkeypatch.chdir(here)
     with pytest.raises(Actr3dError, match=message):

@@ -14,6 +14,7 @@ from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace, TraceEvent
+from actr3d.world import Scene
 
 Plain: Any = load_text(
     "from actr3d.actr import *\nclass Plain(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n    def done(goal='a'):\n"
@@ -106,3 +107,43 @@ def test_the_trace_does_not_keep_a_simulation() -> None:
         gc.collect()
         assert gone() is None
         trace.listen(lambda _: None)
+
+
+Naming: Any = load_text(
+    """
+from actr3d.actr import *
+class Naming(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    def init():
+        memory.add(Chunk({0: "of", "what": self.goal, "all": [self.memory]}))
+        goal.set(Chunk({0: "go", "to": self.goal, "says": "<namer.goal>"}))
+    def go(goal="go to:?x"):
+        memory.request("of")
+        goal.clear()
+""",
+    "naming.py",
+).Naming
+
+
+def test_the_data_name_parts_as_the_programs_trace_does() -> None:
+    trace = Trace("all")
+    with RunLimits(seed=5, trace=trace):
+        kept = [Simulation(Scene(), bodiless={"namer": Naming}, trace="all") for _ in range(2)]
+        for simulation in kept:
+            simulation.run(0.3)
+        model: Any = Naming()
+        model.namer = Naming()
+        model.run(0.3)
+    first, second = ([event for event in trace if event.run == number] for number in (1, 2))
+    assert kept[1].trace is not None
+    assert [event.data for event in kept[1].trace][1:] == [event.data for event in first][1:]
+    lines = "\n".join(event.to_json() for event in second)
+    assert lines.count("<top#2.namer.goal>") >= 3
+    assert lines.count("<top#2.namer.memory>") >= 2
+    assert lines.count("<namer.") == lines.count('"says": "<namer.goal>"') == 1  # the model's own text stays as it is
+    (retrieved,) = [event for event in second if event.kind == "retrieval"]
+    assert "what:<top#2.namer.goal>" in retrieved.data["chunk"]
+    third = "\n".join(event.to_json() for event in trace if event.run == 3)
+    assert "<top#3.namer.goal>" in third

@@ -68,7 +68,9 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         for tick in (0, 20, 55):  # some events at exactly the end of a tick are of the next one
             assert all(event.time <= tick / 100 for event in events[: counts[tick]])
             assert all(event.time >= tick / 100 for event in events[counts[tick] :])
-        assert list(recorded.commands()) == [(50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})]
+        assert list(recorded.commands()) == [
+            (1, 50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})
+        ]
         told = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
         answers = list(recorded.answers())
         assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(told)] == told
@@ -93,7 +95,7 @@ def test_a_run_is_the_same_with_a_recording_or_without(tmp_path: Path) -> None:
 def test_odd_values_are_recorded_as_the_trace_tells_them(tmp_path: Path) -> None:
     odd: dict[Any, Any] = {"inf": float("inf"), 1: "number", "object": object(), "word": "größe \ud800"}
     events = [TraceEvent(5, "top", "state", odd), TraceEvent(6, "top", "state", {"a": [1, (2, 3)]})]
-    with Recording(tmp_path / "run", {}) as recording:
+    with Recording(tmp_path / "run", {"kind": "simulation"}) as recording:
         for event in events:
             recording.event(event)
     with Recorded(tmp_path / "run") as recorded:
@@ -239,3 +241,48 @@ def test_the_run_waits_for_a_slow_disk(tmp_path: Path, monkeypatch: pytest.Monke
     assert 1 < most <= 51
     with Recorded(tmp_path / "run") as recorded:
         assert recorded.ticks == 300
+
+
+def test_a_run_is_recorded_once_at_a_time(tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run"):
+        with pytest.raises(SimulationError, match="this run is being recorded already"):
+            simulation.record(tmp_path / "other")
+        simulation.step(2)
+    assert not (tmp_path / "other").exists()
+    with Recorded(tmp_path / "run") as recorded:
+        assert recorded.ticks == 2
+
+
+@pytest.mark.parametrize(
+    ("facts", "message"),
+    [
+        ({"seed": 99}, "a recording tells 'seed' by itself; give that fact another name"),
+        ({"kind": "program"}, "a recording tells 'kind' by itself"),
+        ({"form": "mine"}, "a recording tells 'form' by itself"),
+        ({"subject": object()}, "the fact 'subject' cannot be recorded, only numbers, texts, and lists and dicts of these"),
+    ],
+)
+def test_facts_that_are_none_of_the_users_are_refused(facts: dict[str, Any], message: str, tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=message):
+        driving().record(tmp_path / "run", **facts)
+    assert not (tmp_path / "run").exists()
+
+
+def test_names_that_sqlite_has_a_meaning_for_are_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    simulation = driving()
+    with simulation.record(":memory:"):
+        simulation.step(2)
+    with Recorded(tmp_path / ":memory:") as recorded:
+        assert recorded.ticks == 2
+    with pytest.raises(RecordingError, match=r"cannot write the recording 'a.b': embedded null byte"):
+        driving().record("a\0b")
+
+
+def test_facts_without_a_value_are_damage(tmp_path: Path) -> None:
+    with sqlite3.connect(tmp_path / "run") as file:
+        file.executescript("CREATE TABLE facts (name TEXT, value TEXT); INSERT INTO facts VALUES ('form', NULL)")
+    file.close()
+    with pytest.raises(RecordingError, match="is no recording"):
+        Recorded(tmp_path / "run")

@@ -16,8 +16,9 @@ from actr3d.cli import main
 from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.running.building import build
+from actr3d.running.options import read_settings
 from actr3d.running.replay import replay
-from actr3d.running.run import has_build, run_model, settings_of
+from actr3d.running.run import has_build, run_model
 from actr3d.trace import Trace
 
 ROOT = Path(__file__).parent.parent
@@ -203,6 +204,7 @@ def in_fact(name: str, old: str, new: str) -> str:
 CHANGES = [
     (in_fact("sources", "noise=1", "noise=2"), "differs: event "),
     (in_fact("sources", "heading=0.3", "heading=0.4"), "differs: the physics at the end of tick 0 (0 s): number 4 of "),
+    (in_fact("sources", "Scene(", "Scene(gravity=(0, 0, -9), "), "; it compiles to another scene than then"),
     (in_fact("sources", "Scene(", "Scene(gravity=(0, 0, -9), "), "differs: the physics at the end of tick 1 (0.01 s): number "),
     (in_fact("sources", "times", "counts"), "error: Parameters has no parameter 'times'"),
     (in_fact("versions", '"mujoco": "', '"mujoco": "1'), "error: the recording was made with other versions"),
@@ -230,6 +232,46 @@ def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[s
     assert main(["replay", str(path)]) == 2
     assert "python 2.7 then, 3." in capsys.readouterr().err
     assert main(["replay", str(path), "--any-version"]) == 0
+
+
+def test_a_damaged_recording_is_told_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file)
+    data = bytearray(path.read_bytes())
+    with sqlite3.connect(path) as connection:
+        (page,) = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'events'").fetchone()
+        (size,) = connection.execute("PRAGMA page_size").fetchone()
+    connection.close()
+    data[(page - 1) * size : (page - 1) * size + 8] = b"XXXXXXXX"
+    path.write_bytes(data)
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert f"error: the recording '{path}' is damaged: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("table", ["events", "answers", "commands"])
+def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run"):
+        simulation.command("aperture", 0.5)
+        simulation.run(0.3)
+    alter(tmp_path / "run", f"UPDATE {table} SET data = substr(data, 1, length(data) - 9) || 'XXXXXXXXX'")
+    with Recorded(tmp_path / "run") as recorded, pytest.raises(RecordingError, match="is damaged: "):
+        replay(recorded, driving)
+
+
+def test_a_recording_that_was_killed_before_anything_was_written_agrees(file: Path) -> None:
+    path = recorded_run(file)
+    alter(path, "DELETE FROM events", "DELETE FROM states", "DELETE FROM facts WHERE name IN ('ended', 'whole')")
+    with Recorded(path) as recorded:
+        assert str(replay(recorded)) == "every byte agrees: 0 events"
+
+
+def test_a_recording_without_its_facts_is_told(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded_run(file)
+    alter(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert "is no whole recording: it does not say its kind and versions" in capsys.readouterr().err
 
 
 def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -285,20 +327,55 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     assert capsys.readouterr().out.startswith("every byte agrees: 14 ticks, ")
 
 
+@pytest.mark.parametrize("code", [0, 3])
+def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, path = tmp_path / "exiting.py", tmp_path / "run"
+    file.write_text(f"{NOISY}print('over', end='')\nraise SystemExit({code})\n", encoding="utf-8")
+    with pytest.raises(SystemExit) as left:
+        main(["run", str(file), "--seed", "1", "--record", str(path)])
+    assert left.value.code == code
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 0
+    assert capsys.readouterr().out.startswith("every byte agrees: ")
+    alter(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
+    assert main(["replay", str(path)]) == 1
+    assert '"text": "moreend..."' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("leave", ["1 / 0", "raise SystemExit(0)"])
+def test_a_replay_that_fails_differs(
+    leave: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "fallen.py"
+    fail = f"if os.environ.get('FAIL') == '%s': {leave}\n"
+    text = BUILT.replace("    scene = ", f"    {fail % 'build'}    scene = ")
+    text = text.replace("        print(side", f"        if self.times == 2:\n            {fail % 'run'}        print(side")
+    file.write_text("import os\n" + text, encoding="utf-8")
+    path = recorded_run(file)
+    capsys.readouterr()
+    what = "ZeroDivisionError: division by zero" if leave == "1 / 0" else "SystemExit: 0"
+    monkeypatch.setenv("FAIL", "run")
+    assert main(["replay", str(path)]) == 1
+    assert capsys.readouterr().out == f"differs: the run failed after 0.09 s ({what})\n"
+    monkeypatch.setenv("FAIL", "build")
+    assert main(["replay", str(path)]) == 2
+    assert f"error: what '{path}' holds cannot be built here: {what}\n" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("code", "words", "message"),
     [
-        (["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'?; it has: times, height, word"),
-        (["--set", "times"], "a parameter is set by name=value (got 'times')"),
-        (["--record", "falling.py"], "cannot write the recording 'falling.py': it exists already"),
-        (["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
+        (2, ["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'?; it has: times, height, word"),
+        (2, ["--set", "times"], "a parameter is set by name=value (got 'times')"),
+        (1, ["--record", "falling.py"], "cannot write the recording 'falling.py': it exists already"),
+        (1, ["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
     ],
 )
 def test_wrong_options_of_run_are_told(
-    words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    code: int, words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(file.parent)
-    assert main(["run", "falling.py", *words]) == 1
+    assert main(["run", "falling.py", *words]) == code
     assert f"error: {message}" in capsys.readouterr().err
     assert file.read_text(encoding="utf-8") == BUILT
 
@@ -306,7 +383,7 @@ def test_wrong_options_of_run_are_told(
 def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY, encoding="utf-8")
-    assert main(["run", str(file), "--set", "a=1"]) == 1
+    assert main(["run", str(file), "--set", "a=1"]) == 2
     assert "so there are no parameters to set" in capsys.readouterr().err
     with pytest.raises(ParameterError, match=r"a recording holds every event: trace 'all', or none \(got 'production'\)"):
         run_model(file, RunLimits(trace=Trace("production")), record=tmp_path / "run")
@@ -347,7 +424,7 @@ def test_other_functions_called_build_are_none(text: str) -> None:
 
 
 def test_settings_are_values_or_texts() -> None:
-    given: dict[str, Any] = settings_of(["a=1", "b=0.5", "c=None", "d=(1, 2)", "e=box", "f=x=y", "g="])
+    given: dict[str, Any] = read_settings(["a=1", "b=0.5", "c=None", "d=(1, 2)", "e=box", "f=x=y", "g="], ())
     assert given == {"a": 1, "b": 0.5, "c": None, "d": (1, 2), "e": "box", "f": "x=y", "g": ""}
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +85,8 @@ def test_what_does_not_fit_is_told() -> None:
         ({"background": ("flor",)}, "no geom 'flor'; did you mean 'floor'"),
         ({"noise": 0.1}, "its fields have different units; name them"),
         ({"noise": {"d3": 0.1}}, "no field 'd3'"),
+        ({"noise": {1: 0.1}}, r"walker: noise of view: a field is named by text \(got 1\)"),
+        ({"rows": "ten"}, r"CameraParameters\.rows: must be a whole number \(got 'ten'\)"),
     ]
     for options, message in wrong:
         with pytest.raises(Actr3dError, match=message):
@@ -97,6 +101,22 @@ def test_noise_of_a_view_is_seeded_and_leaves_the_view_alone() -> None:
     assert noisy.extents["d1"].tolist() != plain.extents["d1"].tolist()
     assert noisy.extents.tobytes() == second.get("view", noise={"d1": 0.05}).extents.tobytes()
     assert first.get("view") is plain
+
+
+def test_without_the_camera_the_word_says_where_it_is() -> None:
+    look = "from actr3d.world import Mannequin, Scene, World; World(Scene(parts=(Mannequin(),))).bodies['mannequin'].get('view')"
+    alone = subprocess.run([sys.executable, "-c", look], check=False, capture_output=True, text=True)
+    assert "mannequin: the sensor 'view' is the camera's: import actr3d.camera before the world is made" in alone.stderr
+    for package in ("actr3d.camera", "actr3d.simulation"):
+        assert subprocess.run([sys.executable, "-c", f"import {package}; {look}"], check=True, capture_output=True).stderr == b""
+
+
+def test_numbers_may_come_as_text() -> None:
+    first, second = doorway().bodies["walker"], doorway().bodies["walker"]
+    plain = first.get("view", rows=7, range=5.5, noise={"d1": 0.05})
+    noise: Any = {"d1": "0.05"}
+    assert second.get("view", rows="7", range="5.5", noise=noise).extents.tobytes() == plain.extents.tobytes()
+    assert second.get("view", rows=7, range=5.5) is second.get("view", rows="7", range="5.5")
 
 
 SEEING: Any = load_text(

@@ -10,15 +10,17 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
 import pytest
 from living import near
 from walkers import Driver, digest, driving, scene_of
 
-from actr3d.actr import ACTR, Model
+from actr3d.actr import ACTR, Buffer, Model
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SimulationError, WorldError
-from actr3d.simulation import Glimpse, Simulation, history
+from actr3d.simulation import Glimpse, Simulation, history, minds
+from actr3d.simulation.minds import Environment
 from actr3d.trace import Trace
 from actr3d.world import Body, Floor, Scene
 
@@ -224,6 +226,28 @@ def test_an_observer_cannot_step_what_it_observes() -> None:
         simulation.step()
 
 
+@pytest.mark.parametrize("look", ["listen", "until"])
+def test_listeners_and_conditions_only_look_too(look: str) -> None:
+    simulation, told = driving("all"), list[str]()
+
+    def meddle(_: object) -> bool:
+        for change in (simulation.step, simulation.tock, lambda: simulation.seek(0), lambda: simulation.command("aperture", 1.0)):
+            with pytest.raises(SimulationError, match="an observer only looks") as caught:
+                change()
+            told.append(str(caught.value))
+        return False
+
+    if look == "listen":
+        simulation.listen(meddle)
+        simulation.step(5)
+    else:
+        simulation.run(0.05, until=meddle)
+    assert len(told) >= 20
+    plain = driving("all")
+    plain.step(5)
+    assert digest(simulation) == digest(plain)
+
+
 def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
     simulation = Simulation(scene_of("walker"))
     simulation.command("walk", 1.0)
@@ -287,7 +311,7 @@ def test_real_time_is_kept_and_measured_and_lateness_told() -> None:
     late = simulation.run(0.05, real_time=100)
     assert (late.ticks, late.late_ticks) == (5, 5)  # none is skipped
     assert late.latest > 0.02
-    with pytest.raises(SimulationError, match=r"real_time\): must be above 0"):
+    with pytest.raises(SimulationError, match=r"real_time\): must be a finite number above 0"):
         simulation.run(1, real_time=0)
 
 
@@ -306,6 +330,11 @@ def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
     assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
 
 
+def odd(value: Any) -> Any:
+    """Returns a value of another type than what takes it asks for."""
+    return value
+
+
 WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\?; name its body: walker, other"),
     (lambda s: s.command("stop", body="walkr"), r"no body 'walkr'; did you mean 'walker'\?"),
@@ -315,6 +344,28 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.command("aperture", -1), r"Aperture\.width: must be >= 0"),
     (lambda s: s.command("parameter", "walkr.looks", 1), r"has no part 'walkr'; did you mean 'walker'"),
     (lambda s: s.command("parameter", "walker.look", 1), r"'walker' has no 'look'; did you mean 'looks'"),
+    (lambda s: s.command(5), r"a command is a word, and its body is named by one \(got 5\)"),
+    (lambda s: s.command("stop", body=7), r"is named by one \(got 7\)"),
+    (lambda s: s.command("parameter", 5, 1), r"a parameter is named by a text such as 'walker\.memory\.latency' \(got 5\)"),
+    (lambda s: s.step(-1), r"step\(n\): must be a whole number, at least 0 \(got -1\)"),
+    (lambda s: s.step(1.5), r"step\(n\): must be a whole number, at least 0 \(got 1\.5\)"),
+    (lambda s: s.run(1, real_time="2"), r"run\(real_time\): must be a finite number above 0 \(got '2'\)"),
+    (lambda s: s.run(1, real_time=float("inf")), r"run\(real_time\): must be a finite number above 0 \(got inf\)"),
+    (lambda s: s.run(until=True), r"run\(until\): must be a function that takes a Glimpse \(got True\)"),
+    (lambda s: Simulation(odd("room")), r"Simulation\.scene: must be a Scene or a World \(got 'room'\)"),
+    (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the minds are \(it has come to 0\.02 s\)"),
+    (
+        lambda s: Simulation(Scene(), seed=odd(1.5)),
+        r"Simulation\.seed: must be a whole number or a text .*got 1\.5",
+    ),
+    (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number or a text of printable characters"),
+    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.minds: must name what makes each mind, as in"),
+    (
+        lambda s: Simulation(Scene(), bodiless={"": Driver}),
+        r"Simulation\.bodiless: a mind's name must be a text that does",
+    ),
+    (lambda s: Simulation(Scene(), bodiless={"sch": Driver}).step(), "cannot be named 'sch'"),
+    (lambda s: Simulation(Scene(), bodiless={"parent": Driver}).step(), "cannot be named 'parent'"),
     (lambda s: s.tock(), "there is a tick to be made first"),
     (lambda s: (s.tick(), s.tick()), "a tick waits for its tock"),
     (lambda s: (s.tick(), s.command("aperture", 1)), "a tick waits for its tock"),
@@ -328,6 +379,9 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
     (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "leads to no body"),
     (lambda s: Simulation(s.world, trace="some"), "no level 'some'"),
+    (lambda s: BodyPort().set("walk", 1), "'walk' is said to a body before the agent lives; say it while its Simulation runs"),
+    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is said to a body before the agent lives"),
+    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is said to a body before the agent lives"),
     (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 
@@ -336,6 +390,25 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
 def test_what_is_wrong_is_said(wrong: Callable[[Simulation], object], message: str) -> None:
     with pytest.raises(Actr3dError, match=message):
         wrong(driving())
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    simulation, plain = driving(seed=odd(np.int64(3))), driving(seed=3)
+    simulation.command("aperture", np.float64(0.75))
+    simulation.command("posture", {"torso_yaw": np.float32(0.5)}, body="walker")
+    plain.command("aperture", 0.75)
+    plain.command("posture", {"torso_yaw": 0.5}, body="walker")
+    simulation.step(odd(np.int64(20)))
+    plain.step(20)
+    assert digest(simulation) == digest(plain)
+    assert type(simulation.seed) is int
+
+
+def test_no_name_of_a_living_environment_is_left_to_a_mind() -> None:
+    environment = Environment()
+    before = set(dir(environment))
+    environment._ensure_converted()
+    assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(minds._LATER)
 
 
 def test_an_unknown_word_names_the_modellers_line() -> None:

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from looking import seeing_for
+from moving import moving
 from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
@@ -18,6 +20,7 @@ from actr3d.actr.loading import load_text, run_text
 from actr3d.cli import event_line
 from actr3d.errors import ParameterError
 from actr3d.kinds import KINDS, LEVELS
+from actr3d.simulation import Passage
 from actr3d.trace import Trace, TraceEvent
 
 ROOT = Path(__file__).parent.parent
@@ -48,6 +51,17 @@ class Agent(ACTR):
     def think(goal='think'):
         goal.clear()
 
+from actr3d.sgoms import SGOMS, Ordered
+
+class Planner(SGOMS):
+    plan = Ordered('task')
+    def init():
+        b_plan_unit.set('planning_unit:plan')
+    def begin(b_unit_task='unit_task:task state:start'):
+        b_method.set('method:press')
+        b_operator.set('operator:push')
+        b_unit_task.modify(state='finished')
+
 class World(Model):
     def start(self):
         yield 0.12
@@ -64,6 +78,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     module: Any = load_text(EVERYTHING, "everything.py")
     world = module.World()
     world.agent = module.Agent()
+    world.planner = module.Planner()
     trace = world.traced()
     world.run(2)
     trace.command("pause", {"why": "lunch"})
@@ -73,8 +88,14 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     done = subprocess.run(arguments, capture_output=True, text=True, check=True, timeout=60)
     printed = [TraceEvent(0, line["source"], line["kind"], line["data"]) for line in map(json.loads, done.stdout.splitlines())]
     simulation = driving("all")
+    simulation.measure(Passage("walker"))
     simulation.run(0.1)
-    return [*trace, *printed, *(simulation.trace or ())]
+    simulation.conclude()
+    mover, motor = moving(trace="all")
+    motor.rotate_torso(2)
+    motor.rotate_torso(1)
+    mover.step(5)
+    return [*trace, *printed, *(simulation.trace or ()), *(mover.trace or ()), *seeing_for(0.2)]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:
@@ -96,6 +117,7 @@ def test_a_level_holds_the_kinds_of_the_table(level: str) -> None:
     for wanted in (level, "all"):
         world = module.World()
         world.agent = module.Agent()
+        world.planner = module.Planner()
         with RunLimits(seed=1):
             trace = world.traced(wanted)
         world.run(2)

@@ -209,3 +209,37 @@ def test_each_change_of_the_image_takes_its_delay(delay: float, capsys: pytest.C
 def test_a_request_to_a_busy_imaginal_module_is_lost(capsys: pytest.CaptureFixture[str]) -> None:
     run("imaginal", change=('?total", imagine="busy:False"', '?total"'))
     assert "7, and that is all" in capsys.readouterr().out
+
+
+def test_sgoms_the_longer_the_interruption_the_longer_it_takes_to_find_back(capsys: pytest.CaptureFixture[str]) -> None:
+    for call, interrupted in ((4.0, 2.06), (0.5, 2.06), (10.0, 2.06)):
+        run("sgoms", call_time=call)
+        lines = [line.split(" s: ") for line in capsys.readouterr().out.splitlines()]
+        said = {what: moment for moment, what in lines}  # the last of each
+        # From the interruption: begin, choose, start and end of two unit tasks that take 1 s and the call; look, end; ask.
+        away = 0.05 + 0.05 + (0.05 + 1.0 + 0.05) + 0.1 + (0.05 + call + 0.05) + 0.1 + 0.05
+        back = interrupted + away + 0.05 * math.sqrt(away) + 0.05
+        assert float(said["steep"]) == approx(back + 0.05, abs=0.001)
+        # Steeping ends after 1.05 s; 0.15 s to the next unit task, and as much to the end; 0.05 s to notice it.
+        assert float(said["that is all"]) == approx(back + 0.05 + 1.05 + 0.15 + 0.05 + 1.05 + 0.15 + 0.05, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("ring", "when", "order"),
+    [
+        (2.0, "now", ["boil", "steep", "pick_up", "talk", "steep", "pour"]),
+        (2.0, "end", ["boil", "steep", "pick_up", "talk", "pour"]),
+        (1.27, "now", ["boil", "pick_up", "talk", "steep", "pour"]),
+    ],
+)
+def test_sgoms_the_tea_goes_on_where_it_was_left(ring: float, when: str, order: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    run("sgoms", ring_at=ring, when=when)
+    said = [line.split(" s: ")[1] for line in capsys.readouterr().out.splitlines()]
+    assert [what for what in said if what not in ("the telephone rings", "that is all")] == order
+
+
+@pytest.mark.parametrize(("call", "forgotten"), [(18.0, False), (18.8, True)])
+def test_sgoms_a_place_is_forgotten_below_the_threshold(call: float, forgotten: bool, capsys: pytest.CaptureFixture[str]) -> None:
+    run("sgoms", call_time=call)
+    assert abs(1.55 + call - math.exp(2 * 1.5)) < 0.6
+    assert ("where was I?" in capsys.readouterr().out) == forgotten

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from living import near
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, WorldError
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Track, Wall, World
 
 
@@ -55,6 +55,16 @@ def test_going_on_from_a_state_gives_the_same_bytes() -> None:
     assert (world.time, first.steps) == (626_000, 313)
 
 
+def test_a_state_of_another_scene_is_refused_whatever_its_size() -> None:
+    world, same, other = doorway(0.7), doorway(0.7), doorway(0.8)
+    world.step(3)
+    same.restore(world.state())
+    assert same.state_bytes() == world.state_bytes()
+    with pytest.raises(WorldError, match="the state is of another scene"):
+        other.restore(world.state())
+    assert other.time == 0
+
+
 def test_looking_at_positions_changes_nothing() -> None:
     watched, unwatched = doorway(), doorway()
     for _ in range(50):
@@ -90,6 +100,12 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
         (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
         (lambda: doorway().step(-1), r"the physics goes on by a whole number of steps \(got -1\)"),
+        (lambda: doorway().set_aperture_width(1, 3), "no aperture '3' in this scene"),  # pyright: ignore[reportArgumentType]
+        (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
+        (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),
+        (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' cannot be a name"),
+        (lambda: Track(points=((0, 0), (1, 0), (1, 0))), r"Track 'track'\.points: the points 1 and 2 are the same, \(1\.0, 0\.0\)"),
+        (lambda: World(Floor()), r"a world is made of a Scene \(got Floor"),  # pyright: ignore[reportArgumentType]
         (lambda: World(Scene(), seed=-1), r"the seed of a world must be a whole number from 0 on \(got -1\)"),
     ],
 )
@@ -102,6 +118,16 @@ def test_physics_that_diverges_says_so() -> None:
     world = doorway()
     world.mj_data.qvel[0] = 1e20
     with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
+
+
+def test_what_has_diverged_is_named() -> None:
+    near_one, far = Loose(name="near"), Loose(name="far", position=(1e12, 0, 0))
+    with pytest.raises(Actr3dError, match=r"the physics diverged near 0\.002 s, at 'far'"):
+        World(Scene(parts=(Mannequin(), near_one, far))).step()
+    world = World(Scene(parts=(Mannequin(), near_one, Loose(name="last", position=(9, 0, 1)))))
+    world.mj_data.qvel[world.mj_model.joint("last").dofadr[0] + 2] = 1e20
+    with pytest.raises(Actr3dError, match=r"the physics diverged near .*, at 'last'"):
         world.step()
 
 

@@ -161,7 +161,7 @@ def states_csv(path: Path) -> Iterator[str]:
     """
     with Recorded(path) as recorded:
         period = recorded.facts.get("period_us", 0)
-        for tick, state, _ in recorded.states():
+        for _, tick, state, _ in recorded.states():
             numbers = array("d", state)
             if tick == 0:
                 yield _csv_line(("time [s]", *(f"state_{n}" for n in range(len(numbers)))))
@@ -185,7 +185,7 @@ def curves(path: Path, names: Sequence[str], most: int) -> dict[str, Any]:
         every = max(1, -(-(recorded.ticks + 1) // most))
         times: list[float] = []
         values: dict[str, list[float]] = {name: [] for name in wanted}
-        for tick, state, _ in recorded.states() if wanted else ():
+        for _, tick, state, _ in recorded.states() if wanted else ():
             if tick % every == 0:
                 numbers = array("d", state)
                 times.append(seconds(tick * recorded.facts["period_us"]))

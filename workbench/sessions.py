@@ -92,7 +92,8 @@ class Sessions:
             OSError: If no worker can be started.
         """
         with Recorded(self.recordings.path(recording)) as recorded:
-            facts, commands = recorded.facts, list(recorded.commands())
+            facts = recorded.facts
+            commands = [(command.tick, command.data) for command in recorded.commands()]
         file = facts.get("file")
         if file is None or file not in facts.get("sources", {}):
             raise SessionError("the recording does not say which model file made it")

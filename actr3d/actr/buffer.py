@@ -18,6 +18,8 @@ class Buffer(Model):
     """Holds at most one chunk; its slots are read by `buffer[slot]` and matched by productions."""
 
     chunk: Chunk | None
+    _slots: frozenset[str] = frozenset()
+    """Slots that its chunks are given by a library: productions may look at them though no text of the model has them."""
 
     @named_parameters
     def __init__(self) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from actr3d.actr.known import State
 from actr3d.actr.memory import Memory
@@ -15,6 +15,7 @@ from actr3d.actr.model import Model
 from actr3d.actr.past import Past
 from actr3d.actr.present import Present
 from actr3d.actr.retrievals import RetrievalReason
+from actr3d.actr.searches import Searching, SearchReason
 from actr3d.actr.trial import Trial
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SchedulerError, did_you_mean
@@ -23,6 +24,9 @@ from actr3d.trace import TraceEvent
 if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
     from actr3d.actr.production import Production
+
+
+Kind = TypeVar("Kind", bound=Model)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +89,8 @@ class Explanation:
     """Whether the agent had begun to run; before that, its methods without parameters have not set anything up."""
     productions: tuple[ProductionReason, ...]
     retrievals: tuple[RetrievalReason, ...]
+    searches: tuple[SearchReason, ...] = ()
+    """Of vision: the last top-down and the last bottom-up search of each module."""
 
     def production(self, name: str) -> ProductionReason:
         """Returns the reason of one production.
@@ -105,7 +111,7 @@ class Explanation:
                 system = reason.system
                 lines.append(f"  in {system}:")
             lines.append(str(reason))
-        return "\n".join([*lines, *map(str, self.retrievals)])
+        return "\n".join([*lines, *map(str, self.retrievals), *map(str, self.searches)])
 
 
 def why(production: Production, state: State) -> ProductionReason:
@@ -144,20 +150,22 @@ def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
     for system in systems:
         if system._matcher is None:
             system._calc_context()
-    memories = _memories(agent, systems)
-    state = Present(agent) if at is None else _past(agent, at, systems, memories)
+    memories, eyes = _seen(Memory, agent, systems), _seen(Searching, agent, systems)
+    state = Present(agent) if at is None else _past(agent, at, systems, [*memories, *eyes])
     productions = [why(p, state) for system in systems if state.exists(system) for p in system._productions if state.learned(p)]
     retrievals = [state.retrieval(memory) for memory in memories if state.exists(memory)]
+    searches = [reason for eye in eyes if state.exists(eye) for reason in state.searches(eye)]
     return Explanation(
         time=state.time,
         agent=state.path(agent),
         begun=agent._matcher is not None,
         productions=tuple(productions),
         retrievals=tuple(reason for reason in retrievals if reason is not None),
+        searches=tuple(searches),
     )
 
 
-def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], memories: list[Memory]) -> Past:
+def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], modules: list[Model]) -> Past:
     """Returns the state at a past time.
 
     Raises:
@@ -178,7 +186,7 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     if time < microseconds(begin):
         raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
     seen = [target for system in systems for target in system._context.values() if isinstance(target, Model)]
-    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *memories, *seen)}.values()))
+    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *modules, *seen)}.values()))
     if not state.exists(agent):
         came = next(place.time for place in agent._places_in(trace) if place.path is not None)
         raise ParameterError(f"explain(at): '{agent._path}' was not there at {at:g} s; it came at {seconds(came):g} s")
@@ -193,11 +201,11 @@ def _systems(agent: ProductionSystem) -> Iterator[ProductionSystem]:
             yield part
 
 
-def _memories(agent: Model, systems: list[ProductionSystem]) -> list[Memory]:
-    """Returns the memories of an agent, and those of its ancestors that its productions see by name."""
-    found = [part for part in agent._tree() if isinstance(part, Memory)]
+def _seen(kind: type[Kind], agent: Model, systems: list[ProductionSystem]) -> list[Kind]:
+    """Returns an agent's modules of a kind, and those of its ancestors that its productions see by name."""
+    found = [part for part in agent._tree() if isinstance(part, kind)]
     for system in systems:
         for target in system._context.values():
-            if isinstance(target, Memory) and not any(target is known for known in found):
+            if isinstance(target, kind) and not any(target is known for known in found):
                 found.append(target)
     return found

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from actr3d.actr.procedural import ProductionSystem
     from actr3d.actr.production import Production
     from actr3d.actr.retrievals import RetrievalReason
+    from actr3d.actr.searches import SearchReason
 
 
 class Fact(NamedTuple):
@@ -87,6 +88,10 @@ class State(Protocol):
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:
         """Returns the reason of a memory's latest request."""
+        ...
+
+    def searches(self, module: Any) -> list[SearchReason]:
+        """Returns the reasons of the latest searches of a module that sees."""
         ...
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import random
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from contextvars import ContextVar, Token
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Protocol, Self
 from weakref import WeakSet
 
 from actr3d.clock import microseconds
@@ -29,6 +29,22 @@ MOST_REFUSALS = 100
 """A program that has asked so often for time after its end swallows every error: it is never going to end by itself."""
 
 
+class Recorder(Protocol):
+    """Takes down what the simulations of a program do that is no event; by the number that the program's trace gives each."""
+
+    def state(self, run: int, tick: int, data: bytes) -> None:
+        """Takes the physics at the start of a run, or at the end of a tick."""
+        ...
+
+    def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
+        """Takes what a body answered at the end of a tick."""
+        ...
+
+    def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
+        """Takes what a user did after a tick."""
+        ...
+
+
 @dataclass(eq=False)
 class RunLimits:
     """The seed, end and trace of every top model made inside a `with RunLimits(...)` block, also by threads started in it."""
@@ -40,6 +56,8 @@ class RunLimits:
     there, or when all its runs together have lasted `RUNS_TOGETHER` times as long. None for no end."""
     trace: Trace | None = None
     """Where events go; None for no trace."""
+    recorder: Recorder | None = None
+    """Where else simulations tell what they do, beside a trace of everything; None for nowhere."""
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
     """Tells the time of the latest run [us]."""
     passing: Callable[[int, int], object] | None = field(default=None, repr=False)

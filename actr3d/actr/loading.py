@@ -8,7 +8,6 @@ them can be loaded and used at once, also by several threads. See `actr3d.actr.p
 from __future__ import annotations
 
 import importlib
-import random
 import sys
 import weakref
 from collections.abc import Callable, Generator
@@ -21,9 +20,11 @@ from zlib import crc32
 
 from actr3d.actr import logger as logs
 from actr3d.actr.aliases import aliases
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits
 from actr3d.actr.program import Program
 from actr3d.actr.reading import compile_source, read_source
+from actr3d.actr.shared_random import shared_random
 from actr3d.actr.sources import WRITTEN_FOR_PYTHON_ACTR, drop_lines
 
 _LOADING = Lock()
@@ -66,6 +67,7 @@ def run_text(
     folder: Path | None = None,
     names: dict[str, Any] | None = None,
     prepare: Callable[[ModuleType], None] | None = None,
+    helpers: HelperTexts | None = None,
 ) -> ModuleType:
     """Runs a model's text as a program, until it and the threads it has started are over.
 
@@ -76,6 +78,7 @@ def run_text(
         folder: Where it finds its own helper modules; the present folder unless given.
         names: Globals it starts with.
         prepare: Called with the module before it runs.
+        helpers: Where the texts of its helper modules are kept, and come from where they are known.
 
     Returns:
         The program's module, as it is in the end.
@@ -84,7 +87,7 @@ def run_text(
         ModelFileError: If it, or a helper module, is no Python 3.
         Exception: Whatever the program raises.
     """
-    program = Program((folder or Path.cwd()).resolve())
+    program = Program((folder or Path.cwd()).resolve(), helpers)
     module = _module("__main__", filename, program)
     code = program.prepare(source, filename, module)
     module.__dict__.update(names or {})
@@ -98,12 +101,11 @@ def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLi
     """Runs a program's code under its limits, and puts everything back afterwards."""
     outer = RunLimits.current()
     with ExitStack() as stack:
-        stack.callback(random.setstate, random.getstate())
         stack.callback(logs.begin())
         stack.enter_context(limits)
         stack.enter_context(aliases(program.old))
         stack.enter_context(_as_main(module, program))
-        random.seed(limits.program_seed)
+        stack.enter_context(shared_random(limits.program_seed))
         logs.LOG.source = module.__file__
         stack.callback(_finish)  # also where the program fails: what it logged until then is kept
         try:
@@ -138,7 +140,9 @@ def run_file(path: Path | str, *, limits: RunLimits | None = None) -> ModuleType
     return run_text(read_source(path), str(path), limits=limits, folder=path.parent)
 
 
-def load_text(source: str, filename: str = "<model>", *, folder: Path | str | None = None) -> ModuleType:
+def load_text(
+    source: str, filename: str = "<model>", *, folder: Path | str | None = None, helpers: HelperTexts | None = None
+) -> ModuleType:
     """Loads a model's text as a module; its classes can be used afterwards, for as long as one likes.
 
     What it has put into `sys.modules`, and its lines for tracebacks, go when nothing of the module is in use any more:
@@ -149,13 +153,14 @@ def load_text(source: str, filename: str = "<model>", *, folder: Path | str | No
         source: The text.
         filename: How tracebacks call it; several texts may have one name.
         folder: Where it finds its own helper modules, now and later; None for none. Each text loads them for itself.
+        helpers: Where the texts of its helper modules are kept, and come from where they are known.
 
     Raises:
         ModelFileError: If it, or a helper module, is no Python 3.
         Exception: Whatever its top level raises.
     """
     importlib.invalidate_caches()
-    program = Program(None if folder is None else Path(folder).resolve())
+    program = Program(None if folder is None else Path(folder).resolve(), helpers)
     with _LOADING:
         # Two runs of one process load one text under one name; a second module of the same text gets a number.
         name = stem = f"actr3d_model_{crc32(f'{filename}:{source}'.encode(errors='replace')):08x}"

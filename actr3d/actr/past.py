@@ -15,6 +15,7 @@ from actr3d.actr.observed import answer_label, tells_changes
 from actr3d.actr.pattern import MISSING
 from actr3d.actr.plain import plain_empty
 from actr3d.actr.retrievals import RetrievalReason, past_retrieval
+from actr3d.actr.searches import SearchReason, outcome_of, past_search
 from actr3d.clock import seconds
 from actr3d.trace import Trace, TraceEvent
 
@@ -48,6 +49,8 @@ class _Part:
         self.unborn: set[str] = set()
         self.request: TraceEvent | None = None
         self.outcome = "pending"
+        self.searches: dict[bool, tuple[TraceEvent, str]] = {}
+        """By whether it was bottom-up: the latest search, and what has come of it."""
 
     def take(self, number: int, event: TraceEvent) -> None:
         """Takes in an event of this part."""
@@ -72,6 +75,11 @@ class _Part:
             self.request, self.outcome = event, data.get("outcome", "pending")
         elif kind == "retrieval":
             self.outcome = "failed" if data["failed"] else "retrieved"
+        elif kind == "search":
+            self.searches[data["bottom_up"]] = (event, "pending")
+        elif kind == "sight":
+            event, _ = self.searches[data["bottom_up"]]
+            self.searches[data["bottom_up"]] = (event, outcome_of(data))
 
     def _note(self, records: dict[str, Record], number: int, event: TraceEvent) -> None:
         records.update({key: Record(value, number, event.time_us) for key, value in event.data.items()})
@@ -207,6 +215,10 @@ class Past:
     def retrieval(self, memory: Model) -> RetrievalReason | None:
         known = self._of(memory)
         return None if known.request is None else past_retrieval(self.path(memory), known.request, known.outcome)
+
+    def searches(self, module: Model) -> list[SearchReason]:
+        known = sorted(self._of(module).searches.items())
+        return [past_search(self.path(module), event, outcome) for _, (event, outcome) in known]
 
 
 def _since(record: Record) -> str:

@@ -12,6 +12,7 @@ from actr3d.actr.observed import Observed
 from actr3d.actr.pattern import MISSING
 from actr3d.actr.plain import UNKNOWN, plain_empty, plain_value
 from actr3d.actr.retrievals import RetrievalReason, live_retrieval
+from actr3d.actr.searches import Searching, SearchReason, live_searches
 from actr3d.actr.texts import plain_text
 from actr3d.clock import seconds
 
@@ -86,6 +87,9 @@ class Present:
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:
         return live_retrieval(memory)
+
+    def searches(self, module: Searching) -> list[SearchReason]:
+        return live_searches(module)
 
 
 def _observed(system: ProductionSystem) -> Observed:

@@ -14,6 +14,7 @@ import importlib.util
 import sys
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
@@ -22,6 +23,7 @@ from weakref import WeakValueDictionary
 
 from actr3d.actr import logger as logs
 from actr3d.actr.aliases import OldNames, aliases, is_old_name
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.reading import compile_source, read_source
 from actr3d.actr.sources import SOURCE, WRITTEN_FOR_PYTHON_ACTR, FileName, keep_lines
 
@@ -34,10 +36,12 @@ class Program:
 
     Args:
         folder: Where its helper modules lie; None for none.
+        helpers: Where the texts of helper modules are kept, and come from where they are known; None for new ones.
     """
 
-    def __init__(self, folder: Path | None) -> None:
+    def __init__(self, folder: Path | None, helpers: HelperTexts | None = None) -> None:
         self.folder = folder
+        self.helpers = helpers or HelperTexts()
         self.files: list[FileName] = []
         """The names of its texts, under which tracebacks find their lines."""
         self.used_old_names = False
@@ -98,6 +102,10 @@ class Program:
         """Tells whether a module is one of the program's helper modules."""
         return any(self.owns(place) for place in (getattr(module, "__file__", None) or "", *getattr(module, "__path__", ())))
 
+    def short_name(self, fullname: str) -> str:
+        """Returns by which name the program itself knows a module."""
+        return fullname if self._package is None else fullname.removeprefix(f"{self._package}.")
+
     def _note_old_names(self) -> None:
         self.used_old_names = True
         if self in _RUNNING:
@@ -137,7 +145,7 @@ class Program:
         if self._package is None or (root in sys.modules and root in sys.stdlib_module_names):
             return False
         full = f"{self._package}.{root}"
-        if full in sys.modules:
+        if full in sys.modules or self.helpers.has(root):
             return True
         spec = PathFinder.find_spec(full, [str(self.folder)])
         # A folder without `__init__.py` stands behind everything else of its name.
@@ -152,14 +160,18 @@ class Program:
 
 
 class _HelperLoader(SourceFileLoader):
-    """Loads a helper module as the program itself is loaded."""
+    """Loads a helper module as the program itself is loaded; from its file, or from a text that is known."""
 
-    def __init__(self, name: str, path: str, program: Program) -> None:
+    def __init__(self, program: Program, name: str, path: str, text: str | None = None) -> None:
         super().__init__(name, path)
         self.program = program
+        self.text = text
 
     def exec_module(self, module: ModuleType) -> None:
-        exec(self.program.prepare(read_source(Path(self.path)), str(self.path), module), module.__dict__)
+        program, path = self.program, str(self.path)
+        text = read_source(Path(path)) if self.text is None else self.text
+        program.helpers.keep(program.short_name(self.name), path, program.folder, text)
+        exec(program.prepare(text, path, module), module.__dict__)
 
 
 class _HelperFinder(importlib.abc.MetaPathFinder):
@@ -169,12 +181,17 @@ class _HelperFinder(importlib.abc.MetaPathFinder):
         program = _PACKAGES.get(fullname.partition(".")[0]) or (_RUNNING[-1] if _RUNNING else None)
         if program is None or fullname in sys.builtin_module_names:
             return None
+        if program.folder is not None:
+            name = program.short_name(fullname)
+            known = program.helpers.spec(name, fullname, program.folder, partial(_HelperLoader, program))
+            if known is not None:
+                return known
         spec = PathFinder.find_spec(fullname, path)
         loader = spec.loader if spec is not None else None
         if type(loader) is not SourceFileLoader or not program.owns(str(loader.path)):
             return None
         assert spec is not None
-        spec.loader = _HelperLoader(loader.name, str(loader.path), program)
+        spec.loader = _HelperLoader(program, loader.name, str(loader.path))
         return spec
 
 

@@ -11,7 +11,7 @@ from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.tree import Part
 from actr3d.clock import microseconds
 from actr3d.trace import Trace, top_path
-from actr3d.values import COLLECTIONS, plain
+from actr3d.values import COLLECTIONS, Naming, plain
 
 if TYPE_CHECKING:
     from actr3d.actr.scheduler import Scheduler
@@ -22,7 +22,7 @@ UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
 
 
 def _known_part(value: object) -> str | None:
-    return f"<{value._path}>" if issubclass(type(value), Part) else None  # type: ignore[attr-defined]
+    return Naming(f"<{value._path}>") if issubclass(type(value), Part) else None  # type: ignore[attr-defined]
 
 
 def traceable(value: Any) -> Any:
@@ -46,7 +46,8 @@ def chunk_text(chunk: Chunk) -> str:
         return text
     if LASTING_TYPES.issuperset(map(type, chunk.values())):
         return str(chunk)
-    return str(Chunk({key: traceable(value) for key, value in chunk.items()}))
+    kept = {key: traceable(value) for key, value in chunk.items()}
+    return (Naming if any(type(value) is Naming for value in kept.values()) else str)(Chunk(kept))
 
 
 class TracedRun:

@@ -90,6 +90,32 @@ class Agent(Model):
             yield 0.01
 """
 """The same, looking at every tick."""
+LOOKING = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+from actr3d.vision import Vision
+
+class Watching(ProductionSystem):
+    production_time = 0.01
+    def watch(vision="watching:False"):
+        vision.request("feature:obstacle", radius=1.5, bearing=20, bottom_up=True)
+
+class Agent(ACTR):
+    goal = Buffer()
+    visual = Buffer()
+    vision = Vision(visual)
+    below = Watching()
+    body = BodyPort()
+    def init():
+        goal.set("look")
+        body.set("walk", 1.3)
+    def look(goal="look", vision="busy:False"):
+        vision.request("feature:opening", width=">0.5", height=">1.5")
+        goal.set("see")
+    def see(goal="see", vision="busy:False"):
+        goal.set("look")
+"""
+"""The same walk; looks for openings each 100 ms, and for obstacles all the time between."""
 TRIAL = 600
 """Ticks of a trial: 6 s for 7.8 m."""
 
@@ -156,7 +182,8 @@ def measure() -> list[Figure]:
     times = "times the bare physics"
     plain, bare, recorded = _best(typical)
     _cost(trial, 0, 10)  # compiles the camera, where it never was
-    watching = partial(trial, WATCHING)
+    watching, looking = partial(trial, WATCHING), partial(trial, LOOKING)
+    _cost(looking, 0, 20)  # compiles the detectors likewise
     return [
         Figure(name="tick and tock, no vision", value=plain / bare, sense="at most", bar=3, what=times),
         Figure(
@@ -164,6 +191,7 @@ def measure() -> list[Figure]:
         ),
         Figure(name="an aperture trial with vision", value=_seeing(trial), sense="at most", bar=10, what=times),
         Figure(name="a trial that looks at every tick", value=_seeing(watching), sense="at most", bar=10, what=times),
+        Figure(name="a trial that looks for openings and obstacles", value=_seeing(looking), sense="at most", bar=10, what=times),
         Figure(name="recording everything", value=recorded / plain, sense="at most", bar=1.5, what="times the unrecorded run"),
         *camera.measure(),
     ]

@@ -5,31 +5,32 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
 from actr3d.camera.eye import Eye, Kind, names_of
 from actr3d.camera.kernel.envelope import room_for
-from actr3d.camera.kernel.layout import EXTENT, OPTICS
+from actr3d.camera.kernel.layout import EXTENT
 from actr3d.camera.kernel.scan import MOST_PIECES_OF_A_PATCH, scan
 from actr3d.camera.kernel.scene import room_for_scene
 from actr3d.camera.objects import objects_of
+from actr3d.camera.optics import optics_of
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.topology import geoms_of, topology_of
 from actr3d.camera.view import View
 from actr3d.errors import CameraError
-
-NEAREST = 1e-9
-"""How deep a surface must be to be drawn at all [m]."""
+from actr3d.saying import warn_modeller
 
 
 class GeometricCamera:
     """Sees the edges of what is visible from one place of a MuJoCo model: exactly, and without pixels, names or meanings.
 
     Every geom is seen as MuJoCo's rays see it: not if its colour is fully transparent, planes from their front only, and
-    from inside a geom its inner sides. Flexes and skins are not seen. What is changed in `mj_model` (sizes, colours, heights,
-    poses) is seen at the next look; only what geoms there are, and of what type, is read once.
+    from inside a geom its inner sides; but signed distance fields as the meshes that MuJoCo draws of them, a little beside where its
+    rays go. Flexes and skins are not seen, and a warning names them. What is changed in `mj_model`
+    (sizes, colours, heights, poses) is seen at the next look; only what geoms there are, and of what type, is read once.
 
     A camera is for one thread at a time.
     """
@@ -55,8 +56,10 @@ class GeometricCamera:
             parameters: What may be set; None: `CameraParameters()`.
 
         Raises:
-            CameraError: If there is no such eye, if `background` names no geom, or if a geom cannot be seen at all.
+            CameraError: If there is no such eye, or if `background` names no geom.
+            ModelWarning: (a warning) Names flexes and skins, which are not seen.
         """
+        _warn_of_unseen(mj_model)
         self.parameters = CameraParameters() if parameters is None else parameters
         self._mj_model = mj_model
         self._eye = _the_eye(mj_model, camera=camera, site=site, body=body)
@@ -65,17 +68,21 @@ class GeometricCamera:
         self._topology = topology_of(mj_model, self._objects, self.parameters.groups)
         self._scene = room_for_scene(self._topology, self.parameters.rows)
         most = MOST_PIECES_OF_A_PATCH * len(self._scene.patches) + len(self._topology.face_geom) + 1
-        self._row = room_for(most, self._scene.places)
-        self._optics = _optics(self.parameters)
+        self._row = room_for(most, self._scene.places, self._scene.reaches)
+        self._optics = optics_of(self.parameters)
         self._labels = np.zeros(max(0, *self._objects, 0) + 1, np.int64)
         self._extents = np.zeros(16 * self.parameters.rows, EXTENT)
 
-    def look(self, mj_data: MjData) -> View:
+    def look(self, mj_data: MjData, heading: float | None = None) -> View:
         """Returns what is visible now.
 
         It shows the poses that stand in `mj_data` (`geom_xpos`, `cam_xpos` and so on), and writes nothing there. After
         `mj_step` these are of the positions before the step: the caller brings them up to date first, with `mj_kinematics`,
         and for the model's cameras also `mj_comPos` and `mj_camlight`.
+
+        Args:
+            mj_data: The poses.
+            heading: Where `ahead` is for who looks [rad, in the world's frame]; None: where the eye looks. See `View.axes`.
 
         Raises:
             CameraError: If the poses were not computed, or are no numbers, or belong to another model.
@@ -91,7 +98,7 @@ class GeometricCamera:
             self._extents = np.zeros(2 * len(self._extents), EXTENT)
         extents = self._extents[:count].copy()
         extents.flags.writeable = False
-        return View(self.parameters.rows, extents)
+        return View(self.parameters, extents, _upright(axes[:3], heading))
 
     def label_of(self, geom: str) -> int | None:
         """Returns the label of the object that a geom belongs to; None if that was never seen.
@@ -140,6 +147,13 @@ class GeometricCamera:
         return count
 
 
+def _warn_of_unseen(mj_model: MjModel) -> None:
+    kinds = (("flex", mj_model.nflex, mujoco.mjtObj.mjOBJ_FLEX), ("skin", mj_model.nskin, mujoco.mjtObj.mjOBJ_SKIN))
+    names = [f"{kind} '{mujoco.mj_id2name(mj_model, which, n) or n}'" for kind, count, which in kinds for n in range(int(count))]
+    if names:
+        warn_modeller(f"the Geometric Camera does not see {', '.join(names)}: give what should be seen a geom")
+
+
 def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:
     """Returns the one eye that is named."""
     named: list[tuple[Any, str]] = [(kind, name) for kind, name in given.items() if name is not None]
@@ -150,14 +164,11 @@ def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:
     return Eye(mj_model, kind, named[0][1])
 
 
-def _optics(parameters: CameraParameters) -> NDArray[Any]:
-    """Returns what the compiled functions need of the parameters."""
-    optics = np.zeros(1, OPTICS)
-    right, top = math.tan(parameters.horizontal_fov / 2), math.tan(parameters.vertical_fov / 2)
-    near = max(parameters.near, NEAREST)
-    optics["rows"], optics["right"], optics["top"] = parameters.rows, right, top
-    optics["nearest"], optics["corner"] = 1 / near, near * math.sqrt(1 + right**2 + top**2)
-    optics["range"] = math.inf if parameters.range is None else parameters.range
-    optics["precision"] = parameters.precision
-    optics["e2"] = parameters.e2 if parameters.retinotopic else 0
-    return optics
+def _upright(axes: NDArray[np.float64], heading: float | None) -> NDArray[np.float64]:
+    """Returns the eye's axes (3, 3), given in the world's frame, in a frame that is turned about the vertical to a heading."""
+    if heading is None:
+        heading = math.atan2(axes[2, 1], axes[2, 0])
+    c, s = math.cos(heading), math.sin(heading)
+    upright = axes @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    upright.flags.writeable = False
+    return upright

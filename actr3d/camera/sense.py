@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.view import View
+from actr3d.world.frames import heading_of
 from actr3d.world.sensors.registry import SENSORS
 from actr3d.world.words import adder
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
+
+
+USUAL = CameraParameters()
+"""What is looked with where no options are given."""
 
 
 class Sight:
@@ -26,6 +32,7 @@ class Sight:
         self.parameters = parameters
         """How it sees."""
         self._world = body.world
+        self._root = body.root
         self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
         self._moment = -1
@@ -40,7 +47,7 @@ class Sight:
         world = self._world
         if self._view is None or self._moment != world.moment:
             world.refresh()
-            self._view = self._camera.look(world.mj_data)
+            self._view = self._camera.look(world.mj_data, heading_of(world.mj_data.xmat[self._root]))
             self._moment = world.moment
         return self._view
 
@@ -60,10 +67,21 @@ def view(body: Body, **options: Any) -> View:
 
     Args:
         body: Whose.
-        options: The fields of `CameraParameters`; looks with the same options share their labels.
+        options: The fields of `CameraParameters`; looks with the same options share their labels. Numbers may come as text.
 
     Raises:
         ConfigurationError: If an option is no field, or a value is not what it takes.
         CameraError: If something named as background is not there.
     """
-    return body.sense(Sight, CameraParameters.from_mapping(options)).look()
+    if not options:
+        return body.sense(Sight, USUAL).look()
+    named = {name: _meant(value) for name, value in options.items()}
+    return body.sense(Sight, CameraParameters.from_mapping(named)).look()
+
+
+def _meant(value: Any) -> Any:
+    """Returns the number that a text says: what a pattern binds is text; no option is one."""
+    for kind in (int, float) if isinstance(value, str) else ():
+        with suppress(ValueError):
+            return kind(value)
+    return value

@@ -6,11 +6,9 @@ import numpy as np
 from mujoco import MjModel
 from numpy.typing import NDArray
 
-from actr3d.camera.eye import names_of
 from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, SDF
 from actr3d.camera.kernel.polyhedra import HFIELD_EXTRA_CORNERS
 from actr3d.camera.kernel.scene import Geoms, Topology
-from actr3d.errors import CameraError
 
 Faces = NDArray[np.int64]
 
@@ -34,11 +32,7 @@ def geoms_of(mj_model: MjModel) -> Geoms:
 
 
 def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int, ...] | None) -> Topology:
-    """Returns the kinds, objects and faces of a model's geoms.
-
-    Raises:
-        CameraError: If a geom is a signed distance field, which has no faces.
-    """
+    """Returns the kinds, objects and faces of a model's geoms. A signed distance field is seen as the mesh that MuJoCo draws of it."""
     count = mj_model.ngeom
     source = np.zeros((count, 4), np.int64)
     corners, faces = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
@@ -48,7 +42,7 @@ def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int
         all_faces.append(np.where(its_faces < 0, -1, its_faces + corners[geom]))
         corners[geom + 1], faces[geom + 1] = corners[geom] + number, faces[geom] + len(its_faces)
     return Topology(
-        kind=np.array(mj_model.geom_type, np.int64),
+        kind=np.where(mj_model.geom_type == SDF, MESH, mj_model.geom_type).astype(np.int64),
         objects=objects,
         groups=np.array([groups is None or group in groups for group in range(6)]),
         source=source,
@@ -62,12 +56,9 @@ def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int
 def _faces_of(mj_model: MjModel, geom: int, source: NDArray[np.int64]) -> tuple[int, Faces]:
     """Returns how many corners a geom has, and its faces; writes where its data are found."""
     kind, data = int(mj_model.geom_type[geom]), int(mj_model.geom_dataid[geom])
-    if kind == SDF:
-        name = names_of(mj_model, "geom")[geom] or str(geom)
-        raise CameraError(f"geom '{name}' is a signed distance field (sdf), which the camera cannot see; use a mesh instead")
     if kind == BOX:
         return 8, BOX_FACES
-    if kind == MESH:
+    if kind in (MESH, SDF):
         source[0] = mj_model.mesh_vertadr[data]
         start, number = int(mj_model.mesh_faceadr[data]), int(mj_model.mesh_facenum[data])
         return int(mj_model.mesh_vertnum[data]), _triangles(mj_model.mesh_face[start : start + number])

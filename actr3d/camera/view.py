@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 from zlib import crc32
 
+import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from actr3d.camera.optics import optics_of
+from actr3d.camera.parameters import CameraParameters
 from actr3d.errors import CameraError, did_you_mean
 
 NOISY = ("x1", "x2", "d1", "d2", "a1", "a2")
@@ -29,10 +32,22 @@ class View:
     a nearer one has two extents.
     """
 
-    rows: int
-    """How many scan lines there are, with or without anything to see."""
+    parameters: CameraParameters
+    """What it was looked with: the field of view, and what screen `x` and `y` are on."""
     extents: NDArray[Any]
     """See `as_array`."""
+    axes: NDArray[np.float64]
+    """How the eye is turned: its axes right, up and forward, as rows in an upright frame of ahead, left and up, `(3, 3)`."""
+
+    @property
+    def rows(self) -> int:
+        """How many scan lines there are, with or without anything to see."""
+        return self.parameters.rows
+
+    @property
+    def optics(self) -> NDArray[Any]:
+        """The parameters as the compiled functions of `actr3d.camera.kernel` take them, an array of one."""
+        return optics_of(self.parameters)
 
     def as_array(self) -> NDArray[Any]:
         """Returns all extents as one array that cannot be written to, by rows from the top, in each from left to right.
@@ -77,4 +92,4 @@ class View:
                 raise CameraError(f"noise of view: no field '{field}'{did_you_mean(field, NOISY)}; there are {', '.join(NOISY)}")
             extents[field] += of * random.standard_normal(len(extents))
         extents.flags.writeable = False
-        return View(self.rows, extents)
+        return replace(self, extents=extents)

@@ -6,21 +6,28 @@ import platform
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
-FORM = "actr3d recording 1"
+FORM = "actr3d recording 2"
 """The first of the facts; a file without it is no recording."""
+
+OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
+"""Facts that every recording tells by itself."""
 
 SCHEMA = """
 CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE events (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data TEXT NOT NULL);
 CREATE TABLE answers (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data TEXT NOT NULL);
-CREATE TABLE states (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data BLOB NOT NULL, events BLOB NOT NULL);
-CREATE TABLE commands (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, data TEXT NOT NULL);
+CREATE TABLE states (first INTEGER PRIMARY KEY, count INTEGER NOT NULL, data BLOB NOT NULL, marks BLOB NOT NULL);
+CREATE TABLE commands (number INTEGER PRIMARY KEY, run INTEGER NOT NULL, tick INTEGER NOT NULL, data TEXT NOT NULL);
 """
 """`facts`: a name and JSON. The next three hold many things a row, because few large rows cost a running simulation least;
-`first` is the number of the first of them. `events` (from 0): a JSON list of [time in us, source, kind, data]. `answers`
-(from 0): a JSON list of [tick, body, word, answer]. `states`: by tick, from 0, the start: the states one after the
-other, each as many 8-byte numbers; and for each, in 8 bytes, how many events there were until then. `commands`: after
-which tick."""
+`first` is the number of the first of them, from 0. `events`: a JSON list of [time in us, source, kind, data]. `answers`: a
+JSON list of [run, tick, body, word, answer]. `states`: the states one after the other, each at the start (tick 0) or the end
+of a tick, and as many 8-byte numbers; and for each of them its `marks`, four 8-byte numbers: of which run, of which tick, how
+many events there were until then, and how many bytes it is. `commands`: after which tick.
+
+`run` says of which simulation: 1 in the recording that a simulation makes of itself; in that of a program, which may make
+several, by which number the trace knows it. A program that goes back with one of them is recorded as it went: the ticks that
+are gone through again follow the others."""
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from actr3d.errors import RecordingError
 from actr3d.recording.form import FORM, versions
-from actr3d.recording.writer import Answer, Writer
+from actr3d.recording.writer import Answer, Command, State, Writer
 from actr3d.trace import TraceEvent
 
 MOST_WAITING = 100_000
@@ -19,7 +19,7 @@ MOST_WAITING = 100_000
 
 
 class Recording:
-    """Writes one run to one file: facts about it, then every event, state, command and answer as they come.
+    """Writes one run, or one program with all its runs, to one file: facts, then every event, state, command and answer as they come.
 
     What has come is in the file a quarter of a second later, also where the program is killed then. All are counted;
     after `cut`, the counting goes on from what was kept.
@@ -29,19 +29,25 @@ class Recording:
         facts: What can be told of the run before it begins: the model's source, its parameters, the seed; plain values.
 
     Raises:
-        RecordingError: If the file exists already, or cannot be made.
+        RecordingError: If the file exists already, or cannot be made, or a fact is not plain.
     """
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
         told = {"form": FORM, "versions": versions(), **facts}
-        self._writer = Writer(Path(path), [(name, json.dumps(value)) for name, value in told.items()])
+        self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in told.items()])
         self._append = self._writer.events.append
         self.events = self.answers = self.commands = self.states = 0
         """How many of each it has been given."""
+        self.ending: Callable[[], None] | None = None
+        """Called before it is closed, to tell the rest; what is told later is not recorded."""
 
     def fact(self, name: str, value: Any) -> None:
-        """Writes a fact that becomes known in the run: plain values."""
-        self._writer.facts.append((name, json.dumps(value)))
+        """Writes a fact that becomes known in the run: plain values.
+
+        Raises:
+            RecordingError: If they are not plain.
+        """
+        self._writer.facts.append((name, _plain(name, value)))
 
     def event(self, event: TraceEvent) -> None:
         """Writes an event."""
@@ -49,7 +55,7 @@ class Recording:
         self._append(event)
 
     def event_alone(self, event: TraceEvent) -> None:
-        """Writes an event of a run without ticks, which tells of nothing else.
+        """Writes an event of a program, which may tell of nothing else.
 
         Raises:
             RecordingError: If the file cannot be written any more.
@@ -57,25 +63,25 @@ class Recording:
         self.event(event)
         self.check()
 
-    def answer(self, body: str, word: str, value: Any) -> None:
-        """Writes what a body answered at the end of the tick that is about to end; nobody may change it any more."""
+    def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
+        """Writes what a body answered at the end of a tick that is about to end; nobody may change it any more."""
         self.answers += 1
-        self._writer.answers.append(Answer(self.states, body, word, value))
+        self._writer.answers.append(Answer(run, tick, body, word, value))
 
-    def command(self, tick: int, data: Mapping[str, Any]) -> None:
+    def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
         """Writes what a user did after a tick."""
         self.commands += 1
-        self._writer.commands.append((tick, json.dumps(data)))
+        self._writer.commands.append(Command(run, tick, json.dumps(data)))
 
-    def state(self, data: bytes) -> None:
-        """Writes the physics at the start, and then at the end of each tick; the tick is over then.
+    def state(self, run: int, tick: int, data: bytes) -> None:
+        """Writes the physics of a run at its start, and then at the end of each tick; the tick is over then.
 
         Raises:
             RecordingError: If the file cannot be written any more.
         """
         self.states += 1
         writer = self._writer
-        writer.states.append((data, self.events))
+        writer.states.append(State(run, tick, data, self.events))
         if len(writer.states) > MOST_WAITING or len(writer.events) > MOST_WAITING or writer.failure is not None:
             self.check()
 
@@ -92,7 +98,7 @@ class Recording:
             raise writer.failure
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
-        """Drops what came after a tick, and all but the first few events, answers and commands: the run goes another way.
+        """Drops what came after a tick of the only run, and all but the first few events, answers and commands: it goes another way.
 
         Raises:
             RecordingError: If the file cannot be written any more.
@@ -107,6 +113,9 @@ class Recording:
         Raises:
             RecordingError: If the file cannot be written.
         """
+        ending, self.ending = self.ending, None
+        if ending is not None:
+            ending()
         self._writer.close()
 
     def __enter__(self) -> Self:
@@ -118,3 +127,10 @@ class Recording:
         else:
             with suppress(RecordingError):  # what went wrong first is what is told
                 self.close()
+
+
+def _plain(name: str, value: Any) -> str:
+    try:
+        return json.dumps(value)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise RecordingError(f"the fact '{name}' cannot be recorded, only numbers, texts, and lists and dicts of these: {error}") from None

@@ -24,16 +24,37 @@ BLOB = 1_000_000
 MOST_EVENTS = 10_000
 """How many events are written as one row, at most."""
 
+MARKS = 4 * 8
+"""How many bytes of marks a state has."""
+
 _ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
 
 
-State = tuple[bytes, int]
-"""The physics at the end of a tick, and how many events there were until then."""
+class State(NamedTuple):
+    """The physics of a run at its start, or at the end of a tick."""
+
+    run: int
+    """Which simulation of a program, as its trace counts them; 1 of one that is recorded alone."""
+    tick: int
+    data: bytes
+    """MuJoCo's `mjSTATE_INTEGRATION`, 8 bytes a number."""
+    events: int
+    """How many events there were until then."""
+
+
+class Command(NamedTuple):
+    """What a user did, as JSON."""
+
+    run: int
+    tick: int
+    """After which tick."""
+    text: str
 
 
 class Answer(NamedTuple):
     """What a body answered."""
 
+    run: int
     tick: int
     body: str
     word: str
@@ -59,7 +80,7 @@ class Writer:
         self.events: deque[TraceEvent] = deque()
         self.answers: deque[Answer] = deque()
         self.states: deque[State] = deque()
-        self.commands: deque[tuple[int, str]] = deque()
+        self.commands: deque[Command] = deque()
         self.facts: deque[tuple[str, str]] = deque()
         self._written = {"events": 0, "answers": 0, "states": 0, "commands": 0}
         self._writing = Lock()
@@ -107,14 +128,15 @@ class Writer:
                 return
             try:
                 work(*args)
-            except (sqlite3.Error, OSError) as error:
+            except (sqlite3.Error, OSError, ValueError) as error:
                 self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}")
 
     # -- the file
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
         self.path.open("xb").close()
-        self._file = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
+        # The whole path, because SQLite has a meaning of its own for names such as `:memory:`.
+        self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
         try:
             # Neither the beginning nor the end of a run waits for the disk, only for the system; the thread does meanwhile.
             self._file.execute("PRAGMA synchronous=OFF")
@@ -143,7 +165,7 @@ class Writer:
         events: list[tuple[list[TraceEvent], str]],
         states: list[State],
         facts: list[tuple[str, str]],
-        commands: list[tuple[int, str]],
+        commands: list[Command],
         answers: list[Answer],
     ) -> None:
         insert = self._file.execute
@@ -152,11 +174,12 @@ class Writer:
         for some in _parts(answers, MOST_EVENTS):
             text = json.dumps([plain_answer(answer) for answer in some])
             insert("INSERT INTO answers VALUES (?, ?, ?)", (self._next("answers", len(some)), len(some), text))
-        for row in _parts(states, max(1, BLOB // len(states[0][0])) if states else 1):
-            data, counts = b"".join([state for state, _ in row]), array("q", [events for _, events in row]).tobytes()
-            insert("INSERT INTO states VALUES (?, ?, ?, ?)", (self._next("states", len(row)), len(row), data, counts))
-        for tick, text in commands:
-            insert("INSERT INTO commands VALUES (?, ?, ?)", (self._next("commands", 1), tick, text))
+        for row in _parts(states, max(1, BLOB // len(states[0].data)) if states else 1):
+            data = b"".join([state.data for state in row])
+            marks = array("q", [mark for run, tick, state, events in row for mark in (run, tick, events, len(state))]).tobytes()
+            insert("INSERT INTO states VALUES (?, ?, ?, ?)", (self._next("states", len(row)), len(row), data, marks))
+        for command in commands:
+            insert("INSERT INTO commands VALUES (?, ?, ?, ?)", (self._next("commands", 1), *command))
         for fact in facts:
             insert("INSERT OR REPLACE INTO facts VALUES (?, ?)", fact)
 
@@ -190,10 +213,11 @@ class Writer:
                 self._file.execute(f"UPDATE {table} SET count = ?, data = ? WHERE first = ?", (kept[table] - first, text, first))
         last = self._delete_rows("states", kept["states"])
         if last is not None:
-            first, count, data, events = last
+            first, _, data, marks = last
             left = kept["states"] - first
-            row = (left, data[: len(data) // count * left], events[: 8 * left], first)
-            self._file.execute("UPDATE states SET count = ?, data = ?, events = ? WHERE first = ?", row)
+            marks = marks[: MARKS * left]
+            row = (left, data[: sum(array("q", marks)[3::4])], marks, first)
+            self._file.execute("UPDATE states SET count = ?, data = ?, marks = ? WHERE first = ?", row)
 
     def _delete_rows(self, table: str, kept: int) -> Any:
         """Drops the rows beyond the first things of a table; returns the row of which only a part is to be kept, if any."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.limits import RunLimits
 from actr3d.printing import ToldOutput
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
+    from actr3d.simulation.voice import Voice
 
 
 class ProgramOutput(ToldOutput):
@@ -28,26 +30,25 @@ class ProgramOutput(ToldOutput):
 
 
 class BuiltOutput(ToldOutput):
-    """Tells a simulation of the lines of the file that builds it, also of those from before it was built.
+    """Tells a simulation of the lines that the file prints which builds it; of those of its minds the simulation knows by itself."""
 
-    Args:
-        limits: What the file is held to.
-    """
-
-    def __init__(self, limits: RunLimits) -> None:
+    def __init__(self) -> None:
         super().__init__(self._hear)
-        self._limits = limits
         self._early: list[str] = []
-        self._simulation: Simulation | None = None
+        self._voice: Voice | None = None
 
     def lead_to(self, simulation: Simulation) -> None:
-        """Tells this simulation of everything."""
-        self._simulation = simulation
+        """Tells this simulation of what came until now."""
+        self.finish()
         for text in self._early:
-            self._hear(text)
+            simulation._journal.preface(text)
+        self._voice = simulation._journal.voice
+
+    def take(self, write: Callable[[Any], int], data: Any, encoded: bytes) -> int:
+        """Writes something, and tells of its lines; also of what minds print to an output that their file has kept."""
+        if self._voice is None:
+            return super().take(write, data, encoded)
+        return self._voice.take(write, data, encoded) if self._voice.speaking else write(data)
 
     def _hear(self, text: str) -> None:
-        if self._simulation is None:
-            self._early.append(text)
-        else:
-            self._simulation._journal.output(self._limits.clock(), text)
+        self._early.append(text)

@@ -2,64 +2,35 @@
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from actr3d.actr.limits import EndOfRun, RunLimits
+from actr3d.actr.helper_texts import HelperTexts
+from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_text
+from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, seconds
-from actr3d.errors import RecordingError
-from actr3d.printing import ModelOutput, ToldOutput, printing_to
+from actr3d.errors import Actr3dError, RecordingError
+from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.recording.form import versions
 from actr3d.running.building import build
+from actr3d.running.comparison import Beside, Comparison, Differs, first_number
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace, TraceEvent
 
 
-@dataclass(frozen=True, kw_only=True)
-class Comparison:
-    """What came of running a recording again."""
-
-    ticks: int
-    """How many ticks were compared."""
-    events: int
-    """How many events were compared."""
-    difference: str | None
-    """Where it first differs; None where every byte agrees."""
-    unfinished: int = 0
-    """How many events the recording holds of a tick that never came to its end; they were not compared."""
-
-    def __str__(self) -> str:
-        if self.difference is not None:
-            return f"differs: {self.difference}"
-        ticks = f"{self.ticks:,} ticks, " if self.ticks else ""
-        rest = f" ({self.unfinished:,} more events of a tick that did not end)" if self.unfinished else ""
-        return f"every byte agrees: {ticks}{self.events:,} events{rest}"
-
-
-class _Differs(EndOfRun):
-    """Ends a run that has gone another way than the recorded one."""
-
-
 class _Events:
-    """Compares events with recorded ones, in order.
+    """Compares a simulation's events with recorded ones, in order.
 
     Args:
         recorded: The recording.
-        ticks: The last tick whose events count.
     """
 
-    def __init__(self, recorded: Recorded, ticks: int | None = None) -> None:
+    def __init__(self, recorded: Recorded) -> None:
         self._recorded = recorded.events()
-        self._ticks = ticks
-        self._over = "ended" in recorded.facts
         self.count = 0
         self.difference: str | None = None
 
@@ -67,19 +38,17 @@ class _Events:
         """Takes one event of the new run.
 
         Raises:
-            EndOfRun: If it is another than the recorded one, or the recording was broken off before.
+            Differs: If it is another than the recorded one.
         """
         if self.difference is not None:
             return
         then = next(self._recorded, None)
         line = None if then is None else then.to_json()
         now = event.to_json()
-        if line is None and not self._over and self._ticks is None:
-            raise _Differs
         self.count += 1
         if line != now:
             self.difference = f"event {self.count} at {event.time:g} s; recorded: {line or 'nothing'}; now: {now}"
-            raise _Differs
+            raise Differs
 
     def rest(self) -> int:
         """Returns how many recorded events the new run has not come to."""
@@ -97,9 +66,11 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
 
     Raises:
-        RecordingError: If versions differ, or the recording does not say how the simulation was made.
-        Exception: What the model raises in building it.
+        RecordingError: If the file is damaged, versions differ, or the recording does not say how the simulation was made, or
+            it cannot be made so any more.
+        Exception: What `make` raises.
     """
+    recorded.check()
     if not any_version:
         _check_versions(recorded.facts["versions"])
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
@@ -107,14 +78,14 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
             return _replay_program(recorded)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
-        with RunLimits(seed=recorded.facts.get("program_seed", recorded.facts["seed"])) as limits:
-            random.seed(limits.program_seed)
+        seed = recorded.facts.get("program_seed", recorded.facts["seed"])
+        with RunLimits(seed=seed), shared_random(seed):
             if make is not None:
                 return _replay_simulation(recorded, make())
-            with BuiltOutput(limits) as output:
-                simulation = _built(recorded.facts)
+            with BuiltOutput() as output:
+                simulation = _built(recorded)
                 output.lead_to(simulation)
-                return _replay_simulation(recorded, simulation, output)
+                return _replay_simulation(recorded, simulation)
 
 
 def _check_versions(then: dict[str, str]) -> None:
@@ -124,76 +95,93 @@ def _check_versions(then: dict[str, str]) -> None:
         raise RecordingError(f"the recording was made with other versions, and may not agree for that alone: {'; '.join(different)}")
 
 
-def _built(facts: dict[str, Any]) -> Simulation:
+def _built(recorded: Recorded) -> Simulation:
+    facts = recorded.facts
     file = facts["file"]
-    simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent)
+    try:
+        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent, _helpers(facts))
+    except Actr3dError:
+        raise
+    except (Exception, SystemExit) as error:  # it did build something when it was recorded
+        raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {_told(error)}") from error
     return simulation
+
+
+def _helpers(facts: Mapping[str, Any]) -> HelperTexts:
+    """Returns the helper modules as they were, wherever their files are now."""
+    return HelperTexts(facts.get("helpers"))
 
 
 def _replay_program(recorded: Recorded) -> Comparison:
     facts = recorded.facts
-    events = _Events(recorded)
+    beside = Beside(recorded)
     trace = Trace("all", keep=False)
-    trace.listen(events.take)
-    limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
+    trace.listen(beside.event)
+    limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace, recorder=beside)
     file = facts["file"]
     trouble = ""
     try:
         with ProgramOutput(limits) as output:
-            run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent)
+            try:
+                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=_helpers(facts))
+            except SystemExit as error:
+                trouble = f" ({_told(error)})"
             if "ended" in facts:
                 output.finish()
-    except _Differs:  # in the last line of a log, when the program itself was over
+    except Differs:  # in the last line of a log, when the program itself was over
         pass
     except Exception as error:  # noqa: BLE001 - the recorded run may have ended so, too
-        trouble = f" ({type(error).__name__}: {error})"
-    left = events.rest()
-    difference = events.difference
+        trouble = f" ({_told(error)})"
+    left, difference, unfinished = beside.rest(), beside.difference, 0
+    if beside.broken_off:
+        unfinished = left.pop("event", 0)
     if difference is None and left:
-        difference = f"the run ended{trouble} after {events.count:,} events; the recording holds {left:,} more"
-    return Comparison(ticks=0, events=events.count, difference=difference)
+        more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
+        difference = f"the run ended{trouble} after {beside.counts['event']:,} events; the recording holds {more} more"
+    return Comparison(ticks=beside.ticks, events=beside.counts["event"], difference=difference, unfinished=unfinished)
 
 
-def _replay_simulation(recorded: Recorded, simulation: Simulation, output: ToldOutput | None = None) -> Comparison:
-    """Runs a simulation beside its recording, which tells of its output, too, where that is given."""
-    ticks = recorded.ticks
-    events = _Events(recorded, ticks)
+def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison:
+    """Runs a simulation beside its recording."""
+    events = _Events(recorded)
     period = recorded.facts["period_us"]
     if round(simulation.period * MICROSECONDS) != period or simulation.seed != recorded.facts["seed"]:
         was = f"period {seconds(period):g} s, seed {recorded.facts['seed']}"
         return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
     simulation._journal.raise_level("all")
     simulation._journal.listen(events.take)
-    simulation.plan([Command.from_data(tick, data) for tick, data in recorded.commands()])
+    simulation.plan([Command.from_data(command.tick, command.data) for command in recorded.commands()])
+    scene = "" if recorded.facts["scene"] == simulation.world.fingerprint else "; it compiles to another scene than then"
     difference: str | None = None
+    begun = False
     try:
-        for tick, state, count in recorded.states():
+        for _, tick, state, count in recorded.states():
+            begun = True
             if tick:
                 simulation.step()
             now = simulation.world.state_bytes()
             where = f"at the end of tick {tick} ({seconds(tick * period):g} s)"
             if now != state:
-                difference = f"the physics {where}: {_first_number(state, now)}"
+                difference = f"the physics {where}: {first_number(state, now)}{scene}"
                 break
             if tick and count != events.count:
                 difference = f"there were {count:,} events {where}, and are {events.count:,} now"
                 break
         else:
-            simulation._course.repeat_commands()
-            if output is not None and "ended" in recorded.facts:
-                output.finish()
+            if begun:
+                simulation._course.repeat_commands()
+            if "ended" in recorded.facts:
+                simulation.conclude()
+            if "whole" in recorded.facts:
+                simulation._journal.voice.finish()
             simulation._journal.check()
-    except _Differs:
+    except Differs:
         pass
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - what is recorded went on beyond that
+        difference = f"the run failed after {seconds(simulation.ticks * period):g} s ({_told(error)})"
     left = events.rest()
     return Comparison(ticks=simulation.ticks, events=events.count, difference=events.difference or difference, unfinished=left)
 
 
-def _first_number(then: bytes, now: bytes) -> str:
-    """Says which number of a state is the first to differ."""
-    if len(then) != len(now):
-        return f"a state was {len(then)} bytes, and is {len(now)}: another scene"
-    was, is_now = np.frombuffer(then), np.frombuffer(now)
-    differ = np.flatnonzero(was.view(np.int64) != is_now.view(np.int64))
-    first = int(differ[0])
-    return f"number {first} of {was.size} was {was[first]!r}, and is {is_now[first]!r}"
+def _told(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"

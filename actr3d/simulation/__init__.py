@@ -4,7 +4,9 @@ from actr3d.actr.modules.port import BodyPort, Reading
 from actr3d.camera import View  # its package gives bodies with eyes their word `view`
 from actr3d.simulation.commands import Command
 from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.measuring import Measure
 from actr3d.simulation.pace import RunReport
+from actr3d.simulation.passage import Passage, PassageResult
 from actr3d.simulation.simulation import Simulation
 
-__all__ = ["BodyPort", "Command", "Glimpse", "Reading", "RunReport", "Simulation", "View"]
+__all__ = ["BodyPort", "Command", "Glimpse", "Measure", "Passage", "PassageResult", "Reading", "RunReport", "Simulation", "View"]

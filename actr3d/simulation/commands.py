@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from numbers import Integral, Real
 from typing import Any, cast
 
 from actr3d.actr.chunk import LASTING_TYPES
@@ -86,6 +87,10 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
         SimulationError: If there is no such body, or more than one, or a value is not plain.
     """
     bodies: Mapping[str, Any] = world.bodies
+    given: tuple[Any, Any] = (word, body or "")
+    for text in given:
+        if not isinstance(text, str):
+            raise SimulationError(f"a command is a word, and its body is named by one (got {text!r})")
     if body is None and word not in ON_WORLD and word not in ON_MINDS:
         if len(bodies) != 1:
             known = [*ON_WORLD, *ON_MINDS]
@@ -101,6 +106,8 @@ def _fixed(value: Any) -> Any:
     """Returns a value that can be recorded, and that nobody can change."""
     if type(value) in LASTING_TYPES:
         return value
+    if isinstance(value, Real):  # of numpy, for instance
+        return int(value) if isinstance(value, Integral) else float(value)
     if isinstance(value, (list, tuple)):
         return tuple(map(_fixed, cast("list[Any]", value)))
     if isinstance(value, dict) and all(isinstance(key, str) for key in cast("dict[Any, Any]", value)):

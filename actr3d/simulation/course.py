@@ -131,7 +131,8 @@ class Course:
         Raises:
             SimulationError: If the minds do something else than the first time.
         """
-        if self._lockstep is None or self._lockstep.broken or to <= self._lockstep.ticks:
+        present = self.lockstep
+        if present.broken or to <= present.ticks:
             self._lockstep = None
             self._world.restore(self._history.before(0)[1])
         self._journal.silent = True

@@ -1,4 +1,4 @@
-"""The numbers of Python's module `random`, which all of a program shares, as one simulation's own."""
+"""The numbers of `random` and `numpy.random`, which all of a program shares, as one simulation's own."""
 
 from __future__ import annotations
 
@@ -8,19 +8,21 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import Any
 
+from actr3d.simulation.numpy_random import Numbers, own_numbers, present_numbers, put_in_place
+
 
 class GlobalRandom:
-    """Lets the module `random` be a simulation's own in a `with` block; everybody else finds it as they left it.
+    """Lets `random` and `numpy.random` be a simulation's own in a `with` block; everybody else finds them as they left them.
 
-    So minds that draw from it do the same whatever else the program, another simulation or an observer draws. Blocks may
-    stand in one another; only the outermost costs time, about 20 us. Simulations in two threads at once still share it.
+    So minds that draw from them do the same whatever else the program, another simulation or an observer draws. Blocks may
+    stand in one another; only the outermost costs time, about 20 us. Simulations in two threads at once still share them.
     """
 
     __slots__ = ("_depth", "_others", "_own")
 
     def __init__(self) -> None:
-        self._own: Any = None
-        self._others: Any = None
+        self._own: tuple[Any, Numbers] = (None, own_numbers())
+        self._others: tuple[Any, Numbers] | None = None
         self._depth = 0
 
     def __enter__(self) -> None:
@@ -35,7 +37,7 @@ class GlobalRandom:
 
     @contextmanager
     def aside(self) -> Generator[None]:
-        """Lets it be everybody else's inside the block, also where that stands inside one of the simulation's own."""
+        """Lets them be everybody else's inside the block, also where that stands inside one of the simulation's own."""
         if not self._depth:
             yield
             return
@@ -48,10 +50,21 @@ class GlobalRandom:
             self._depth = depth
 
     def _put_in_place(self) -> None:
-        self._others = random.getstate()
-        if self._own is not None:
-            random.setstate(self._own)
+        self._others = _present()
+        _put(self._own)
 
     def _put_back(self) -> None:
-        self._own = random.getstate()
-        random.setstate(self._others)
+        self._own = _present()
+        assert self._others is not None
+        _put(self._others)
+
+
+def _present() -> tuple[Any, Numbers]:
+    return random.getstate(), present_numbers()
+
+
+def _put(numbers: tuple[Any, Numbers]) -> None:
+    state, of_numpy = numbers
+    if state is not None:  # a run that begins seeds its own
+        random.setstate(state)
+    put_in_place(of_numpy)

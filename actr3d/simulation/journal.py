@@ -7,12 +7,14 @@ from contextlib import contextmanager
 from typing import Any
 from weakref import ref
 
+from actr3d.actr.limits import Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
 from actr3d.kinds import LEVELS
 from actr3d.recording import Recording
 from actr3d.simulation.commands import Command
 from actr3d.simulation.program_run import ProgramRun
+from actr3d.simulation.voice import Voice
 from actr3d.trace import Run, Trace, TraceEvent
 from actr3d.world import World
 
@@ -37,6 +39,7 @@ class Journal:
         self._keep = level != "none"
         self._listeners: list[Listener] = []
         self._recording: Recording | None = None
+        self._program: ProgramRun | None = None
         self._failure: Exception | None = None
         self.silent = False
         """Whether the past is being gone through again on the way to another time, which no listener is to hear."""
@@ -44,7 +47,9 @@ class Journal:
         """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
-        self._preface: list[TraceEvent] = []
+        self._preface: list[str] = []
+        self.voice = Voice(self._say)
+        """What the minds print to."""
 
     def raise_level(self, level: str, *, keep: bool = False) -> None:
         """Lets the next trace record at least as much as a level, and keep it where that is asked for.
@@ -67,42 +72,69 @@ class Journal:
             self.trace.listen(self._hear)
         self._listeners.append(listener)
 
-    def tell_program(self, trace: Trace) -> None:
-        """Hands on to the trace of the whole program as much as that one records."""
+    def tell_program(self, trace: Trace, recorder: Recorder | None) -> None:
+        """Hands on to the trace of the whole program as much as that one records, and to its recorder what else there is."""
         self.raise_level(trace.level)
         if trace.level != "none":
             journal = ref(self)  # the program's trace does not keep the simulation alive
-            self.listen(ProgramRun(trace, lambda: (here := journal()) and here.run).take)
+            self._program = ProgramRun(trace, recorder, lambda: (here := journal()) and here.run)
+            self.listen(self._program.take)
 
     @property
     def run(self) -> Run | None:
         """The run as its own trace has it at present; None where nothing is traced."""
         return None if self.trace is None or not self.trace.runs else self.trace.runs[-1]
 
+    @property
+    def recorded(self) -> bool:
+        """Whether everything is being recorded."""
+        return self._recording is not None
+
     def record(self, recording: Recording) -> None:
         """Lets everything be recorded."""
         self.raise_level("all")
         self._recording = recording
 
+    def end_recording(self, *, whole: bool) -> None:
+        """Lets nothing more be recorded.
+
+        Args:
+            whole: Whether the last tick is over, and what was printed in it.
+        """
+        if self._recording is None:
+            return
+        if whole:
+            self.voice.finish()
+            self._recording.fact("whole", True)
+        self._recording = None
+        if self.trace is not None and not self._listeners:
+            self.trace.ignore(self._hear)
+
     def begin(self) -> Trace | None:
         """Begins a new trace, of a run that is at its start; returns it, or None where nobody wants one."""
         self._events = self._answers = 0
         self._failure = None
+        self.voice.begin()
         self.trace = None if self._level == "none" else Trace(self._level, keep=self._keep)
         if self.trace is not None and (self._listeners or self._recording is not None):
             self.trace.listen(self._hear)
-        if self.trace is not None and self.trace.production:
-            for event in self._preface:
-                self.trace.emit(*event)
+        for text in self._preface:
+            self._say(text)
         return self.trace
 
-    def output(self, time: int, text: str) -> None:
-        """Takes a line that the model prints at a time [us]; one from before the minds are made comes first in every trace."""
-        event = TraceEvent(time, "model", "output", {"text": text})
-        if self.trace is None:
-            self._preface.append(event)
-        elif self.trace.production:
-            self.trace.emit(*event)
+    def preface(self, text: str) -> None:
+        """Takes a line that was printed before the run; it comes first in every trace."""
+        self._preface.append(text)
+
+    def _say(self, text: str) -> None:
+        if self.trace is not None and self.trace.production:
+            run = self.run
+            self.trace.emit(0 if run is None else run.now_us() or 0, "model", "output", {"text": text})
+
+    def result(self, time: int, data: dict[str, Any]) -> None:
+        """Takes what was measured of the run, which is over at a time [us]."""
+        if self.trace is not None and self.trace.production:
+            self.trace.emit(time, "top", "result", data)
 
     @contextmanager
     def holding(self) -> Generator[None]:
@@ -128,8 +160,9 @@ class Journal:
 
     def _hand_on(self, event: TraceEvent) -> None:
         try:
-            for listener in self._listeners:
-                listener(event)
+            with self.voice.aside():
+                for listener in self._listeners:
+                    listener(event)
         except Exception as error:  # noqa: BLE001 - raised by `check`, where no event of a mind is half done
             self._failure = self._failure or error
 
@@ -143,26 +176,34 @@ class Journal:
         if failure is not None:
             raise failure
 
-    def answers(self, requests: Sequence[Request], answers: Sequence[Any]) -> None:
-        """Takes what bodies answered in this tick."""
-        recording = self._recording
+    def answers(self, tick: int, requests: Sequence[Request], answers: Sequence[Any]) -> None:
+        """Takes what bodies answered at the end of a tick."""
+        recording, program = self._recording, self._program
+        if program is not None and not self.silent:
+            for request, answer in zip(requests, answers, strict=True):
+                program.answer(tick, request, answer)
         if recording is not None:
             for request, answer in zip(requests, answers, strict=True):
                 self._answers += 1
                 if self._answers > recording.answers:
-                    recording.answer(request.body, request.word, answer)
+                    recording.answer(1, tick, request.body, request.word, answer)
 
     def state(self, tick: int, world: World) -> None:
         """Takes the end of a tick."""
         if self._recording is not None and tick == self._recording.states:
-            self._recording.state(world.state_bytes())
+            self._recording.state(1, tick, world.state_bytes())
+        if self._program is not None and not self.silent:
+            self._program.state(tick, world)
 
     def command(self, command: Command) -> None:
         """Takes something new that a user did."""
         if self._recording is not None:
-            self._recording.command(command.tick, command.to_data())
+            self._recording.command(1, command.tick, command.to_data())
+        if self._program is not None:
+            self._program.command(command)
 
     def cut(self, tick: int, commands: int) -> None:
         """Lets the recording end here, because from here the run goes another way."""
+        self.voice.cut()
         if self._recording is not None:
             self._recording.cut(tick, self._events, self._answers, commands)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.modules.port import Request
-from actr3d.clock import microseconds, seconds
+from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.simulation.commands import Command
 from actr3d.simulation.journal import Journal
@@ -47,7 +47,9 @@ class Lockstep:
         self._period = seconds(period)
         self.trace = journal.begin()
         """Its trace; None where nothing is traced."""
-        self.minds = Minds(factories, bodies, seed, self.trace)
+        self._voice = journal.voice
+        with self._voice:
+            self.minds = Minds(factories, bodies, seed, self.trace)
         self.ticks = 0
         """How many whole ticks it has gone."""
         self.commands = 0
@@ -70,7 +72,8 @@ class Lockstep:
         """
         self._expect("ready", "tick")
         self._phase = "failed"
-        self.minds.run(self._period, (self.ticks + 1) * self._period_us)
+        with self._voice:
+            self.minds.run(self._period, (self.ticks + 1) * self._period_us)
         self._phase = "ticked"
 
     def tock(self) -> tuple[Any, ...]:
@@ -124,7 +127,7 @@ class Lockstep:
     def _answer(self, questions: Sequence[Request], answers: Sequence[Any]) -> None:
         for request, answer in zip(questions, answers, strict=True):
             self.minds.take(request, answer)
-        self._journal.answers(questions, answers)
+        self._journal.answers(self.ticks + 1, questions, answers)
 
     def _expect(self, phase: str, what: str) -> None:
         if self._phase == phase:
@@ -167,28 +170,3 @@ def _ask(request: Request, word: Callable[..., Any]) -> Any:
     except Actr3dError as error:
         error.add_note(f"  asked for by '{request.port._path}' in {request.place}")
         raise
-
-
-def steps_of(period: float, world: World) -> int:
-    """Returns how many physics steps a period is.
-
-    Raises:
-        SimulationError: If it is no whole number of them.
-    """
-    step = world.scene.timestep_us
-    steps, rest = divmod(microseconds(period, "Simulation.period"), step)
-    if rest or steps < 1:
-        raise SimulationError(f"Simulation.period: must be a whole multiple of the physics step of {seconds(step):g} s (got {period!r})")
-    return steps
-
-
-def whole_ticks(time: float, period: int, what: str) -> int:
-    """Returns how many ticks of a period [us] a time [s] is.
-
-    Raises:
-        SimulationError: If it is no whole number of them, or negative.
-    """
-    ticks, rest = divmod(microseconds(time, f"the time of {what}"), period)
-    if rest or ticks < 0:
-        raise SimulationError(f"{what}: must be a whole number of ticks of {seconds(period):g} s, at least 0 (got {time!r})")
-    return ticks

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from actr3d.actr.chunk import LASTING_TYPES
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.model import Model
 from actr3d.actr.modules.port import Embodiment, Request
+from actr3d.actr.shared_random import seed_shared
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.trace import Trace
 
 Factory = Callable[[], Any]
 """Makes an agent: its class, or a function without arguments."""
+
+
+_LATER = frozenset({"changes", "log", "parent", "random", "sch"})
+"""What an environment has as soon as it lives."""
 
 
 class Environment(Model):
@@ -31,7 +35,7 @@ class Minds:
     Args:
         factories: By name, what makes each mind.
         bodies: The names of those minds that have bodies.
-        seed: What all random choices come from, those of the module `random` included.
+        seed: What all random choices come from, those of `random` and `numpy.random` included.
         trace: Where events go.
 
     Raises:
@@ -43,12 +47,12 @@ class Minds:
         self.stopped = False
         """Whether a mind asked in the last tick for the end of the run."""
         outer = RunLimits.current()
-        random.seed(seed)
+        seed_shared(seed)
         with RunLimits(seed=seed):
             self.environment = Environment()
             for name, factory in factories.items():
                 mind = _made(name, factory)
-                if hasattr(self.environment, name):
+                if hasattr(self.environment, name) or name in _LATER:
                     raise SimulationError(f"a mind cannot be named '{name}': every environment has something of that name")
                 if name in bodies:
                     Embodiment(name, self.outbox).join(mind)
@@ -88,12 +92,14 @@ class Minds:
         if trace.production:
             trace.emit(self._sch.now_us, "top", kind, data)
 
-    def set_parameter(self, path: str, value: Any) -> None:
+    def set_parameter(self, path: Any, value: Any) -> None:
         """Sets a parameter of a mind that is a number, a text, True, False or None: `walker.memory.latency`.
 
         Raises:
             SimulationError: If there is no such parameter.
         """
+        if not isinstance(path, str):
+            raise SimulationError(f"a parameter is named by a text such as 'walker.memory.latency' (got {path!r})")
         *places, name = path.split(".")
         part: Any = self.environment
         for place in places:
@@ -116,18 +122,3 @@ def _made(name: str, factory: Factory) -> Model:
     if mind.__dict__.get("parent") is not None or (mind._converted and mind.sch.now_us > 0):
         raise SimulationError(f"minds['{name}']: must make a new agent each time it is called, for the run may go back to its start")
     return mind
-
-
-def check_names(minds: Iterable[str], bodiless: Iterable[str], bodies: Collection[str]) -> None:
-    """Checks that minds have the bodies they should have.
-
-    Raises:
-        SimulationError: If there is no such body, or there is one of a name that should have none.
-    """
-    for name in minds:
-        if name not in bodies:
-            hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
-            raise SimulationError(f"minds: no body '{name}' in the scene{hint} (a mind without a body goes into `bodiless`)")
-    for name in bodiless:
-        if name in bodies:
-            raise SimulationError(f"bodiless: '{name}' is the name of a body")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.global_random import GlobalRandom
@@ -14,14 +15,14 @@ class Onlookers:
     """Shows the present to all observers, who cannot change anything meanwhile.
 
     Args:
-        random: The module `random` as the minds have it, which observers are to leave as it is.
+        random: The random numbers as the minds have them, which observers are to leave as they are.
     """
 
     def __init__(self, random: GlobalRandom) -> None:
         self._random = random
         self._observers: list[Observer] = []
         self.looking = False
-        """Whether one of them is looking now."""
+        """Whether one of them, or somebody else who only looks, is looking now."""
 
     def add(self, observer: Observer) -> None:
         """Calls an observer from now on."""
@@ -35,11 +36,17 @@ class Onlookers:
         """
         if not self._observers:
             return
-        self.looking = True
+        glimpse = make()
+        with self.only_looking():
+            for observer in self._observers:
+                observer(glimpse)
+
+    @contextmanager
+    def only_looking(self) -> Generator[None]:
+        """Lets somebody look inside the block who cannot change anything, the minds' random numbers included."""
+        before, self.looking = self.looking, True
         try:
-            glimpse = make()
             with self._random.aside():
-                for observer in self._observers:
-                    observer(glimpse)
+                yield
         finally:
-            self.looking = False
+            self.looking = before

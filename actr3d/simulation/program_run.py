@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
+from actr3d.actr.limits import Recorder
+from actr3d.actr.modules.port import Request
 from actr3d.kinds import KINDS, LEVELS
+from actr3d.simulation.commands import Command
 from actr3d.trace import Run, Trace, TraceEvent, top_path
+from actr3d.values import Naming
+from actr3d.world import World
 
 
 class ProgramRun:
-    """Hands a simulation's events on to the program's trace, under the name that the run has there: «top», «top#2» and so on.
+    """Hands all that a simulation does on to the program's trace and recorder, as the run that it is there: «top», «top#2» and so on.
 
     Args:
         trace: The program's.
+        recorder: The program's; None for none.
         present: Returns the simulation's run as its own trace has it at present; None where there is none.
     """
 
-    def __init__(self, trace: Trace, present: Callable[[], Run | None]) -> None:
+    def __init__(self, trace: Trace, recorder: Recorder | None, present: Callable[[], Run | None]) -> None:
         self._trace = trace
+        self._recorder = recorder
         self._present = present
         self._rank = LEVELS.index(trace.level)
-        self._number = 0
+        self._begun = 0
 
     def take(self, event: TraceEvent) -> None:
         """Hands an event on, if the program's trace records as much. What a mind prints, whoever runs the program tells of.
@@ -31,10 +38,47 @@ class ProgramRun:
         """
         if event.kind == "output" or LEVELS.index(KINDS[event.kind].level) > self._rank:
             return
-        if not self._number:
-            self._number = self._trace.begin(self)
-        self._trace.emit(event.time_us, self._name(event.source), event.kind, event.data)
+        self._hand_on(event, self._trace)
         self._trace.raise_failures()
+
+    def state(self, tick: int, world: World) -> None:
+        """Hands on the physics at the end of a tick.
+
+        Raises:
+            Exception: What the recorder raises.
+        """
+        if self._recorder is not None:
+            self._recorder.state(self._number, tick, world.state_bytes())
+
+    def answer(self, tick: int, request: Request, value: Any) -> None:
+        """Hands on what a body answered in a tick."""
+        if self._recorder is not None:
+            self._recorder.answer(self._number, tick, request.body, request.word, value)
+
+    def command(self, command: Command) -> None:
+        """Hands on what a user did."""
+        if self._recorder is not None:
+            self._recorder.command(self._number, command.tick, command.to_data())
+
+    @property
+    def _number(self) -> int:
+        if not self._begun:
+            self._begun = self._trace.begin(self)
+        return self._begun
+
+    def _hand_on(self, event: TraceEvent, trace: Trace) -> None:
+        data = event.data if self._number == 1 else self._renamed(event.data)
+        trace.emit(event.time_us, self._name(event.source), event.kind, data)
+
+    def _renamed(self, data: Any) -> Any:
+        """Returns data in which parts have the names that they have in the program's trace."""
+        if type(data) is Naming:
+            return data.renamed(self._name)
+        if isinstance(data, dict):
+            return {key: self._renamed(value) for key, value in cast("dict[Any, Any]", data).items()}
+        if isinstance(data, (list, tuple)):
+            return [self._renamed(value) for value in cast("list[Any]", data)]
+        return data
 
     def _name(self, source: str) -> str:
         top = top_path(self._number)
@@ -58,7 +102,7 @@ class ProgramRun:
         present = self._present()
         if present is not None:
             named = Trace(trace.level, keep=False)
-            named.listen(lambda event: trace.emit(event.time_us, self._name(event.source), event.kind, event.data))
+            named.listen(lambda event: self._hand_on(event, trace))
             present.tell(named)
 
     def stop(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,16 +15,18 @@ from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
+from actr3d.simulation.arguments import check_names, count_of, factor_of, named_minds, seed_of, steps_of, whole_ticks, world_of
 from actr3d.simulation.commands import Command
 from actr3d.simulation.course import Course
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.journal import Journal, Listener
-from actr3d.simulation.lockstep import Lockstep, steps_of, whole_ticks
-from actr3d.simulation.minds import Factory, check_names
+from actr3d.simulation.lockstep import Lockstep
+from actr3d.simulation.measuring import Measure
+from actr3d.simulation.minds import Factory
 from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
-from actr3d.simulation.sources import sources_of
+from actr3d.simulation.sources import told_facts
 from actr3d.simulation.submissions import Submissions
 from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
@@ -49,7 +52,8 @@ class Simulation:
         trace: How much of what happens is kept; see `actr3d.trace.LEVELS`.
 
     Raises:
-        SimulationError: If the period is no whole multiple of the physics step, or a mind's body is not there.
+        SimulationError: If the period is no whole multiple of the physics step, a mind's body is not there, the world is not
+            at its start, or something is of another kind than it should be.
         ParameterError: If the trace's level is unknown.
     """
 
@@ -60,24 +64,25 @@ class Simulation:
         *,
         bodiless: Mapping[str, Factory] | None = None,
         period: float = 0.01,
-        seed: int | None = None,
+        seed: int | str | None = None,
         trace: str = "none",
     ) -> None:
         limits = RunLimits.current()
-        self.seed: int | str = seed if seed is not None else fresh_seed() if limits is None else limits.next_seed()
-        self.world = scene if isinstance(scene, World) else World(scene, crc32(str(self.seed).encode()))
-        self._minds = dict(minds or {})
-        self._bodiless = dict(bodiless or {})
+        self.seed: int | str = seed_of(seed) if seed is not None else fresh_seed() if limits is None else limits.next_seed()
+        self._minds = named_minds(minds, "Simulation.minds")
+        self._bodiless = named_minds(bodiless, "Simulation.bodiless")
+        self.world = world_of(scene, crc32(str(self.seed).encode()))
         check_names(self._minds, self._bodiless, self.world.bodies)
         self._steps = steps_of(period, self.world)
         self._period = self._steps * self.world.scene.timestep_us
         self._journal = Journal(trace)
         if limits is not None and limits.trace is not None:
-            self._journal.tell_program(limits.trace)
+            self._journal.tell_program(limits.trace, limits.recorder)
         self._course = Course(self.world, self._begin, self._journal)
         self._random = GlobalRandom()
         self._onlookers = Onlookers(self._random)
         self._submitted = Submissions()
+        self._measure: Measure | None = None
         self._owner = threading.get_ident()
 
     def _begin(self) -> Lockstep:
@@ -159,11 +164,11 @@ class Simulation:
         """Goes on by a number of ticks, each with its tock.
 
         Raises:
-            SimulationError: As `tick` does.
+            SimulationError: If the number is no whole one, or negative; and as `tick` does.
             Exception: As `tick` and `tock` do.
         """
         with self._random:
-            for _ in range(n):
+            for _ in range(count_of(n, "step(n)")):
                 self.tick()
                 self.tock()
 
@@ -184,13 +189,15 @@ class Simulation:
             How it went: what ended it, how fast it was, and how late where it could not keep to real time.
 
         Raises:
-            SimulationError: If the time is no whole number of ticks, or the factor is not above 0; and as `tick` does.
+            SimulationError: If the time is no whole number of ticks, the factor is not above 0, or `until` is no function; and
+                as `tick` does.
             Exception: As `tick` and `tock` do.
         """
-        if real_time is not None and not real_time > 0:
-            raise SimulationError(f"run(real_time): must be above 0 (got {real_time!r})")
+        factor = factor_of(real_time, "run(real_time)")
+        if until is not None and not callable(until):
+            raise SimulationError(f"run(until): must be a function that takes a Glimpse (got {until!r})")
         end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
-        pace = Pace(self._period, real_time)
+        pace = Pace(self._period, factor)
         with self._random:
             return pace.report(self._go_on(pace, end, until, open_end=end is None and until is None))
 
@@ -206,7 +213,7 @@ class Simulation:
             if minds.stopped:
                 return "stop"
             if until is not None:
-                with self._random.aside():
+                with self._onlookers.only_looking():
                     if until(self._glimpse()):
                         return "until"
         return "seconds"
@@ -215,7 +222,7 @@ class Simulation:
         if threading.get_ident() != self._owner:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
         if self._onlookers.looking:
-            raise SimulationError("an observer only looks: it cannot step or change the simulation it observes")
+            raise SimulationError("an observer only looks, as a listener and `until` do: it cannot step or change the simulation")
 
     # -- commands
 
@@ -281,6 +288,34 @@ class Simulation:
             raise SimulationError("commands are planned before the run begins, and this one has begun already")
         self._course.plan(commands)
 
+    def measure(self, measure: Measure) -> None:
+        """Lets a measure look at every physics step from the start of the run on; what it finds is the run's result.
+
+        Raises:
+            SimulationError: If the run has begun already, or has a measure.
+            Exception: What the measure raises, of what it does not find in the world.
+        """
+        if self._course.begun or self._measure is not None:
+            raise SimulationError("a run has one measure, which looks at it from its start on")
+        measure.begin(self.world)
+        self.world.watchers.append(measure.look)
+        self._measure = measure
+
+    def result(self) -> Any:
+        """Returns what has been measured of the run up to now; None where nothing is."""
+        if self._measure is None:
+            return None
+        minds = self._course.lockstep.minds
+        return self._measure.result(over=minds.stopped or minds.done)
+
+    def conclude(self) -> Any:
+        """Returns the result, and tells the trace of it: the run is not to go on."""
+        result = self.result()
+        if result is not None:
+            self._journal.result(self._course.lockstep.minds.time, asdict(result))
+            self._journal.check()
+        return result
+
     def listen(self, listener: Listener) -> None:
         """Calls a listener with every event of the trace from now on; not with those that `seek` goes through again.
 
@@ -289,7 +324,7 @@ class Simulation:
         """
 
         def listen_aside(event: TraceEvent) -> None:
-            with self._random.aside():
+            with self._onlookers.only_looking():
                 listener(event)
 
         self._journal.listen(listen_aside)
@@ -299,19 +334,24 @@ class Simulation:
 
         Args:
             path: The file; it must not exist.
-            facts: What else is to be told of the run: plain values by name.
+            facts: What else is to be told of the run: plain values by names that a recording does not use itself.
 
         Raises:
-            SimulationError: If the run has begun already.
-            RecordingError: If the file exists, or cannot be made.
+            SimulationError: If the run has begun already, or is being recorded.
+            RecordingError: If the file exists, or cannot be made, or a fact cannot be recorded.
         """
         if self._course.begun:
             raise SimulationError("a recording holds a run from its start on, and this one has begun already")
-        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us}
-        sources = facts.pop("sources", None) or sources_of([*self._minds.values(), *self._bodiless.values()])
-        recording = Recording(path, {"kind": "simulation", **own, "sources": sources, **facts})
+        if self._journal.recorded:
+            raise SimulationError("this run is being recorded already; what records it holds everything")
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
+        recording = Recording(path, told_facts(own, facts, [*self._minds.values(), *self._bodiless.values()]))
         self._journal.record(recording)
+        recording.ending = self._end_recording
         return recording
+
+    def _end_recording(self) -> None:
+        self._journal.end_recording(whole=self._course.begun and not self._course.lockstep.broken)
 
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.ticks)

@@ -1,13 +1,15 @@
-"""The source of models, for a recording."""
+"""What a recording is told of a simulation before it begins, with the source of its models."""
 
 from __future__ import annotations
 
 import linecache
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from actr3d.actr.sources import SOURCE
+from actr3d.errors import RecordingError
+from actr3d.recording.form import OWN_FACTS
 
 
 def sources_of(factories: Iterable[Any]) -> dict[str, str]:
@@ -21,3 +23,14 @@ def sources_of(factories: Iterable[Any]) -> dict[str, str]:
             if text:
                 found[name] = text
     return found
+
+
+def told_facts(own: Mapping[str, Any], given: Mapping[str, Any], factories: Iterable[Any]) -> dict[str, Any]:
+    """Returns the facts of a simulation: what it tells of itself, what else its user tells, and the source of its minds.
+
+    Raises:
+        RecordingError: If the user tells what is not the user's to tell.
+    """
+    if taken := sorted({*own, *OWN_FACTS} & given.keys()):
+        raise RecordingError(f"a recording tells '{taken[0]}' by itself; give that fact another name")
+    return {"kind": "simulation", **own, **given, "sources": given.get("sources") or sources_of(factories)}

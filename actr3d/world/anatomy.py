@@ -29,6 +29,23 @@ class Steering(Configuration):
 
 
 @dataclass(frozen=True, kw_only=True)
+class NamedMovement(Configuration):
+    """A movement that a body has a name for: some joints that turn together."""
+
+    name: str
+    """What it is called: `extend_shoulder`."""
+
+    side: str | None = None
+    """On which side, where there is one movement of that name on each."""
+
+    joints: tuple[tuple[str, float], ...]
+    """The joints, and which way each of them turns: 1 where a positive angle of the movement is one of the joint, or -1."""
+
+    to: float | None = None
+    """To which angle it always brings them [rad]; None where whoever moves says to which."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Anatomy:
     """Names what a `Body` cannot find by looking at the compiled model. Names are those of MuJoCo's elements."""
 
@@ -53,8 +70,14 @@ class Anatomy:
     hands: tuple[str, ...] = ()
     """Weld equalities, one a hand, that can hold an object."""
 
+    fastest: tuple[float, float, float] | None = None
+    """The fastest that it can be told to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None has no limits."""
+
     push: tuple[str, str, str] | None = None
     """The servos that walk forward, to the left and turn; None cannot walk."""
+
+    movements: tuple[NamedMovement, ...] = ()
+    """Movements that have names."""
 
     noise: tuple[tuple[str, float], ...] = ()
     """Of sensors that are never exact: the word and the standard deviation of every number it reads, in its unit."""

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from actr3d.errors import WorldError
 from actr3d.world.actuators import ACTUATORS
 from actr3d.world.anatomy import Anatomy, Embodied
+from actr3d.world.base import Base
 from actr3d.world.bounding_box import BoundingBox, Extent
 from actr3d.world.frames import frame_of
 from actr3d.world.grasp import Hand, Held
-from actr3d.world.joints import Base, Joint
+from actr3d.world.holding import Holding
+from actr3d.world.joints import Joint
 from actr3d.world.noise import Noise, Sd
 from actr3d.world.running import Running
 from actr3d.world.sensors import SENSORS
@@ -34,6 +36,9 @@ class BodyState:
 
     running: tuple[Any, ...]
     """Commands on their way, as `Running.state` gives them."""
+
+    holding: tuple[Any, ...]
+    """What it is told to keep, as `Holding.state` gives it."""
 
     noise: tuple[tuple[str, int, int], ...]
     """Sensors with noise: the word and where its random numbers are."""
@@ -92,7 +97,7 @@ class Body:
         self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(world, self.root, self.anatomy)
         self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints()}
-        self.controls: dict[str, int] = self._controls()
+        self.controls: dict[str, slice] = self._controls()
         self.eye = self.anatomy.eye
         self.feeling: NDArray[np.intp] = self._feeling()
         """The geoms that feel contacts."""
@@ -100,6 +105,7 @@ class Body:
         """The same, to look up."""
         self.skin: tuple[str, ...] = tuple(self.geom_name(geom) for geom in self.feeling.tolist())
         self.hands: dict[str, Hand] = {self.short(name).removesuffix("_hand"): Hand(world, name) for name in self.anatomy.hands}
+        self.holding = Holding(self)
         self.running = Running(self)
         self.touched: tuple[Touch, ...] | None = None
         """What the skin has felt in the last tick; None before anyone asks."""
@@ -157,6 +163,8 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is not what it takes.
         """
+        if word == "view" and word not in SENSORS:
+            raise WorldError(f"{self.name}: the sensor 'view' is the camera's: import actr3d.camera before the world is made")
         known(word, self.sensors, self.name, "sensor")
         reading = SENSORS[word](self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
@@ -166,11 +174,19 @@ class Body:
         """Returns what is not in the physics state: commands on their way, noise, what hands hold."""
         held = tuple((side, hand.held) for side, hand in self.hands.items() if hand.held is not None)
         senses = tuple((key, sense.state()) for key, sense in self._senses.items())
-        return BodyState(running=self.running.state(), noise=self.noise.state(), held=held, touched=self.touched, senses=senses)
+        return BodyState(
+            running=self.running.state(),
+            holding=self.holding.state(),
+            noise=self.noise.state(),
+            held=held,
+            touched=self.touched,
+            senses=senses,
+        )
 
     def restore(self, state: BodyState) -> None:
         """Brings back a state of its own, after the physics state."""
         self.running.restore(state.running)
+        self.holding.restore(state.holding)
         self.noise.restore(state.noise)
         self.touched = state.touched
         remembered = dict(state.senses)
@@ -207,8 +223,8 @@ class Body:
         """
         return self.joints[known(name, self.joints, self.name, "joint")]
 
-    def control(self, name: str) -> int:
-        """Returns where the control of one of its actuators is in MuJoCo's `ctrl`.
+    def control(self, name: str) -> slice:
+        """Returns where the controls of one of its actuators are in MuJoCo's `ctrl`; most have one.
 
         Raises:
             WorldError: If it has no such actuator.
@@ -269,11 +285,12 @@ class Body:
         numbers = [n for n in range(model.njnt) if self.members[model.jnt_bodyid[n]] and model.jnt_type[n] in kinds]
         return [Joint(self.world, n, self.short(model.joint(n).name) or f"joint_{n}") for n in numbers if n not in self.base.joints]
 
-    def _controls(self) -> dict[str, int]:
+    def _controls(self) -> dict[str, slice]:
         """Returns where the controls are of the actuators that move it; a name alone may be that of `arm` or of `arm_2`."""
         model: Any = self.world.mj_model
         own = [n for n in range(model.nactuator) if self.members[moved_by(model, n)].any()]
-        return {self.short(str(model.actuator(n).name)): int(model.actuator_ctrladr[n]) for n in own}
+        first, count = model.actuator_ctrladr, model.actuator_ctrlnum
+        return {self.short(str(model.actuator(n).name)): slice(int(first[n]), int(first[n] + count[n])) for n in own}
 
     def _id(self, kind: str, name: str) -> int:
         try:

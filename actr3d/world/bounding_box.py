@@ -72,10 +72,10 @@ class Extent:
         Raises:
             WorldError: If there is nothing to be put in a box.
         """
-        boxes = [self._geoms.reach(self._data, axes)]
+        lower, upper = self._geoms.reach(self._data, axes)
         if also:
-            boxes.append(_Shapes(self._model, np.array(also, dtype=np.intp)).reach(self._data, axes))
-        lower, upper = (np.minimum.reduce([low for low, _ in boxes]), np.maximum.reduce([high for _, high in boxes]))
+            low, high = _Shapes(self._model, np.array(also, dtype=np.intp)).reach(self._data, axes)
+            lower, upper = np.minimum(lower, low), np.maximum(upper, high)
         if not np.isfinite(lower).all():
             raise WorldError("nothing that can be seen or touched has a bounding box here")
         at = origin @ axes

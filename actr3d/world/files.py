@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import posixpath
+from contextlib import suppress
 from pathlib import Path
 
 from actr3d.errors import WorldError, did_you_mean
@@ -24,11 +25,11 @@ class Folder:
     Args:
         root: Where the files are; nothing outside it is read.
         error: What is raised when a file cannot be read.
-        given: Files of an earlier reading. With them nothing is read from the disk.
+        given: Files of an earlier reading, or none at all. With them nothing is read from the disk.
     """
 
     def __init__(self, root: Path, error: type[WorldError], given: Files | None = None) -> None:
-        self.root = root.resolve()
+        self.root = resolved(root, error)
         self._error = error
         self._given = None if given is None else dict(given)
         self._read: dict[str, bytes] = {}
@@ -65,11 +66,15 @@ class Folder:
         name = posixpath.normpath(name.replace("\\", "/"))
         if self._given is not None:
             return name in self._given
-        path = (self.root / name).resolve()
-        return path.is_relative_to(self.root) and path.is_file()
+        with suppress(self._error):
+            path = resolved(self.root / name, self._error)
+            return path.is_relative_to(self.root) and path.is_file()
+        return False
 
     def _content(self, name: str, whose: str) -> bytes:
         if self._given is not None:
+            if not self._given:
+                raise self._error(f"{whose}'{name}' is not read: what a text mentions is read only from a folder that is given with it")
             if name not in self._given:
                 raise self._error(f"{whose}no '{name}' among the files that were recorded{did_you_mean(name, self._given)}")
             return self._given[name]
@@ -82,7 +87,7 @@ class Folder:
             if path.stat().st_size > MAX_BYTES:
                 raise self._error(f"{whose}'{name}' has {path.stat().st_size:,} bytes; the limit is {MAX_BYTES:,}")
             return path.read_bytes()
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: links that lead in a circle
             raise self._error(f"{whose}'{name}' cannot be read: {error}") from error
 
     def _near(self, path: Path) -> str:
@@ -94,6 +99,18 @@ class Folder:
         total = sum(map(len, self._read.values()))
         if total > MAX_BYTES:
             raise self._error(f"'{name}': the files have {total:,} bytes together; the limit is {MAX_BYTES:,}")
+
+
+def resolved(path: Path, error: type[WorldError]) -> Path:
+    """Returns a path made whole, without links.
+
+    Raises:
+        WorldError: (or the error given) If no path can be like this: links lead in a circle, or a character cannot be.
+    """
+    try:
+        return path.resolve()
+    except (OSError, ValueError, RuntimeError) as failure:
+        raise error(f"{str(path)!r} is no path that can be read: {failure}") from failure
 
 
 def digest(files: Files) -> str:

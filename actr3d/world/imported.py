@@ -16,7 +16,7 @@ from mujoco import MjSpec
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.saying import warn_modeller
-from actr3d.world.files import Files, Folder, digest
+from actr3d.world.files import Files, Folder, digest, resolved
 from actr3d.world.imported_document import Document, read_imported
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
 from actr3d.world.parts import Name
@@ -31,8 +31,9 @@ class Imported(Configuration):
 
     The file, with those it includes and mentions, is read once, when the part is described, and only from inside its folder.
     Meshes may be of any format that `Mesh` reads, and are repaired as there. What speaks of the whole world (`option`, `size`,
-    `statistic`, `visual`, `keyframe`) is left out: the scene's holds. Shapes that are only for contacts are not seen: in MJCF
-    those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
+    `statistic`, `visual`, `keyframe`) is left out: the scene's holds, and a warning says so of `option` and `keyframe`. Skins and
+    soft things (flexes) are drawn and, soft things, touched; the Geometric Camera warns that it does not see them. Shapes that are
+    only for contacts are not seen: in MJCF those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
     """
 
     name: Name
@@ -112,15 +113,22 @@ class Imported(Configuration):
         if self.text is not None:
             name = f"{self.name}.xml"
             folder = Folder(Path(self.folder), WorldError) if self.folder else Folder(Path(), WorldError, ())
-            folder.put(name, self.text.encode())
+            folder.put(name, _encoded(self.text))
         else:
-            path = Path(str(self.path)).resolve()
-            root = Path(self.folder).resolve() if self.folder else _package_folder(path)
+            path = resolved(Path(str(self.path)), WorldError)
+            root = resolved(Path(self.folder), WorldError) if self.folder else _package_folder(path)
             if not path.is_relative_to(root):
                 raise WorldError(f"'{path.name}' does not lie in the folder '{root.name}'")
             name, folder = path.relative_to(root).as_posix(), Folder(root, WorldError)
         read_imported(folder, name)
         return folder.files
+
+
+def _encoded(text: str) -> bytes:
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        raise WorldError(f"the text cannot be written in UTF-8: {error}") from error
 
 
 def _package_folder(path: Path) -> Path:

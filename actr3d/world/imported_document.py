@@ -124,6 +124,9 @@ def _leave_to_the_scene(root: Element, document: Document) -> None:
     options = sorted({name for child in root.children if child.tag == "option" for one in child.walk() for name in one.attributes})
     if options:
         document.remarks.append(f"its <option> is left out ({', '.join(options)}): those of the scene hold")
+    keys = [one.attributes.get("name", "without a name") for child in root.children if child.tag == "keyframe" for one in child.children]
+    if keys:
+        document.remarks.append(f"its <keyframe> is left out ({', '.join(keys)}): it starts in the pose that its bodies describe")
     root.children = [child for child in root.children if child.tag not in OF_THE_WORLD]
 
 

@@ -20,7 +20,7 @@ from actr3d.world.convex import convex_parts
 from actr3d.world.files import Files, Folder, digest
 from actr3d.world.mesh_files import Triangles, read_triangles
 from actr3d.world.parts import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
-from actr3d.world.surface import Surface, surface
+from actr3d.world.surface import Surface, check_extent, surface
 
 Quaternion = tuple[float, float, float, float]
 
@@ -82,7 +82,8 @@ class Mesh(Configuration):
     """[kg], spread evenly over its volume (over its convex hull where it is not closed); `None` fixes it in its place."""
 
     collision: Literal["hull", "parts", "none"] = "hull"
-    """What meets other bodies: its convex hull, convex parts that follow its hollows (slow to make, once a process), or nothing."""
+    """What meets other bodies: its convex hull, convex parts that follow its hollows, or nothing.
+    Parts are slow to make, and then kept in the user's cache folder."""
 
     coarseness: Annotated[float, Ge(0.01), Le(1)] = 0.05
     """For `parts`: how far they may differ from it, as a share of its size. Source of the default: CoACD."""
@@ -176,9 +177,9 @@ class _Source:
 def _read(source: _Source) -> tuple[Triangles, Surface]:
     name = source.files[0][0]
     triangles = read_triangles(Folder(Path(), MeshError, source.files), name, source.up)
-    ordered = surface(triangles.vertices * source.scale, triangles.faces, name)
-    ordered.check_extent(name)
-    return triangles, ordered
+    vertices = triangles.vertices * source.scale
+    check_extent(vertices, triangles.faces, name)
+    return triangles, surface(vertices, triangles.faces, name)
 
 
 @lru_cache(maxsize=64)
@@ -188,6 +189,9 @@ def _cut(source: _Source, coarseness: float, seed: int) -> list[NDArray[np.float
 
 def _add_geom(mj_spec: MjSpec, body: Any, name: str, vertices: Any, faces: Any, **options: Any) -> None:
     mesh = mj_spec.add_mesh(name=name)
+    if len(vertices) == 3:  # MuJoCo takes four at least: each triangle becomes three around its middle
+        vertices = np.vstack([vertices, vertices.mean(axis=0)])
+        faces = np.array([[a, b, 3] for face in faces for a, b in zip(face, np.roll(face, -1), strict=True)])
     mesh.uservert = vertices.ravel()
     if faces is not None:
         mesh.userface = faces.ravel()

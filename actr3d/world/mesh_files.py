@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import struct
 import zipfile
 from dataclasses import dataclass
@@ -24,6 +25,8 @@ NEEDS = {"3mf": "lxml and networkx", "dae": "pycollada", "zae": "pycollada", "3d
 _ARCHIVES = {"3mf", "zae", "3dxml"}
 _IMAGES = {".png", ".jpg", ".jpeg", ".webp", ".tga", ".bmp", ".tif", ".tiff", ".ktx2"}
 _TEXTS = {"obj", "off", "xyz"}
+_UNUSUAL = re.compile(rb"^[ \t]*f[ \t](?:[^\n]*[ \t/])?(?:-|0+(?![0-9]))", re.MULTILINE)
+"""Faces of an OBJ file that count backwards, or from 0."""
 _Y_UP = {"glb", "gltf"}
 
 
@@ -119,6 +122,8 @@ def _kind(content: bytes, name: str) -> tuple[str, bytes, list[str]]:
         _check_archive(content, name)
     elif kind in _TEXTS:
         content = _as_text(content)
+        if kind == "obj" and _UNUSUAL.search(content):
+            content = _counted_forwards(content, name)
     return kind, content, remarks
 
 
@@ -170,6 +175,33 @@ def _as_text(content: bytes) -> bytes:
     except UnicodeDecodeError:
         return content.decode("latin-1").encode()
     return content
+
+
+def _counted_forwards(content: bytes, name: str) -> bytes:
+    """Returns OBJ text whose faces count corners from the first of the file. Negative numbers count back from the last one before
+    the face, which trimesh takes for the last of the file."""
+    known = {b"v": 0, b"vt": 0, b"vn": 0}
+    lines = content.replace(b"\\\n", b"  ").split(b"\n")
+    for number, line in enumerate(lines):
+        words = line.partition(b"#")[0].split()
+        if words and words[0] in known:
+            known[words[0]] += 1
+        elif words and words[0] == b"f":
+            lines[number] = b" ".join([b"f", *(_corner(word, known, f"'{name}', line {number + 1}") for word in words[1:])])
+    return b"\n".join(lines)
+
+
+def _corner(word: bytes, known: dict[bytes, int], where: str) -> bytes:
+    """Returns a corner of a face, `vertex/texture/normal`, counted forwards."""
+    parts = word.split(b"/")
+    if parts[0].isdigit() and int(parts[0]) == 0:
+        raise MeshError(f"{where}: a triangle refers to vertex 0; OBJ files count from 1")
+    for n, count in enumerate(list(known.values())[: len(parts)]):
+        if parts[n][:1] == b"-" and parts[n][1:].isdigit():
+            if int(parts[n]) < -count:
+                raise MeshError(f"{where}: a triangle refers to number {int(parts[n])} of {count} before it")
+            parts[n] = b"%d" % (count + 1 + int(parts[n]))
+    return b"/".join(parts)
 
 
 def _check_archive(content: bytes, name: str) -> None:

@@ -36,13 +36,13 @@ class Noise:
             sd: The standard deviation in the reading's unit, or one for each field named.
 
         Raises:
-            WorldError: If a standard deviation is negative, or is for a field that the reading does not have.
+            WorldError: If a standard deviation is not a number from 0 on, or is for a field that the reading does not have.
         """
+        of = f"{self._name}: noise of {word}"
+        checked = {_field(name, of): number(value, of, 0) for name, value in sd.items()} if isinstance(sd, Mapping) else number(sd, of, 0)
         if word not in self._generators:
             self._generators[word] = Generator(PCG64(SeedSequence([self._seed, *f"{self._name} {word}".encode()])))
-        for value in sd.values() if isinstance(sd, Mapping) else [sd]:
-            number(value, f"{self._name}: noise of {word}", 0)
-        return _noisy(word, reading, sd, self._generators[word])
+        return _noisy(word, reading, checked, self._generators[word])
 
     def state(self) -> tuple[tuple[str, int, int], ...]:
         """Returns where the random numbers of each sensor are."""
@@ -58,11 +58,17 @@ class Noise:
             self._generators[word] = Generator(bits)
 
 
+def _field(name: Any, of: str) -> str:
+    if not isinstance(name, str):
+        raise WorldError(f"{of}: a field is named by text (got {name!r})")
+    return name
+
+
 def _noisy(word: str, value: Any, sd: Any, random: Generator) -> Any:
     if isinstance(value, float):
         if isinstance(sd, Mapping):
             raise WorldError(f"noise of {word}: its readings have no fields; give one number")
-        return value + float(sd) * random.standard_normal()
+        return value + sd * random.standard_normal()
     if hasattr(value, "with_noise"):
         return value.with_noise(sd, random)
     if isinstance(value, tuple):
@@ -74,12 +80,11 @@ def _noisy(word: str, value: Any, sd: Any, random: Generator) -> Any:
     return value
 
 
-def _fields(word: str, value: Any, sd: Any, random: Generator) -> dict[str, Any]:
+def _fields(word: str, value: Any, sd: float | dict[str, float], random: Generator) -> dict[str, Any]:
     old = {field.name: getattr(value, field.name) for field in fields(value)}
-    if not isinstance(sd, Mapping):
+    if not isinstance(sd, dict):
         return {name: _noisy(word, item, sd, random) for name, item in old.items()}
-    by_field: dict[str, float] = {str(key): float(of) for key, of in sd.items()}  # pyright: ignore[reportUnknownArgumentType, reportUnknownVariableType]
-    for name in by_field:
+    for name in sd:
         if name not in old:
             raise WorldError(f"noise of {word}: its readings have no '{name}'{did_you_mean(name, old)}; they have {', '.join(old)}")
-    return {name: _noisy(word, item, by_field[name], random) if name in by_field else item for name, item in old.items()}
+    return {name: _noisy(word, item, sd[name], random) if name in sd else item for name, item in old.items()}

@@ -16,7 +16,10 @@ ASTRAY = 0.1
 """Who walks to a point and faces it worse than this [rad] stands while turning. Ours."""
 
 HEADING = "heading"
-"""What the base's turning is called among targets."""
+"""What the base's turning to a heading is called among targets."""
+
+TURN = "(turn)"
+"""What its turning by an angle is called there: to a heading too, but as far round as was said, and not the shorter way."""
 
 
 class Running:
@@ -29,7 +32,7 @@ class Running:
     def __init__(self, body: Body) -> None:
         self._body = body
         self.targets: dict[str, tuple[float, float]] = {}
-        """By joint, or `heading`: the position it goes to and its speed, [rad] [rad/s]."""
+        """By joint, or `HEADING` or `TURN`: the position it goes to and its speed, [rad] [rad/s]."""
         self.waypoint: tuple[float, float, float, float] | None = None
         """Where the body walks: x, y, speed, speed of turning, [m] [m] [m/s] [rad/s]."""
         self.brake = 0.0
@@ -41,8 +44,8 @@ class Running:
     def before_step(self, duration: float) -> None:
         """Sets the speeds for the next `duration` [s]."""
         for name in tuple(self.targets):
-            if name == HEADING:
-                self._turn(duration)
+            if name in (HEADING, TURN):
+                self._turn(name, duration)
             else:
                 self._move(name, duration)
         if self.waypoint is not None:
@@ -64,7 +67,13 @@ class Running:
             x, y, _, _ = self.waypoint
             self.waypoint = None
             base.place = (x, y, base.place[2])
+            body.holding.stand()
             base.drive((0.0, 0.0, 0.0), body)
+
+    def turning(self) -> float:
+        """Returns how far the base still turns, of the angle that it was told to turn by [rad]; 0 if it was not, or has."""
+        rest = self._rest(TURN) if TURN in self.targets else 0.0
+        return rest if abs(rest) > THERE else 0.0
 
     def state(self) -> tuple[Any, ...]:
         """Returns all commands as plain values."""
@@ -79,16 +88,18 @@ class Running:
         """Returns whether a joint or the heading is at its target; then puts it exactly there and stops it."""
         body, base = self._body, self._body.base
         target, _ = self.targets[name]
-        if name == HEADING:
+        if name in (HEADING, TURN):
             x, y, heading = base.place
-            rest = _wrapped(target - heading)
+            rest = self._rest(name)
             if abs(rest) <= THERE:
                 base.place = (x, y, heading + rest)
-                base.drive((*base.commanded[:2], 0.0), body)
+                body.holding.stand()
+                base.drive((*body.holding.commanded[:2], 0.0), body)
                 return True
         elif abs(target - body.joints[name].position) <= THERE:
             body.joints[name].put(target)
-            body.joints[name].drive(0.0, body.free)
+            body.holding.stand(name)
+            body.joints[name].drive(0.0, body)
             return True
         return False
 
@@ -96,15 +107,18 @@ class Running:
         """Moves one joint on."""
         joint = self._body.joints[name]
         target, speed = self.targets[name]
-        joint.drive(_bounded((target - joint.position) / duration, speed), self._body.free)
+        joint.drive(_bounded((target - joint.position) / duration, speed), self._body)
 
-    def _turn(self, duration: float) -> None:
-        """Turns the base on, the shorter way round."""
-        base = self._body.base
-        target, speed = self.targets[HEADING]
-        forward, left, _ = base.commanded
-        rest = _wrapped(target - base.place[2])
-        base.drive((forward, left, _bounded(rest / duration, speed)), self._body)
+    def _turn(self, name: str, duration: float) -> None:
+        """Turns the base on."""
+        body, base = self._body, self._body.base
+        forward, left, _ = body.holding.commanded
+        base.drive((forward, left, _bounded(self._rest(name) / duration, self.targets[name][1])), body)
+
+    def _rest(self, name: str) -> float:
+        """Returns how far the base still has to turn [rad]."""
+        rest = self.targets[name][0] - self._body.base.place[2]
+        return rest if name == TURN else _wrapped(rest)
 
     def _walk(self, x: float, y: float, speed: float, turn: float, duration: float) -> None:
         """Turns towards the point and walks straight to it."""

@@ -45,20 +45,6 @@ class Surface:
     repairs: tuple[str, ...]
     """What was repaired, in words."""
 
-    def check_extent(self, name: str) -> None:
-        """Checks that its length is one of things and rooms.
-
-        Raises:
-            MeshError: If it is too small or too large; supposes another unit.
-        """
-        extent = float(np.ptp(self.vertices, axis=0).max())
-        if not MIN_EXTENT <= extent <= MAX_EXTENT:
-            large = extent > MAX_EXTENT
-            raise MeshError(
-                f"'{name}' is {extent:.3g} m long; the {'most' if large else 'least'} is {MAX_EXTENT if large else MIN_EXTENT:g} m. "
-                f"Is its unit the metre? Give scale=…, {'0.001 for millimetres' if large else '1000 for kilometres'}"
-            )
-
     def mass_properties(self, mass: float) -> tuple[Vertices, Vertices]:
         """Returns the centre of mass (3,) [m] and the inertia about it (3, 3) [kg m^2], of a solid of even density.
 
@@ -75,6 +61,21 @@ class Surface:
         solid = whole if self.closed else whole.convex_hull
         found = trimesh.triangles.mass_properties(solid.triangles, skip_inertia=False)
         return np.asarray(found.center_mass), np.asarray(found.inertia) * (mass / found.mass)
+
+
+def check_extent(vertices: Vertices, faces: Faces, name: str) -> None:
+    """Checks that the length of triangles is one of things and rooms.
+
+    Raises:
+        MeshError: If it is too small or too large; supposes another unit.
+    """
+    extent = float(np.ptp(vertices[faces.ravel()], axis=0).max())
+    if extent and not MIN_EXTENT <= extent <= MAX_EXTENT:
+        large = extent > MAX_EXTENT
+        raise MeshError(
+            f"'{name}' is {extent:.3g} m long; the {'most' if large else 'least'} is {MAX_EXTENT if large else MIN_EXTENT:g} m. "
+            f"Is its unit the metre? Give scale=…, {'0.001 for millimetres' if large else '1000 for kilometres'}"
+        )
 
 
 def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:

@@ -87,11 +87,13 @@ def _quoted(word: Any) -> str:
 
 
 def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
-    """Returns a finite number within bounds.
+    """Returns a finite number within bounds; text that says a number is one: what a pattern binds is text.
 
     Raises:
         WorldError: If it is not one.
     """
+    if isinstance(value, bool):
+        raise WorldError(f"{what}: must be a number (got {value!r})")
     try:
         given = float(value)
     except OverflowError:  # a whole number beyond what floats hold
@@ -104,3 +106,15 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
         bounds = f"{least:g} to {most:g}" if most < math.inf else f"at least {least:g}"
         raise WorldError(f"{what}: must be {bounds} (got {value!r})")
     return given
+
+
+def whole(value: Any, what: str, least: int, most: int) -> int:
+    """Returns a whole number within bounds; text that says one is one.
+
+    Raises:
+        WorldError: If it is not one.
+    """
+    given = number(value, what, least, most)
+    if not given.is_integer():
+        raise WorldError(f"{what}: must be a whole number (got {value!r})")
+    return int(given)

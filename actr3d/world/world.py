@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from hashlib import blake2b
 from typing import Any
 
 import mujoco
@@ -14,7 +16,9 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
+from actr3d.world.pace import TICK, Pace
 from actr3d.world.parts import Aperture
+from actr3d.world.running import Running
 from actr3d.world.scene import Scene
 from actr3d.world.sensors.touch import step_and_feel
 from actr3d.world.servo import fit_servos
@@ -36,6 +40,9 @@ class WorldState:
     steps: int
     """Physics steps since the start."""
 
+    scene: str
+    """The fingerprint of the compiled scene that it is of."""
+
     mj_state: NDArray[np.float64]
     """`mjSTATE_INTEGRATION` of the data; less than that drifts (platform-facts)."""
 
@@ -51,12 +58,15 @@ class World:
         seed: Where the noise of sensors comes from.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene, and says what MuJoCo said; or if the seed is not a whole number from 0 on.
+        WorldError: If MuJoCo cannot compile the scene, and says what MuJoCo said; if it is none; or if the seed is
+            not a whole number from 0 on.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
         if not isinstance(seed, int) or seed < 0:  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a file
             raise WorldError(f"the seed of a world must be a whole number from 0 on (got {seed!r})")
+        if not isinstance(scene, Scene):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"a world is made of a Scene (got {scene!r})")
         self.scene = scene
         self.seed = seed
         try:
@@ -83,6 +93,12 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
+        self.fingerprint = _fingerprint(self.mj_model)
+        """Two worlds have the same one where their scenes are compiled to the same bytes."""
+        self._pace = Pace(self, list(self.bodies.values()))
+        self.watchers: list[Callable[[], None]] = []
+        """Who looks at every physics step, or part of one, and changes nothing: called after each. The geometry, contacts and forces
+        of `mj_data` are those of its beginning then, `time` and `opt.timestep` tell when it ended and how long it was."""
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
 
@@ -92,8 +108,8 @@ class World:
         return self._steps * self.scene.timestep_us
 
     def step(self, steps: int = 1) -> None:
-        """Advances the physics by a number of steps: one tick. Commands that are on their way choose their speeds
-        once, before it.
+        """Advances the physics by a number of steps: one tick, whose touches the skin remembers. Commands that are on their way
+        choose their speeds before it, and in a long one every 10 ms.
 
         Raises:
             WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is not one.
@@ -101,20 +117,36 @@ class World:
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"the physics goes on by a whole number of steps (got {steps!r})")
         running = [body.running for body in self.bodies.values() if body.running]
-        for commands in running:
-            commands.before_step(steps * self.scene.timestep)
         feeling = [body for body in self.bodies.values() if body.touched is not None]
+        taken = self._stepped(steps, running) if running else self._pace.steps(steps)
+        taken = self._watched(taken) if self.watchers else taken
         if feeling:
-            step_and_feel(self, feeling, steps)
+            step_and_feel(taken, feeling)
         else:
-            mujoco.mj_step(self.mj_model, self.mj_data, nstep=steps)
+            for _ in taken:
+                pass
         self._steps += steps
         self.changed()
-        for commands in running:
-            commands.after_step()
-            self.changed()
-        if self._warnings.any():
-            raise WorldError(f"the physics diverged near {seconds(self.time)} s: forces or speeds without bounds")
+        if np.count_nonzero(self._warnings):
+            raise WorldError(f"the physics diverged near {seconds(self.time)} s{self._culprit()}: forces or speeds without bounds")
+
+    def _stepped(self, steps: int, running: list[Running]) -> Iterator[None]:
+        """Takes steps while commands are on their way, which look every 10 ms how far they are: a brake must not go on backwards."""
+        most = max(1, round(TICK / self.scene.timestep))
+        for first in range(0, steps, most):
+            count = min(most, steps - first)
+            for commands in running:
+                commands.before_step(count * self.scene.timestep)
+            yield from self._pace.steps(count)
+            for commands in running:
+                commands.after_step()
+                self.changed()
+
+    def _watched(self, taken: Iterator[None]) -> Iterator[None]:
+        for _ in taken:
+            for watcher in self.watchers:
+                watcher()
+            yield
 
     def changed(self) -> None:
         """Notes that positions, speeds or commands are not those that were last computed with."""
@@ -156,7 +188,7 @@ class World:
         mj_state = np.empty(self._state_size)
         mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         bodies = tuple((name, body.state()) for name, body in self.bodies.items())
-        return WorldState(steps=self._steps, mj_state=mj_state, bodies=bodies)
+        return WorldState(steps=self._steps, scene=self.fingerprint, mj_state=mj_state, bodies=bodies)
 
     def state_bytes(self) -> bytes:
         """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
@@ -171,6 +203,8 @@ class World:
         """
         if state.mj_state.shape != (self._state_size,):
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
+        if state.scene != self.fingerprint:
+            raise WorldError(f"the state is of another scene: that one compiles to {state.scene}, this one to {self.fingerprint}")
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._warnings[:] = 0
         self._steps = state.steps
@@ -246,10 +280,26 @@ class World:
         return self._root_name(body) if body else str(self.mj_model.geom(geom).name)
 
     def _aperture(self, name: str) -> Aperture:
-        if name not in self._apertures:
-            raise WorldError(f"no aperture '{name}' in this scene{did_you_mean(name, self._apertures)}")
+        if not isinstance(name, str) or name not in self._apertures:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"no aperture '{name}' in this scene{did_you_mean(str(name), self._apertures)}")
         return self._apertures[name]
+
+    def _culprit(self) -> str:
+        """Returns which object has the number that MuJoCo found to be no good."""
+        model: Any = self.mj_model
+        kind = int(np.argmax(self._warnings))
+        number = int(self.mj_data.warning.lastinfo[_DIVERGED][kind])
+        # MuJoCo counts the first kind, bad positions, by position, the others by degree of freedom.
+        joint = int(np.searchsorted(model.jnt_qposadr, number, side="right")) - 1 if kind == 0 else int(model.dof_jntid[number])
+        return f", at '{self._root_name(int(model.jnt_bodyid[joint]))}'"
 
     def _mocap(self, name: str) -> int:
         body: Any = self.mj_model.body(name)
         return int(self.mj_model.body_mocapid[body.id])
+
+
+def _fingerprint(mj_model: MjModel) -> str:
+    """Returns a hash of a compiled scene: of all its numbers and names."""
+    image = np.empty(mujoco.mj_sizeModel(mj_model), np.uint8)
+    mujoco.mj_saveModel(mj_model, None, image)
+    return blake2b(image.tobytes(), digest_size=8).hexdigest()

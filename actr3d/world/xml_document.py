@@ -77,6 +77,8 @@ class _Reader:
         except expat.ExpatError as error:
             still = f"; <{self.open[-1].tag}> of {self.open[-1].where} is still open" if self.open else ""
             raise WorldError(f"{self._name}, line {error.lineno}: {expat.ErrorString(error.code)}{still}") from error
+        except (LookupError, ValueError) as error:  # of an encoding that Python does not know, or expat cannot use
+            raise WorldError(f"{self._name}, line 1: {error}; write it in UTF-8") from error
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         element = Element(tag=tag, attributes=attributes, where=f"{self._name}, line {self._parser.CurrentLineNumber}")

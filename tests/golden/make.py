@@ -1,7 +1,8 @@
 """Records the golden traces: what each model of `models` does with seed 1, event by event.
 
 Usage: `python tests/golden/make.py` writes them all anew, `python tests/golden/make.py addition tutorial/counting` only
-those named. The trace of `models/tutorial/counting.py` is `tests/golden/tutorial/counting.jsonl`. Look at the difference
+those named. The trace of `models/tutorial/counting.py` is `tests/golden/tutorial/counting.jsonl`, that of another variant of a model
+`tests/golden/aperture_passage@replication.jsonl`. Look at the difference
 (`git diff tests/golden`) before keeping it: every changed line is a changed behaviour.
 """
 
@@ -17,13 +18,24 @@ ROOT = GOLDEN.parent.parent
 MODELS = ROOT / "models"
 IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tutorial/parallel_system", "tutorial/two_agents"}
 """The models whose golden traces hold every event; those of the others, which are long, hold productions and buffers."""
-EMBODIED = {"doorway"}
+VARIANTS = {"aperture_passage": ("replication",)}
+"""By model, the variants that have golden traces besides the default."""
+EMBODIED = {"aperture_passage", "aperture_passage@replication", "doorway"}
 """Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
+
+OURS = {"tutorial/sgoms"}
+"""Models that use what python_actr does not have."""
 
 
 def model_names() -> list[str]:
-    """Returns the path of every model below `models`, without its ending."""
-    return sorted(path.relative_to(MODELS).with_suffix("").as_posix() for path in MODELS.rglob("*.py"))
+    """Returns the path of every model below `models`, without its ending, and once more with each other variant that it has."""
+    names = [path.relative_to(MODELS).with_suffix("").as_posix() for path in MODELS.rglob("*.py")]
+    return sorted([*names, *(f"{name}@{variant}" for name in names for variant in VARIANTS.get(name, ()))])
+
+
+def model_file(name: str) -> str:
+    """Returns the path of a model's file, from the project's folder."""
+    return f"models/{name.partition('@')[0]}.py"
 
 
 def golden_names() -> list[str]:
@@ -34,7 +46,8 @@ def golden_names() -> list[str]:
 def options(name: str, seed: int = 1) -> tuple[str, ...]:
     """Returns how a model's golden trace is made."""
     level = "all" if name in IN_FULL else "production" if name in EMBODIED else "buffer"
-    return ("--seed", str(seed), "--trace", level, "--json")
+    variant = name.partition("@")[2]
+    return (*(("--variant", variant) if variant else ()), "--seed", str(seed), "--trace", level, "--json")
 
 
 def golden_file(name: str) -> Path:
@@ -44,7 +57,7 @@ def golden_file(name: str) -> Path:
 
 def command(name: str, *words: str) -> list[str]:
     """Returns the arguments of `actr3d` that run a model, from the project's folder."""
-    return ["run", f"models/{name}.py", *(words or options(name))]
+    return ["run", model_file(name), *(words or options(name))]
 
 
 def record(name: str, *words: str) -> bytes:
@@ -57,7 +70,7 @@ def record(name: str, *words: str) -> bytes:
     arguments = [sys.executable, "-m", "actr3d.cli", *command(name, *words)]
     done = subprocess.run(arguments, capture_output=True, cwd=ROOT, env=environment, timeout=60, check=False)
     if done.returncode != 0 or done.stderr:
-        raise RuntimeError(f"models/{name}.py ended with {done.returncode}:\n{done.stderr.decode()}")
+        raise RuntimeError(f"{name} ended with {done.returncode}:\n{done.stderr.decode()}")
     return done.stdout
 
 

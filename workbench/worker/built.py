@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import random
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.picture import picture_of
+from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
@@ -63,8 +63,7 @@ class BuiltRun:
         """
         start = self._start
         limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
-        with limits, suppress(EndOfRun), BuiltOutput(limits) as output:
-            random.seed(limits.program_seed)
+        with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
             simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder))
             output.lead_to(simulation)
             self._simulation = simulation
@@ -258,6 +257,6 @@ def _finite(limit: float) -> float | None:
 def check(source: str, filename: str, folder: Path) -> dict[str, Any]:
     """Loads a model and builds what it describes with its defaults; runs nothing. Returns the values of its parameters."""
     limits = RunLimits(seed=0)
-    with limits, BuiltOutput(limits):
+    with limits, BuiltOutput():
         _, parameters = build(source, filename, {}, folder)
     return json.loads(to_json(parameters))

@@ -80,11 +80,11 @@ def _check_slot(production: Production, key: int | str) -> None:
 
 
 def slots_held(parts: Iterable[object]) -> set[Any]:
-    """Returns the slots of the chunks that buffers and memories hold now."""
+    """Returns the slots of the chunks that buffers and memories hold now, and of those that a library fills buffers with."""
     found: set[Any] = set()
     for part in parts:
         if isinstance(part, Buffer):
-            found.update(part.chunk or ())
+            found.update(part.chunk or (), part._slots)
         elif isinstance(part, Memory):
             for chunk in part.dm:
                 found.update(chunk)

@@ -53,7 +53,7 @@ class Request:
     named: Mapping[str, Any]
     place: str
     """`file:line` where the modeller asked, for error messages."""
-    port: BodyPort
+    port: Port
     reading: Reading | None = None
     """Where the answer goes; None where something is to be done and nothing answered."""
     to_buffer: bool = False
@@ -79,7 +79,60 @@ class Embodiment:
         mind.__dict__["_embodiment"] = self
 
 
-class BodyPort(Model):
+class Port(Model):
+    """A part of a mind that speaks to the body: it tells it what to do, and takes its answers in."""
+
+    def _tell(self, word: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
+        """Tells the body to do something, for the modeller's line at `place`, or for the one that is running."""
+        named = {} if named is None else named
+        embodiment = self._joined(word)
+        self._trace_request("set", word=word, **_given(values, named))
+        embodiment.outbox.append(Request(embodiment.body, word, values, named, place or place_of_caller(), self))
+
+    def _inquire(
+        self, word: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, place: str | None = None, **how: bool
+    ) -> Reading:
+        """Asks the body what it senses."""
+        embodiment = self._joined(word)
+        reading = Reading(word)
+        embodiment.outbox.append(Request(embodiment.body, word, values, options or {}, place or place_of_caller(), self, reading, **how))
+        return reading
+
+    def _joined(self, word: str) -> Embodiment:
+        """Returns the body that a word is for.
+
+        Raises:
+            SimulationError: If the agent has none, or does not live yet.
+        """
+        if not self._converted:
+            raise SimulationError(
+                f"'{word}' is said to a body before the agent lives; say it while its Simulation runs: in `init`, `start`, a production"
+            )
+        embodiment = self._find_embodiment()
+        if embodiment is None:
+            raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
+        return embodiment
+
+    def _find_embodiment(self) -> Embodiment | None:
+        """Returns what joins its mind to a body; None for a mind without."""
+        return next((part.__dict__["_embodiment"] for part in self._line() if "_embodiment" in part.__dict__), None)
+
+    def _take(self, request: Request, answer: Any) -> None:
+        """Takes the answer in, as an event of the mind, and wakes whoever waits for it."""
+        reading = request.reading
+        assert reading is not None
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
+        reading._value = answer
+        self._receive(request, answer)
+        self.sch.finish(reading)
+
+    def _receive(self, request: Request, answer: Any) -> None:
+        """Does with an answer what this part does with it; for subclasses."""
+
+
+class BodyPort(Port):
     """Carries a mind's commands to its body, and the body's answers back.
 
     `set(word, …)` tells the body what to do; `get(word, …)` asks it for what it senses, `request(word, …)` likewise, with
@@ -103,57 +156,41 @@ class BodyPort(Model):
         """Tells the body to do something: `set("walk", 1.2)`.
 
         Raises:
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
-        self._trace_request("set", word=word, **_given(values, named))
-        self._send(Request(self._joined().body, word, values, named, _place(), self))
+        self._tell(word, *values, named=named)
 
     def get(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
 
         Raises:
-            SimulationError: If the agent has no body.
+            SimulationError: If the agent has no body, or does not live yet.
         """
-        self._trace_request("get", word=word, **_given(values, options))
-        return self._ask(word, values, options, to_buffer=False)
+        return self._ask("get", word, values, options)
 
     def request(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body what it senses; the answer comes as a chunk: the word, then what was sensed, by name or in order.
 
         Raises:
-            SimulationError: If the agent has no body, or the port no buffer.
+            SimulationError: If the agent has no body, or does not live yet; or if the port has no buffer.
         """
+        self._joined(word)
         if self._buffer is None:
             raise SimulationError(f"port '{self._path}' has no buffer to put the answer to '{word}' into; give it one: BodyPort(buffer)")
-        self._trace_request("request", word=word, **_given(values, options))
-        self.error = False
-        return self._ask(word, values, options, to_buffer=True)
+        return self._ask("request", word, values, options)
 
-    def _ask(self, word: str, values: tuple[Any, ...], options: Mapping[str, Any], *, to_buffer: bool) -> Reading:
-        reading = Reading(word)
-        self._send(Request(self._joined().body, word, values, options, _place(), self, reading, to_buffer))
+    def _ask(self, call: str, word: str, values: tuple[Any, ...], options: Mapping[str, Any]) -> Reading:
+        self._joined(word)
+        self._trace_request(call, word=word, **_given(values, options))
+        if call == "request":
+            self.error = False
+        reading = self._inquire(word, values, options, to_buffer=call == "request")
         self._outstanding += 1
         self.busy = True
         return reading
 
-    def _send(self, request: Request) -> None:
-        self._joined().outbox.append(request)
-
-    def _joined(self) -> Embodiment:
-        for part in self._line():
-            embodiment = part.__dict__.get("_embodiment")
-            if embodiment is not None:
-                return embodiment
-        raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
-
-    def _take(self, request: Request, answer: Any) -> None:
-        """Takes the answer in, as an event of the mind."""
-        reading = request.reading
-        assert reading is not None
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
-        reading._value = answer
+    def _receive(self, request: Request, answer: Any) -> None:
+        """Puts an answer into the buffer, where that was asked."""
         self._outstanding -= 1
         if request.to_buffer:
             if answer is None:
@@ -163,7 +200,6 @@ class BodyPort(Model):
                 self._buffer.set(answer_slots(request.word, answer))
         if self._outstanding == 0:
             self.busy = False
-        self.sch.finish(reading)
 
 
 def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
@@ -171,7 +207,7 @@ def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
     return {**({"values": values} if values else {}), **({"named": named} if named else {})}
 
 
-def _place() -> str:
+def place_of_caller() -> str:
     """Returns where the innermost running line that is not the library's stands."""
     frame = sys._getframe(2)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_LIBRARY):

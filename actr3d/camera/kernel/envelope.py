@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.crossings import add_crossings, may_cover
-from actr3d.camera.kernel.extents import end_row, goes_on, without_sliver
+from actr3d.camera.kernel.extents import EDGES_AT_ONCE, end_row, goes_on, without_sliver
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, PIECE, SAME_DEPTH, Array, Record, Records
+from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, NUMBER, PIECE, SAME_DEPTH, Array, Record, Records
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 
 MOST_CUTS = 400
@@ -27,28 +27,37 @@ class Row(NamedTuple):
     """Where they begin."""
     active: Array
     """The numbers of those at hand."""
+    rivals: Array
+    """The numbers of those of them that may be nearest."""
     cuts: Array
     stack: Array
     """Stretches still to be looked at, `(low, high)`, the leftmost last."""
     work: Array
+    edges: Array
+    """Room for `finish`."""
     curve: Array
     """One piece."""
     places: Array
-    """Where the geoms' centres are, in the eye's frame."""
+    """Where the geoms' centres are, in the eye's frame; last the eye itself, for the end of its range."""
+    reaches: Array
+    """The radii of balls around these that hold all of the geoms."""
 
 
-def room_for(pieces: int, places: Array) -> Row:
+def room_for(pieces: int, places: Array, reaches: Array) -> Row:
     """Returns room for so many pieces."""
     return Row(
         pieces=np.zeros(pieces, PIECE),
-        order=np.zeros(pieces, np.int64),
+        order=np.zeros(pieces, NUMBER),
         starts=np.zeros(pieces),
-        active=np.zeros(pieces, np.int64),
+        active=np.zeros(pieces, NUMBER),
+        rivals=np.zeros(pieces, NUMBER),
         cuts=np.zeros(64),
         stack=np.zeros((MOST_CUTS, 2)),
         work=np.zeros((6, 5)),
+        edges=np.zeros((3, EDGES_AT_ONCE)),
         curve=np.zeros(1, PIECE),
         places=places,
+        reaches=reaches,
     )
 
 
@@ -70,19 +79,22 @@ def trace_row(v: float, optics: Record, row: Row, count: int, extents: Records, 
     sort_by_start(row.order, row.starts, row.pieces, count)
     while True:
         waiting, present = _bring_in(start, row, count, waiting, present)
-        end: float = row.starts[waiting] if waiting < count else math.inf
         if present == 0:
             if waiting == count:
                 return end_row(v, optics, row.pieces, extents, first, done)
-            start = end
+            start = row.starts[waiting]
             continue
-        for i in range(present):
-            end = min(end, row.pieces[row.active[i]].high)
-        done = _trace_stretch(start, end, optics, row, present, extents, first, done)
+        front, rivals, end = _front(row, present)
+        waiting, present, end = _pass_by(end, row, count, waiting, present, front)
+        if rivals == 1:
+            done = _tell(front, start, end, optics, row, rivals, extents, first, done)
+        else:
+            done = _trace_stretch(start, end, optics, row, rivals, extents, first, done)
         start, kept = end, zero()
         for i in range(present):
-            if row.pieces[row.active[i]].high > start + NEGLIGIBLE:
-                row.active[kept] = row.active[i]
+            number = row.active[i]
+            if row.pieces[number].high > start + NEGLIGIBLE:
+                row.active[kept] = number
                 kept += 1
         present = kept
 
@@ -95,9 +107,8 @@ def _bring_in(start: float, row: Row, count: int, waiting: int, present: int) ->
     """
     while waiting < count:
         number = row.order[waiting]
-        piece = row.pieces[number]
-        if not _hidden(piece, row, present):
-            if piece.low > start + NEGLIGIBLE:
+        if not _hidden(row.pieces[number], row, present):
+            if row.starts[waiting] > start + NEGLIGIBLE:
                 break
             row.active[present] = number
             present += 1
@@ -108,27 +119,67 @@ def _bring_in(start: float, row: Row, count: int, waiting: int, present: int) ->
 @compiled
 def _hidden(piece: Record, row: Row, present: int) -> bool:
     """Tells whether one of the pieces at hand is in front of all of a piece that begins now or later."""
+    high, ceiling = piece.high, piece.ceiling
     for i in range(present):
         other = row.pieces[row.active[i]]
-        if other.floor > piece.ceiling and other.high >= piece.high:
+        if other.floor > ceiling and other.high >= high:
             return True
     return False
 
 
 @compiled
-def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: int, extents: Records, first: int, done: int) -> int:
-    """Appends the extents of a stretch in which no piece begins or ends; divides it wherever the winner may change."""
+def _front(row: Row, present: int) -> tuple[int, int, float]:
+    """Finds the piece whose farthest point is nearest, and its rivals: all, itself too, that are not wholly behind it.
+
+    Returns the piece's number, how many rivals there are, and where the first of them ends.
+    """
+    front, rivals, end = row.active[0], zero(), math.inf
+    floor = row.pieces[front].floor
+    for i in range(1, present):
+        number = row.active[i]
+        if row.pieces[number].floor > floor:
+            front, floor = number, row.pieces[number].floor
+    for i in range(present):
+        number = row.active[i]
+        if row.pieces[number].ceiling >= floor:
+            row.rivals[rivals] = number
+            rivals += 1
+            end = min(end, row.pieces[number].high)
+    return front, rivals, end
+
+
+@compiled
+def _pass_by(end: float, row: Row, count: int, waiting: int, present: int, front: int) -> tuple[int, int, float]:
+    """Takes up the pieces that begin before a tangent wholly behind the front one, as far as they outlast it.
+
+    Returns how many of all pieces were taken up or passed over, how many are at hand, and where the next one begins, or the
+    tangent.
+    """
+    floor, high = row.pieces[front].floor, row.pieces[front].high
+    while waiting < count and row.starts[waiting] < end:
+        number = row.order[waiting]
+        if row.pieces[number].ceiling >= floor:
+            return waiting, present, row.starts[waiting]
+        if row.pieces[number].high > high:
+            row.active[present] = number
+            present += 1
+        waiting += 1
+    return waiting, present, end
+
+
+@compiled
+def _trace_stretch(low: float, high: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int) -> int:
+    """Appends the extents of a stretch in which no rival begins or ends; divides it wherever the winner may change."""
     row.stack[0, 0], row.stack[0, 1] = low, high
     waiting = 1
-    divisions = MOST_CUTS
+    divisions = MOST_CUTS if rivals > 2 else 1  # with two, the first cuts are all
     while waiting > 0:
         waiting -= 1
         low, high = row.stack[waiting, 0], row.stack[waiting, 1]
-        winner, alone = _winner(0.5 * (low + high), row, present)
-        object = row.pieces[winner].object
+        winner = _winner(0.5 * (low + high), row, rivals)
         number = zero()
-        if not alone and divisions > 0 and waiting + len(row.cuts) < MOST_CUTS:
-            number = _cuts(winner, low, high, row, present)
+        if divisions > 0 and waiting + len(row.cuts) < MOST_CUTS:
+            number = _cuts(winner, low, high, row, rivals)
         if number > 0:
             divisions -= number
             sort_values(row.cuts, number)
@@ -136,45 +187,42 @@ def _trace_stretch(low: float, high: float, optics: Record, row: Row, present: i
                 row.stack[waiting, 0] = row.cuts[i - 1] if i > 0 else low
                 row.stack[waiting, 1] = row.cuts[i] if i < number else high
                 waiting += 1
-        elif object != BACKGROUND:
-            done = without_sliver(optics, extents, first, done)
-            if not goes_on(object, low, optics, extents, first, done):
-                if done == len(extents):
-                    continue
-                extents[done].label = object
-                extents[done].x1, extents[done].a1 = low, winner if alone else _nearest_of(winner, low, row, present)
-                done += 1
-            extents[done - 1].x2, extents[done - 1].a2 = high, winner if alone else _nearest_of(winner, high, row, present)
+        else:
+            done = _tell(winner, low, high, optics, row, rivals, extents, first, done)
     return done
 
 
 @compiled
-def _winner(u: float, row: Row, present: int) -> tuple[int, bool]:
-    """Returns the number of the piece that is nearest at a tangent, and whether no other one comes near it anywhere.
+def _tell(winner: int, low: float, high: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int) -> int:
+    """Appends a stretch in which one piece is nearest, if its object is to be told, or lengthens the last extent by it."""
+    object = row.pieces[winner].object
+    if object == BACKGROUND:
+        return done
+    done = without_sliver(optics, extents, first, done)
+    if not goes_on(object, low, optics, extents, first, done):
+        if done == len(extents):
+            return done
+        extents[done].label = object
+        extents[done].x1, extents[done].a1 = low, winner if rivals == 1 else _nearest_of(winner, low, row, rivals)
+        done += 1
+    extents[done - 1].x2, extents[done - 1].a2 = high, winner if rivals == 1 else _nearest_of(winner, high, row, rivals)
+    return done
 
-    Of equals, it is that of the nearest geom.
-    """
-    winner, rivals = row.active[0], 0
-    for i in range(1, present):
-        if row.pieces[row.active[i]].floor > row.pieces[winner].floor:
-            winner = row.active[i]
-    floor = row.pieces[winner].floor
-    for i in range(present):
-        rivals += row.pieces[row.active[i]].ceiling >= floor
-    if rivals <= 1 and row.pieces[winner].ceiling >= floor:
-        return winner, True
+
+@compiled
+def _winner(u: float, row: Row, rivals: int) -> int:
+    """Returns the number of the rival that is nearest at a tangent; of equals, it is that of the nearest geom."""
+    winner = row.rivals[0]
     best = nearness(row.pieces[winner], u)
-    for i in range(present):
-        number = row.active[i]
+    for i in range(1, rivals):
+        number = row.rivals[i]
         piece = row.pieces[number]
-        if piece.ceiling < floor or number == winner:
-            continue
         w = nearness(piece, u)
         if w > best * (1.0 + SAME_DEPTH):
             winner, best = number, w
         elif w > best * (1.0 - SAME_DEPTH) and _goes_first(row.places, piece.geom, row.pieces[winner].geom):
             winner, best = number, max(w, best)
-    return winner, False
+    return winner
 
 
 @compiled
@@ -194,22 +242,32 @@ def _goes_first(places: Array, one: int, other: int) -> bool:
 
 
 @compiled
-def _cuts(winner: int, low: float, high: float, row: Row, present: int) -> int:
+def _cuts(winner: int, low: float, high: float, row: Row, rivals: int) -> int:
     """Finds where between two tangents others may come to lie in front of the winner; returns how many cuts there are."""
     best, number = row.pieces[winner], zero()
-    for i in range(present):
-        other = row.pieces[row.active[i]]
-        if other.object != best.object and number < 48 and may_cover(other, best, low, high):
+    for i in range(rivals):
+        other = row.pieces[row.rivals[i]]
+        if other.object == best.object or other.ceiling <= best.floor or not _may_meet(row, best.geom, other.geom):
+            continue
+        if number < 48 and may_cover(other, best, low, high):
             number = add_crossings(best, other, low + NEGLIGIBLE, high - NEGLIGIBLE, row.work, row.cuts, number)
     return number
 
 
 @compiled
-def _nearest_of(winner: int, u: float, row: Row, present: int) -> int:
+def _may_meet(row: Row, one: int, other: int) -> bool:
+    """Tells whether the balls around two geoms meet: things that are apart never cross."""
+    a, b, reach = row.places[one], row.places[other], row.reaches[one] + row.reaches[other]
+    x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return x * x + y * y + z * z <= reach * reach * (1.0 + SAME_DEPTH)
+
+
+@compiled
+def _nearest_of(winner: int, u: float, row: Row, rivals: int) -> int:
     """Returns the number of the piece that is nearest at a tangent, of those of the winner's object."""
     best, object = nearness(row.pieces[winner], u), row.pieces[winner].object
-    for i in range(present):
-        number = row.active[i]
+    for i in range(rivals):
+        number = row.rivals[i]
         other = row.pieces[number]
         if other.object == object and other.ceiling > best and nearness(other, u) > best:
             winner, best = number, nearness(other, u)

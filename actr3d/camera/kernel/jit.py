@@ -31,14 +31,15 @@ def kept(function: Callable[P, R]) -> Callable[P, R]:
         return _njit(**OPTIONS)(function)
 
 
-def sources_digest() -> int:
-    """Returns a digest of all files of this package.
+def sources_digest(*folders: Path) -> int:
+    """Returns a digest of all files of this package, and of other folders whose functions use it.
 
     Numba looks only at the file of the kept function itself, and would go on using old code of the others.
     """
     digest = sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(path.read_bytes())
+    for folder in (Path(__file__).parent, *folders):
+        for path in sorted(folder.glob("*.py")):
+            digest.update(path.read_bytes())
     return int(digest.hexdigest()[:15], 16)
 
 

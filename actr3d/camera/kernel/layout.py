@@ -25,6 +25,9 @@ UNSEEN: Final = -1
 BACKGROUND: Final = 0
 """The object of geoms that hide others and are not told."""
 
+NUMBER: Final = np.uint32
+"""What numbers pieces and the like: without a sign, so that no index has to be looked at whether it counts from the end."""
+
 NEGLIGIBLE: Final = 1e-11
 """Pieces and stretches whose tangents differ by less than this are left out."""
 SAME_DEPTH: Final = 1e-9

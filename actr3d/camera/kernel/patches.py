@@ -6,8 +6,11 @@ import math
 
 from actr3d.camera.kernel.jit import compiled, zero
 from actr3d.camera.kernel.layout import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
-from actr3d.camera.kernel.pieces import bound, nearness, sort_values
+from actr3d.camera.kernel.pieces import bound, nearness, sort_values, summit
 from actr3d.camera.kernel.roots import add_roots
+
+SEEN, PASSED_BY, IN_PARTS = 1, 0, -1
+"""Of a patch on a row: it is one piece, or none, or has to be cut."""
 
 
 @compiled
@@ -19,13 +22,92 @@ def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Re
     curve.object, curve.geom, curve.face = patch.object, patch.geom, -1
     if patch.even:
         curve.side, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
-        number = _cut_line(patch, v, optics, curve, cuts)
+        whole = _whole_line(patch, v, optics, curve, cuts)
     else:
         form = patch.form
         curve.side, curve.a = NEAR_SIDE, patch.a
         curve.b0, curve.b1 = patch.q[1] * v + patch.q[2], patch.q[0]
         curve.c0 = v * (form[1, 1] * v + 2.0 * form[1, 2]) + form[2, 2]
         curve.c1, curve.c2 = 2.0 * (form[0, 1] * v + form[0, 2]), form[0, 0]
+        whole = _whole_conic(patch, v, optics, curve, cuts)
+    if whole == SEEN:
+        pieces[count] = curve
+        return count + 1
+    return count if whole == PASSED_BY else _add_parts(patch, v, optics, curve, pieces, count, cuts)
+
+
+@compiled
+def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array) -> int:
+    """Tells whether all of a line or disc is seen, without a cut but for the ends of a disc and of the field of view."""
+    low, high = -optics.right, optics.right
+    if patch.slabs > 0 or (patch.radius > 0.0 and patch.ceiling > optics.nearest):
+        return IN_PARTS
+    if patch.radius > 0.0:
+        if _cut_disc(patch, v, line, cuts, zero()) < 2:
+            return PASSED_BY
+        low, high = max(low, min(cuts[0], cuts[1])), min(high, max(cuts[0], cuts[1]))
+    return _seen_between(low, high, optics, line)
+
+
+@compiled
+def _seen_between(low: float, high: float, optics: Record, line: Record) -> int:
+    """Tells whether a line is seen between two tangents, and sets its ends and bounds."""
+    if not high - low > NEGLIGIBLE:
+        return PASSED_BY
+    first, last = nearness(line, low), nearness(line, high)
+    floor, ceiling = min(first, last), max(first, last)
+    if ceiling <= 0.0 or floor > optics.nearest:
+        return PASSED_BY
+    if floor <= 0.0 or ceiling > optics.nearest:
+        return IN_PARTS
+    line.low, line.high, line.floor, line.ceiling = low, high, floor, ceiling
+    return SEEN
+
+
+@compiled
+def _whole_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
+    """Tells whether all of the near side of something round is seen, where that needs no cut, and sets its ends and bounds.
+
+    So it is with nearly all that is wholly in front of the eye; only where an end of a tube lies within its silhouette
+    must the curve be cut.
+    """
+    if patch.both or patch.ceiling > optics.nearest or not conic.a > 0.0 or not conic.b1 * conic.b1 < conic.a * conic.c2:
+        return IN_PARTS
+    if _cut_silhouette(conic, cuts, zero()) < 2:
+        return PASSED_BY
+    low, high = min(cuts[0], cuts[1]), max(cuts[0], cuts[1])
+    least = min(conic.b0 + conic.b1 * low, conic.b0 + conic.b1 * high)
+    if not least > 0.0:
+        return IN_PARTS
+    low, high = max(low, -optics.right), min(high, optics.right)
+    if not high - low > NEGLIGIBLE:
+        return PASSED_BY
+    conic.low, conic.high, conic.floor, conic.ceiling = low, high, least / conic.a, min(patch.ceiling, summit(conic))
+    return _within_slabs(patch, v, conic)
+
+
+@compiled
+def _within_slabs(patch: Record, v: float, conic: Record) -> int:
+    """Tells whether all of a piece lies within the slabs of its patch, by its bounds."""
+    whole = SEEN
+    for i in range(patch.slabs):
+        axis, low, high = patch.axes[i], patch.lows[i], patch.highs[i]
+        along = axis[1] * v + axis[2]
+        first, last = along + axis[0] * conic.low, along + axis[0] * conic.high
+        least, most = min(first, last), max(first, last)
+        if most < min(low * conic.floor, low * conic.ceiling) or least > max(high * conic.floor, high * conic.ceiling):
+            return PASSED_BY
+        if least < max(low * conic.floor, low * conic.ceiling) or most > min(high * conic.floor, high * conic.ceiling):
+            whole = IN_PARTS
+    return whole
+
+
+@compiled
+def _add_parts(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array) -> int:
+    """Appends what is seen of a curve between cuts; returns how many pieces there are now."""
+    if curve.side == LINE:
+        number = _cut_line(patch, v, optics, curve, cuts)
+    else:
         number = _cut_conic(patch, v, optics, curve, cuts)
         if number == 0 and curve.b1 * curve.b1 < curve.a * curve.c2:
             return count  # the row passes it by
@@ -49,21 +131,34 @@ def _cut_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array
         for limit in (patch.lows[i], patch.highs[i]):
             number = add_roots(0.0, 0.5 * (axis[0] - limit * c1), axis[1] * v + axis[2] - limit * c0, cuts, number)
     if patch.radius > 0.0:
-        x, y, z = patch.centre[0], patch.centre[1], patch.centre[2]
-        square = patch.radius * patch.radius
-        x0, y0, z0 = -x * c0, v - y * c0, 1.0 - z * c0
-        x1, y1, z1 = 1.0 - x * c1, -y * c1, -z * c1
-        a = x1 * x1 + y1 * y1 + z1 * z1 - square * c1 * c1
-        b = x0 * x1 + y0 * y1 + z0 * z1 - square * c0 * c1
-        number = add_roots(a, b, x0 * x0 + y0 * y0 + z0 * z0 - square * c0 * c0, cuts, number)
+        number = _cut_disc(patch, v, line, cuts, number)
     return number
+
+
+@compiled
+def _cut_disc(patch: Record, v: float, line: Record, cuts: Array, number: int) -> int:
+    """Finds where a line enters and leaves the ball of its patch; returns how many cuts there are now."""
+    x, y, z, c0, c1 = patch.centre[0], patch.centre[1], patch.centre[2], line.c0, line.c1
+    square = patch.radius * patch.radius
+    x0, y0, z0 = -x * c0, v - y * c0, 1.0 - z * c0
+    x1, y1, z1 = 1.0 - x * c1, -y * c1, -z * c1
+    a = x1 * x1 + y1 * y1 + z1 * z1 - square * c1 * c1
+    b = x0 * x1 + y0 * y1 + z0 * z1 - square * c0 * c1
+    return add_roots(a, b, x0 * x0 + y0 * y0 + z0 * z0 - square * c0 * c0, cuts, number)
+
+
+@compiled
+def _cut_silhouette(conic: Record, cuts: Array, number: int) -> int:
+    """Finds where a conic turns back; returns how many cuts there are now."""
+    a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
+    return add_roots(b1 * b1 - a * c2, b0 * b1 - 0.5 * a * c1, b0 * b0 - a * c0, cuts, number)
 
 
 @compiled
 def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
     """Finds where a conic turns back, and where it crosses the near limit and its slab; returns how many cuts there are."""
     a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
-    number = add_roots(b1 * b1 - a * c2, b0 * b1 - 0.5 * a * c1, b0 * b0 - a * c0, cuts, zero())
+    number = _cut_silhouette(conic, cuts, zero())
     if number == 0 and b1 * b1 < a * c2:
         return 0
     if patch.ceiling > optics.nearest:

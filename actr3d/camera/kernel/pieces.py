@@ -31,13 +31,13 @@ def bound(piece: Record, floor: float, ceiling: float) -> None:
     first, last = nearness(piece, piece.low), nearness(piece, piece.high)
     piece.floor, piece.ceiling = min(first, last), max(first, last)
     if piece.side == NEAR_SIDE:
-        piece.ceiling = min(ceiling, _summit(piece))
+        piece.ceiling = min(ceiling, summit(piece))
     elif piece.side != LINE:
         piece.floor = floor
 
 
 @compiled
-def _summit(piece: Record) -> float:
+def summit(piece: Record) -> float:
     """Returns the nearness of the nearest point of a conic on its row, where u is a double root of its equation [1/m]."""
     a = piece.a * piece.c2 - piece.b1 * piece.b1
     b = piece.c2 * piece.b0 - 0.5 * piece.b1 * piece.c1

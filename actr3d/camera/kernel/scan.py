@@ -8,6 +8,7 @@ from functools import cache
 from typing import TypeAlias
 
 from actr3d.camera.kernel.envelope import Row, trace_row
+from actr3d.camera.kernel.extents import finish
 from actr3d.camera.kernel.faces import add_face
 from actr3d.camera.kernel.jit import compiled, kept, sources_digest, zero
 from actr3d.camera.kernel.layout import BACKGROUND, FAR_SIDE, Array, Record, Records
@@ -78,11 +79,12 @@ def _look(
         rounds, faces = bring_up(scene.round, number, rounds), bring_up(scene.faces, number, faces)
         pieces = _add_patches(v, optics, scene, rounds, row)
         pieces, aside = _add_faces(v, optics, topology, scene, faces, row, pieces)
-        pieces = _add_range(v, optics, row.pieces, pieces)
+        pieces = _add_range(v, optics, row, pieces)
         first = done
         done = trace_row(v, optics, row, pieces, extents, first)
-        _label(number, optics, labels, extents, first, done)
+        _label(number, labels, extents, first, done)
         _order_faces(row, pieces, scene, aside)
+    finish(optics, extents, done, row.edges)
     return done
 
 
@@ -127,13 +129,13 @@ def _order_faces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
 
 
 @compiled
-def _add_range(v: float, optics: Record, pieces: Records, count: int) -> int:
+def _add_range(v: float, optics: Record, row: Row, count: int) -> int:
     """Appends the end of what the eye reaches, a ball seen from inside; returns how many pieces there are now."""
     if not math.isfinite(optics.range):
         return count
-    piece = pieces[count]
-    piece.low, piece.high, piece.side, piece.object, piece.geom = -optics.right, optics.right, FAR_SIDE, BACKGROUND, 0
-    piece.face = -1
+    piece = row.pieces[count]
+    piece.low, piece.high, piece.side = -optics.right, optics.right, FAR_SIDE
+    piece.object, piece.geom, piece.face = BACKGROUND, len(row.places) - 1, -1
     square = optics.range * optics.range
     piece.a, piece.b0, piece.b1 = -1.0, 0.0, 0.0
     piece.c0, piece.c1, piece.c2 = (1.0 + v * v) / square, 0.0, 1.0 / square
@@ -142,7 +144,7 @@ def _add_range(v: float, optics: Record, pieces: Records, count: int) -> int:
 
 
 @compiled
-def _label(number: int, optics: Record, labels: Array, extents: Records, first: int, done: int) -> None:
+def _label(number: int, labels: Array, extents: Records, first: int, done: int) -> None:
     """Writes row and labels; an object that was never seen before gets the next label."""
     for i in range(first, done):
         extent = extents[i]
@@ -150,4 +152,4 @@ def _label(number: int, optics: Record, labels: Array, extents: Records, first: 
             labels[0] += 1
             labels[extent.label] = labels[0]
         extent.label = labels[extent.label]
-        extent.row, extent.y = number, (number + 0.5) / optics.rows
+        extent.row = number

@@ -9,7 +9,7 @@ import numpy as np
 
 from actr3d.camera.kernel.faces import face_rows
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
+from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, NUMBER, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
 from actr3d.camera.kernel.occluders import LARGE, MOST_OCCLUDERS, hidden, offer
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
 from actr3d.camera.kernel.screen import in_view
@@ -56,7 +56,9 @@ class Scene(NamedTuple):
     """Room for what is in view at one moment."""
 
     places: Array
-    """The geoms' centres in the eye's frame, `(n, 3)` [m]."""
+    """The geoms' centres in the eye's frame, and the eye itself, `(n + 1, 3)` [m]."""
+    reaches: Array
+    """The radii of balls around these that hold all of the geoms, `(n + 1,)` [m]."""
     turn: Array
     """The axes of the geom at hand, as columns."""
     occluders: Records
@@ -77,7 +79,8 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
     """Returns room for all that a model's geoms may be."""
     geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
     return Scene(
-        places=np.zeros((geoms, 3)),
+        places=np.zeros((geoms + 1, 3)),
+        reaches=np.full(geoms + 1, np.inf),
         turn=np.zeros((3, 3)),
         occluders=np.zeros(MOST_OCCLUDERS, OCCLUDER),
         patches=np.zeros(3 * geoms + 1, PATCH),  # a cylinder or capsule has three
@@ -85,7 +88,7 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
         corners=np.zeros((corners, 3)),
         round=room_for_waiting(3 * geoms + 1, rows),
         faces=room_for_waiting(faces, rows),
-        aside=np.zeros(faces, np.int64),
+        aside=np.zeros(faces, NUMBER),
     )
 
 
@@ -113,6 +116,7 @@ def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Top
             if not _set_pose(eye, place[geom], turn[geom], scene.places[geom], scene.turn):
                 return -1 - geom
             reach = _reach(geom, geoms, topology)
+            scene.reaches[geom] = reach
             if not in_view(scene.places[geom], reach, optics) or hidden(scene.places[geom], reach, scene.occluders, occluders):
                 continue
             if topology.kind[geom] in (BOX, MESH, HFIELD):

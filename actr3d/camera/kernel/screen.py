@@ -20,13 +20,18 @@ def screen_part(tangent: float, most: float, e2: float) -> float:
 
 
 @compiled
+def tangent_at(part: float, most: float, e2: float) -> float:
+    """Returns the tangent at a part of half the screen; what `screen_part` makes undone."""
+    if e2 == 0.0:
+        return part * most
+    span = math.log1p(math.atan(most) / e2)
+    return math.copysign(math.tan(e2 * math.expm1(abs(part) * span)), part)
+
+
+@compiled
 def row_tangent(row: float, optics: Record) -> float:
     """Returns the tangent upwards of the middle of a scan line."""
-    part = 1.0 - (2.0 * row + 1.0) / optics.rows
-    if optics.e2 == 0.0:
-        return part * optics.top
-    span = math.log1p(math.atan(optics.top) / optics.e2)
-    return math.copysign(math.tan(optics.e2 * math.expm1(abs(part) * span)), part)
+    return tangent_at(1.0 - (2.0 * row + 1.0) / optics.rows, optics.top, optics.e2)
 
 
 @compiled

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import Array
+from actr3d.camera.kernel.layout import NUMBER, Array
 
 
 class Waiting(NamedTuple):
@@ -29,7 +29,7 @@ def room_for_waiting(things: int, rows: int) -> Waiting:
         starting=np.zeros(rows, np.int64),
         following=np.zeros(things, np.int64),
         ending=np.zeros(things, np.int64),
-        present=np.zeros(things, np.int64),
+        present=np.zeros(things, NUMBER),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from mujoco import MjSpec
 
 from actr3d.errors import WorldError
-from actr3d.world.anatomy import Anatomy
+from actr3d.world.anatomy import Anatomy, NamedMovement
 from actr3d.world.imported import Imported
 
 AHEAD = (0, -1, 0, 0, 0, 1)
@@ -22,6 +22,9 @@ class ImportedBody(Imported):
     that is named as its eye, with z up.
     """
 
+    movements: tuple[NamedMovement, ...] = ()
+    """Movements of it that have names, for a motor module's `move`."""
+
     def __post_init__(self) -> None:
         """Checks the fields and reads the files, as `Imported` does.
 
@@ -35,7 +38,7 @@ class ImportedBody(Imported):
     def anatomy(self) -> Anatomy:
         """Returns what a `Body` needs to know of it."""
         eye = None if self.eye is None else self.prefix + self.eye
-        return Anatomy(root=self.prefix + self._root(), prefix=self.prefix, eye=eye)
+        return Anatomy(root=self.prefix + self._root(), prefix=self.prefix, eye=eye, movements=self.movements)
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Attaches it, and puts a camera where its eye is."""

@@ -33,6 +33,12 @@ STRENGTH = {"pelvis": 200.0, "torso": 150.0, "head": 25.0, "eye": 1.0, "shoulder
 (hip 200, trunk rotation 100 to 150, neck 20 to 30, shoulder 50 to 80)."""
 
 
+FASTEST_WALK, FASTEST_TURN, FASTEST_JOINT = 12.5, 12.5, 16.0
+"""The fastest that a person can walk or run [m/s], turn [rad/s] and turn a joint [rad/s].
+Source: the fastest sprint, 12.4 m/s (Bolt, 2009); pirouettes of two turns a second; saccades of the eye up to 900 degrees a second
+(Bahill, Clark & Stark, 1975), which the fastest trunks of golfers and pitchers hardly exceed."""
+
+
 def limits_of(segment: str) -> tuple[Range, Range, Range]:
     """Returns the ranges of yaw, pitch and roll of a segment [rad]; the right side mirrors the left."""
     if not segment.startswith("right_"):

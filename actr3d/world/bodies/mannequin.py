@@ -12,7 +12,9 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.bodies.limbs import HINGED, HINGES, SHOULDER, SIDES, UPPER_ARM, Limbs
+from actr3d.world.bodies.limits import FASTEST_JOINT, FASTEST_TURN, FASTEST_WALK
 from actr3d.world.bodies.load import Load
+from actr3d.world.bodies.movements import MOVEMENTS
 from actr3d.world.parts import Colour, Length, Name
 
 
@@ -123,7 +125,9 @@ class Mannequin(Configuration):
             base="legs",
             eye=f"{prefix}eye",
             noise=self.noise,
+            fastest=(FASTEST_WALK, FASTEST_TURN, FASTEST_JOINT),
             push=push,
             servos=push + joints,
+            movements=MOVEMENTS,
             hands=tuple(f"{prefix}{side}_hand" for side in SIDES),
         )

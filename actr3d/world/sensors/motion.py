@@ -16,6 +16,7 @@ from mujoco import mjtObj
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
+from actr3d.world.joints import AT_LIMIT
 from actr3d.world.sensors.registry import SENSORS, sensor
 from actr3d.world.words import adder, known
 
@@ -65,13 +66,13 @@ class JointReading:
     """The limit that it has reached."""
 
 
-AT_LIMIT = 2e-3
-"""How near its limit a joint has reached it [rad]: about a tenth of a degree, what a pressed limit gives way. Ours."""
-
-
 @sensor
 def pose(body: Body, part: str | None = None) -> Pose:
-    """Senses where a part is; the base unless one is named."""
+    """Senses where a part is [m] and how it is turned [rad]; the base unless one is named.
+
+    Raises:
+        WorldError: If it has no such part.
+    """
     body.world.refresh()
     number = _part(body, part)
     data: Any = body.world.mj_data
@@ -84,7 +85,11 @@ def pose(body: Body, part: str | None = None) -> Pose:
 
 @sensor
 def velocity(body: Body, part: str | None = None, frame: Literal["part", "world"] = "part") -> Velocity:
-    """Senses how fast a part moves, the base unless one is named, along its own axes or the world's."""
+    """Senses how fast a part moves, the base unless one is named, along its own axes or the world's [m/s] [rad/s].
+
+    Raises:
+        WorldError: If it has no such part, or the frame is neither.
+    """
     if frame not in ("part", "world"):
         raise WorldError(f"velocity: frame must be 'part' or 'world' (got {frame!r})")
     body.world.refresh()
@@ -94,7 +99,11 @@ def velocity(body: Body, part: str | None = None, frame: Literal["part", "world"
 
 @sensor
 def gyroscope(body: Body, part: str | None = None) -> Vector:
-    """Senses how fast a part turns about its own axes [rad/s]: the head unless one is named, else the base."""
+    """Senses how fast a part turns about its own axes [rad/s]: the head unless one is named, else the base.
+
+    Raises:
+        WorldError: If it has no such part.
+    """
     body.world.refresh()
     return _velocity(body, _head(body, part), local=True)[0]
 
@@ -104,6 +113,9 @@ def accelerometer(body: Body, part: str | None = None) -> Vector:
     """Senses the acceleration of a part's origin against free fall, along its own axes [m/s^2].
 
     The part is the head unless one is named, or the base without a head. At rest it says about 9.81 upwards.
+
+    Raises:
+        WorldError: If it has no such part.
     """
     world = body.world
     world.solve()
@@ -120,7 +132,7 @@ def accelerometer(body: Body, part: str | None = None) -> Vector:
 
 @sensor
 def joints(body: Body) -> dict[str, JointReading]:
-    """Senses all joints."""
+    """Senses where all joints are [rad], how fast they turn [rad/s], and the limits that they have reached, by name."""
     data = body.world.mj_data
     positions, velocities = data.qpos.tolist(), data.qvel.tolist()
     readings: dict[str, JointReading] = {}
@@ -133,7 +145,7 @@ def joints(body: Body) -> dict[str, JointReading]:
 
 @adder(SENSORS, lambda body: bool(body.hands))
 def grasp(body: Body) -> dict[str, str | None]:
-    """Senses what each hand holds."""
+    """Senses what each hand holds: an object's name, or None."""
     model = body.world.mj_model
     return {side: None if hand.held is None else str(model.body(hand.held.object).name) for side, hand in body.hands.items()}
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
 from actr3d.world.sensors.registry import SENSORS
-from actr3d.world.words import adder, number
+from actr3d.world.words import adder, whole
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
@@ -60,18 +60,26 @@ _sees = adder(SENSORS, lambda body: body.eye is not None)
 
 @_sees
 def image(body: Body, width: int = 320, height: int = 240) -> Picture:
-    """Senses a colour picture from the eye."""
+    """Senses a colour picture from the eye, so many pixels wide and high.
+
+    Raises:
+        WorldError: If a size is not a whole number of pixels in 1 to 4096, or EGL cannot be used.
+    """
     return _picture(body, "image", width, height)
 
 
 @_sees
 def depth(body: Body, width: int = 320, height: int = 240) -> Picture:
-    """Senses a picture of distances from the eye."""
+    """Senses a picture of distances from the eye [m], so many pixels wide and high.
+
+    Raises:
+        WorldError: If a size is not a whole number of pixels in 1 to 4096, or EGL cannot be used.
+    """
     return _picture(body, "depth", width, height)
 
 
 def _picture(body: Body, kind: Literal["image", "depth"], width: int, height: int) -> Picture:
-    width, height = (int(number(n, f"{kind}: {what}", 1, MOST)) for n, what in ((width, "width"), (height, "height")))
+    width, height = (whole(n, f"{kind}: {what}", 1, MOST) for n, what in ((width, "width"), (height, "height")))
     body.world.refresh()
     pixels = _drawing(body.world).draw(body.eye, kind, width, height)
     return Picture(kind=kind, width=width, height=height, pixels=pixels.tobytes())

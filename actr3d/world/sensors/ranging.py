@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from actr3d.world.frames import frame_of
 from actr3d.world.sensors.registry import sensor
-from actr3d.world.words import number
+from actr3d.world.words import number, whole
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
@@ -44,6 +44,9 @@ def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: f
         elevation: Of the direction, above straight ahead [rad].
         reach: How far it reaches [m].
         at: The part, site or frame where it sits and whose x points ahead; the eye unless one is named, else the base.
+
+    Raises:
+        WorldError: If a value is not a number, the reach is negative, or there is no such frame.
     """
     angle, elevation = number(angle, "rangefinder: angle"), number(elevation, "rangefinder: elevation")
     return _cast(body, at, np.array([angle]), elevation, number(reach, "rangefinder: reach", 0))[0]
@@ -56,8 +59,11 @@ def laser(
     """Senses distances [m] in a fan of rays from left to right, `width` [rad] wide; None where nothing is within reach.
 
     The other arguments are those of the rangefinder.
+
+    Raises:
+        WorldError: If `rays` is not a whole number in 1 to 100,000, `width` not in 0 to 2 pi, or as for the rangefinder.
     """
-    count = int(number(rays, "laser: rays", 1, 100_000))
+    count = whole(rays, "laser: rays", 1, 100_000)
     half = number(width, "laser: width", 0, 2 * math.pi) / 2
     angles = np.linspace(half, -half, count) if count > 1 else np.zeros(1)
     return _cast(body, at, angles, number(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
@@ -65,7 +71,11 @@ def laser(
 
 @sensor
 def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
-    """Senses what is nearest to the skin, on any side within reach [m]; the ground does not count."""
+    """Senses what is nearest to the skin, on any side within reach [m]; the ground does not count.
+
+    Raises:
+        WorldError: If the reach is not a number from 0 on.
+    """
     reach = number(reach, "proximity: reach", 0)
     body.world.refresh()
     model, data = body.world.mj_model, body.world.mj_data

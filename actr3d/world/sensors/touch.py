@@ -20,7 +20,6 @@ from actr3d.world.sensors.registry import sensor
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
-    from actr3d.world.world import World
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +36,7 @@ class Touch:
 
 @sensor
 def contacts(body: Body) -> tuple[Touch, ...]:
-    """Senses what touches the skin, in the order of names: the hardest moments of the last tick."""
+    """Senses what touches the skin and how hard [N], in the order of names: the hardest moments of the last tick."""
     if body.touched is None:
         body.touched = present(body)
     return body.touched
@@ -46,27 +45,29 @@ def contacts(body: Body) -> tuple[Touch, ...]:
 def present(body: Body) -> tuple[Touch, ...]:
     """Returns what touches the skin in the present state, in the order of names. For observers: it starts no watch."""
     body.world.solve()
-    return _touches(body)
+    return last_felt(body)
 
 
-def step_and_feel(world: World, bodies: Iterable[Body], steps: int) -> None:
-    """Advances the physics by single steps, and gives each of some bodies the hardest moments of all its touches."""
-    data = world.mj_data
+def step_and_feel(steps: Iterable[None], bodies: Iterable[Body]) -> None:
+    """Takes single steps of the physics, and gives each of some bodies the hardest moments of all its touches.
+
+    Args:
+        steps: Takes the next step whenever it is asked for the next item.
+        bodies: Those that feel, all of one world.
+    """
     felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
-    for _ in range(steps):
-        mujoco.mj_step(world.mj_model, data)
-        if data.ncon:
-            for body, hardest in felt:
-                for touch in _touches(body):
-                    known = hardest.get((touch.part, touch.other))
-                    if known is None or touch.force > known.force:
-                        hardest[touch.part, touch.other] = touch
+    for _ in steps:
+        for body, hardest in felt:
+            for touch in last_felt(body):
+                known = hardest.get((touch.part, touch.other))
+                if known is None or touch.force > known.force:
+                    hardest[touch.part, touch.other] = touch
     for body, hardest in felt:
         body.touched = tuple(touch for _, touch in sorted(hardest.items()))
 
 
-def _touches(body: Body) -> tuple[Touch, ...]:
-    """Returns the touches that the solver has last found."""
+def last_felt(body: Body) -> tuple[Touch, ...]:
+    """Returns the touches that the solver has last found, in the order of names. For observers of single steps."""
     model, data = body.world.mj_model, body.world.mj_data
     if data.ncon == 0:
         return ()

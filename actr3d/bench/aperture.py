@@ -1,0 +1,100 @@
+"""`actr3d bench aperture`: the walker's replication beside the original's means, its human variant beside what people do."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections import defaultdict
+from dataclasses import asdict, replace
+from statistics import mean
+from typing import Any
+
+from actr3d.bench.constraints import Constraint, Findings, turning_point
+from actr3d.bench.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
+
+TRIALS = 30
+"""How many trials a cell unless told otherwise. Source: as many as each of the original's agents (human-data)."""
+AIM, BAR = 2.0, 4.0
+"""What root mean square difference from the original's means we aim at, and what is the most [degrees]."""
+JUDGED = tuple(n / 100 for n in range(100, 133, 2))
+"""At which ratios of aperture to shoulders it is asked whether it can pass."""
+
+
+def cells(outcomes: list[Outcome]) -> dict[tuple[str, str, float], float]:
+    """Returns the mean logged angle of each cell [degrees]; one who did not reach the wall counts with nothing."""
+    found: defaultdict[tuple[str, str, float], list[float]] = defaultdict(list)
+    for outcome in outcomes:
+        if outcome.result.logged_angle_deg is not None:
+            found[outcome.trial.group, outcome.trial.condition, outcome.trial.aperture].append(outcome.result.logged_angle_deg)
+    return {key: mean(angles) for key, angles in found.items()}
+
+
+def root_mean_square(found: dict[Any, float], original: dict[Any, float]) -> float:
+    """Returns by how much the cells differ [degrees]; infinite where one is missing."""
+    return math.sqrt(mean((found.get(key, math.inf) - angle) ** 2 for key, angle in original.items()))
+
+
+def judgements(trials: int) -> list[Trial]:
+    """Returns trials of the human variant in which only what it judges counts."""
+    agents = [replace(trial, aperture=0.0) for trial in experiment("human", min(trials, 10), [0.0])]
+    return [replace(trial, aperture=ratio * trial.shoulders) for trial in agents for ratio in JUDGED]
+
+
+def measure(trials: int) -> dict[str, Any]:
+    """Runs everything; returns plain values."""
+    start = time.perf_counter()
+    replication, human = (run_trials(experiment(variant, trials)) for variant in ("replication", "human"))
+    judged = run_trials(judgements(trials), judging=True)
+    spent = time.perf_counter() - start
+    boundary = turning_point((outcome.trial.ratio, "as it is" not in outcome.said) for outcome in judged)
+    original, found = original_means(), cells(replication)
+    findings = Findings(human)
+    return {
+        "trials": trials,
+        "cells": [
+            {"group": g, "condition": c, "aperture": a, "angle": round(found.get((g, c, a), math.nan), 2), "original": original[g, c, a]}
+            for g, c, a in original
+        ],
+        "rmse": round(root_mean_square(found, original), 3),
+        "human": [
+            {"group": g, "condition": c, "aperture": a, "angle": round(findings.mean(g, c, a), 2)}
+            for g in GROUPS
+            for c in CONDITIONS
+            for a in APERTURES
+        ],
+        "constraints": [asdict(constraint) for constraint in findings.all(boundary)],
+        "ms_a_trial": round(1000 * mean(outcome.cost for outcome in (*replication, *human)), 1),
+        "simulated_s_a_trial": round(mean(outcome.result.time_s for outcome in (*replication, *human)), 2),
+        "took_s": round(spent, 1),
+    }
+
+
+def _table(title: str, rows: list[dict[str, Any]], beside: str | None = None) -> list[str]:
+    """Returns the lines of a table: a row for each group and condition, a column for each aperture."""
+    lines = [title, " " * 14 + "".join(f"{100 * aperture:>14.0f}" for aperture in APERTURES)]
+    for group in GROUPS:
+        for condition in CONDITIONS:
+            of = sorted((row for row in rows if (row["group"], row["condition"]) == (group, condition)), key=lambda row: row["aperture"])
+            texts = [f"{row['angle']:.1f}" + (f" ({row[beside]:.1f})" if beside else "") for row in of]
+            lines.append(f"  {group:<6}{condition:<6}" + "".join(f"{text:>14}" for text in texts))
+    return lines
+
+
+def main(*, json_output: bool, trials: int | None = None) -> int:
+    """Measures and prints; returns the exit code: 0 where the bar and all constraints are met."""
+    measured = measure(trials or TRIALS)
+    constraints = [Constraint(**constraint) for constraint in measured["constraints"]]
+    good = measured["rmse"] <= BAR and all(constraint.met for constraint in constraints)
+    if json_output:
+        print(json.dumps(measured))
+        return 0 if good else 1
+    print("\n".join(_table("replication: angle at the wall [degrees], mean (original's), by aperture [cm]", measured["cells"], "original")))
+    holds = "holds" if measured["rmse"] <= BAR else "MISSED"
+    print(f"{holds}  root mean square difference {measured['rmse']:.2f} degrees (at most {BAR:g}; we aim at {AIM:g})\n")
+    print("\n".join(_table("human: angle at the wall [degrees]", measured["human"])))
+    for constraint in constraints:
+        print(f"{'met    ' if constraint.met else 'NOT MET'}  {constraint.number}  {constraint.says}: {constraint.found}")
+    print(f"\n{measured['trials']} trials a cell; a trial takes {measured['ms_a_trial']:.0f} ms of one processor for", end=" ")
+    print(f"{measured['simulated_s_a_trial']:.1f} s simulated; all took {measured['took_s']:.0f} s")
+    return 0 if good else 1

@@ -1,0 +1,142 @@
+"""Trials of the aperture experiment: the walker model, run many times, by as many processes as there are processors."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import statistics
+import time
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import actr3d
+from actr3d.actr.limits import RunLimits
+from actr3d.actr.reading import read_source
+from actr3d.running.building import Blueprint
+from actr3d.simulation import PassageResult
+
+GROUPS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
+"""The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
+ALIKE = 0.007
+"""The standard deviation of the replication's shoulder widths, in both groups [m]. Source: the original's small agents differ by 0.5
+degrees at 45 cm and 1.2 at 50 (its own trials); agents 2 cm apart would turn by either 18 or 46 degrees there."""
+CONDITIONS = ("normal", "fast")
+APERTURES = tuple(n / 100 for n in range(40, 75, 5))
+"""[m]. Source: as in the original model's trials (human-data)."""
+AGENTS = 5
+"""In each group. Source: Warren & Whang (1987)."""
+LONGEST = 30.0
+"""No trial takes longer than this [s of simulated time]."""
+_SPREAD = tuple(statistics.NormalDist().inv_cdf((n + 0.5) / AGENTS) for n in range(AGENTS))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """One run of the model."""
+
+    variant: str
+    group: str
+    condition: str
+    aperture: float
+    """[m]"""
+    agent: int
+    """Which of the group, from 0."""
+    number: int
+    """Which trial of this agent here, from 0."""
+
+    @property
+    def shoulders(self) -> float:
+        """How wide the agent's shoulders are [m]: the groups' agents have their mean and standard deviation."""
+        mean, sd = GROUPS[self.group]
+        if self.variant == "replication":
+            sd = ALIKE
+        return round(mean + sd * _SPREAD[self.agent] / statistics.stdev(_SPREAD), 4)
+
+    @property
+    def ratio(self) -> float:
+        """The aperture over the shoulders."""
+        return self.aperture / self.shoulders
+
+    @property
+    def seed(self) -> str:
+        """What its random choices come from."""
+        return f"{self.variant} {self.group} {self.condition} {self.aperture:g} {self.agent} {self.number}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What came of a trial."""
+
+    trial: Trial
+    result: PassageResult
+    said: str
+    """What the model printed."""
+    cost: float
+    """Processor time [s]."""
+
+
+def model_file() -> Path:
+    """Returns where the model is: beside the library in a copy of the repository, within it where it is installed."""
+    library = Path(actr3d.__file__).parent
+    installed = library / "models" / "aperture_passage.py"
+    return installed if installed.exists() else library.parent / "models" / "aperture_passage.py"
+
+
+@cache
+def _blueprint() -> Blueprint:
+    path = model_file()
+    return Blueprint(read_source(path), str(path), path.parent)
+
+
+def run_trial(trial: Trial, *, judging: bool = False) -> Outcome:
+    """Runs one trial.
+
+    Args:
+        trial: Which.
+        judging: Whether to end it as soon as the model has said whether it can pass.
+    """
+    blueprint = _blueprint()
+    start = time.process_time()
+    settings = {"variant": trial.variant, "group": trial.group, "condition": trial.condition}
+    with redirect_stdout(io.StringIO()) as said, RunLimits(seed=trial.seed):
+        simulation, _ = blueprint.build({**settings, "aperture": trial.aperture, "shoulder_width": trial.shoulders})
+        simulation.run(LONGEST, until=(lambda _: "pass" in said.getvalue()) if judging else None)
+    return Outcome(trial=trial, result=simulation.result(), said=said.getvalue(), cost=time.process_time() - start)
+
+
+def run_trials(trials: Sequence[Trial], *, judging: bool = False) -> list[Outcome]:
+    """Runs trials, one at a time on each processor, and returns their outcomes in the same order.
+
+    Args:
+        trials: Which.
+        judging: Whether to end each as soon as the model has said whether it can pass.
+    """
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(partial(run_trial, judging=judging), trials, chunksize=4))
+
+
+def experiment(variant: str, trials: int, apertures: Iterable[float] = APERTURES) -> list[Trial]:
+    """Returns all trials of a variant: both groups and conditions, and at each aperture so many trials, shared by the agents."""
+    return [
+        Trial(variant=variant, group=group, condition=condition, aperture=aperture, agent=n % AGENTS, number=n // AGENTS)
+        for group in GROUPS
+        for condition in CONDITIONS
+        for aperture in apertures
+        for n in range(trials)
+    ]
+
+
+def original_means() -> dict[tuple[str, str, float], float]:
+    """Returns the original ACT-R 3D's mean angles [degrees] by group, condition and aperture [m].
+
+    Source: its own trials, 150 a cell (human-data).
+    """
+    with (Path(__file__).parent / "data" / "original_aperture_means.csv").open(encoding="utf-8") as file:
+        rows: list[Any] = list(csv.DictReader(file))
+    return {(row["group"], row["speed"], int(row["A"]) / 100): float(row["mean_deg"]) for row in rows}

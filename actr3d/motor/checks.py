@@ -1,0 +1,35 @@
+"""Says which productions ask a motor module for what it does not have, once it knows its body; it only warns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from weakref import WeakSet
+
+from actr3d.actr.production_system import ProductionSystem
+from actr3d.errors import did_you_mean
+from actr3d.saying import warn_at
+
+if TYPE_CHECKING:
+    from actr3d.motor.muscles import Muscles
+
+_CHECKED: WeakSet[type] = WeakSet()
+
+
+def check_patterns(motor: Muscles) -> None:
+    """Warns, once for each class of agent, of patterns that name a muscle group, joint or state that there is not."""
+    known = [name for name in motor.__dict__ if name[0] != "_"]
+    *_, top = motor._line()
+    for system in top._tree():
+        if not isinstance(system, ProductionSystem) or type(system) in _CHECKED:
+            continue
+        of_motor = [production for production in system._productions if any(target is motor for target in production.context.values())]
+        if of_motor:
+            _CHECKED.add(type(system))
+        for production in of_motor:
+            for condition in production.conditions:
+                key = condition.key
+                if not isinstance(key, str) or key[:1] == "?" or condition.op in ("empty", "call"):
+                    continue
+                if production.context[condition.name or "self"] is motor and key.partition(".")[0] not in known:
+                    what = f"'{condition.name}' has no attribute '{key}'{did_you_mean(key, known)}"
+                    warn_at(f"production '{production.name}' can never match: {what}", production.original_func)

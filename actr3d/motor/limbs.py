@@ -1,0 +1,195 @@
+"""The body as its mind knows it: parts, what they can do, how they stand, and how far they have ever been turned."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from math import radians
+
+from actr3d.errors import WorldError
+from actr3d.world.anatomy import NamedMovement
+from actr3d.world.sensors.anatomy import BodyPlan, JointPlan
+from actr3d.world.words import known
+
+BASE_GROUP = "legs"
+"""The muscle group that walks and turns the whole body, whatever its base is called."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Freedom:
+    """One degree of freedom, as it is felt now. Radians, or metres where it slides."""
+
+    name: str
+    """Of the joint: `torso_yaw`."""
+    axis: str
+    """`yaw`, `pitch` or `roll` for what turns, `x`, `y` or `z` for what slides."""
+    lower: float | None
+    """How far it can go [rad] or [m]; None without limit."""
+    upper: float | None
+    """The same, the other way."""
+    angle: float
+    """Where it is [rad] or [m]."""
+    least: float
+    """The least that it has been so far [rad] or [m]."""
+    most: float
+    """The greatest."""
+    driven: bool
+    """Whether it can be turned at will."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyPart:
+    """A part of the body with the joints by which it hangs on another, and with the parts that it carries."""
+
+    name: str
+    joints: tuple[Freedom, ...]
+    parts: tuple[BodyPart, ...]
+
+    def part(self, name: str) -> BodyPart:
+        """Returns this part, or one that it carries, by name.
+
+        Raises:
+            WorldError: If there is none of that name.
+        """
+        all_parts = {part.name: part for part in self.line()}
+        return all_parts[known(name, all_parts, self.name, "part")]
+
+    def line(self) -> tuple[BodyPart, ...]:
+        """Returns this part and all that it carries, each after the one that carries it."""
+        return (self, *(inner for part in self.parts for inner in part.line()))
+
+
+class Limbs:
+    """What a motor module knows of its body, in step with it.
+
+    Args:
+        plan: What the body has told of itself.
+    """
+
+    def __init__(self, plan: BodyPlan) -> None:
+        self.plan = plan
+        self.joints: dict[str, JointPlan] = {joint.name: joint for part in plan.parts for joint in part.joints}
+        self.order = tuple(self.joints)
+        """The joints in the order in which the body feels them."""
+        self.number = {joint: number for number, joint in enumerate(self.order)}
+        """By joint, its place there."""
+        self.shown_as = {name: f"{name}_{'angle' if joint.kind == 'hinge' else 'position'}" for name, joint in self.joints.items()}
+        """By joint, the motor module's attribute that shows where it is felt to be."""
+        self.group_of: dict[str, str] = {joint.name: part.name for part in plan.parts for joint in part.joints}
+        """By joint, the muscle group that moves it: that of its part."""
+        self.walks = "walk" in plan.actuators
+        moved = {part.name: None for part in plan.parts if any(joint.driven for joint in part.joints)}
+        self.groups: tuple[str, ...] = tuple(dict.fromkeys([*([BASE_GROUP] if self.walks else []), *moved]))
+        """All muscle groups."""
+        self.fastest = plan.fastest or (math.inf, math.inf, math.inf)
+        """How fast it can walk [m/s], turn [rad/s] and turn a joint [rad/s]."""
+        self.felt: dict[str, float] = {}
+        """By joint, where it is felt to be [rad] or [m]."""
+        self.least: dict[str, float] = {}
+        self.most: dict[str, float] = {}
+
+    def feel(self, joint: str, position: float) -> None:
+        """Takes in where a joint is felt to be [rad] or [m]."""
+        self.felt[joint] = position
+        self.least[joint] = min(position, self.least.get(joint, position))
+        self.most[joint] = max(position, self.most.get(joint, position))
+
+    def freedom(self, joint: str) -> Freedom:
+        """Returns a joint as it is known now.
+
+        Raises:
+            WorldError: If the body has no such joint.
+        """
+        plan = self.joints[known(joint, self.joints, self.plan.name, "joint")]
+        return Freedom(
+            name=joint,
+            axis=plan.axis,
+            lower=plan.lower,
+            upper=plan.upper,
+            angle=self.felt[joint],
+            least=self.least[joint],
+            most=self.most[joint],
+            driven=plan.driven,
+        )
+
+    def tree(self) -> BodyPart:
+        """Returns all parts as they are known now, from the base on."""
+        made: dict[str, BodyPart] = {}
+        for part in reversed(self.plan.parts):
+            carried = tuple(made[other.name] for other in self.plan.parts if other.on == part.name)
+            made[part.name] = BodyPart(name=part.name, joints=tuple(self.freedom(joint.name) for joint in part.joints), parts=carried)
+        return made[self.plan.parts[0].name]
+
+    def joint(self, name: str, axis: str | None) -> str:
+        """Returns the joint of that name, or of that part about that axis.
+
+        Raises:
+            WorldError: If there is none, or there are several.
+        """
+        whose = self.plan.name
+        if axis is None:
+            if name in self.joints:
+                return name
+            of = [joint for joint, part in self.group_of.items() if part == name]
+            if len(of) == 1:
+                return of[0]
+            if not of:
+                known(name, self.joints, whose, "joint")
+            axes = ", ".join(dict.fromkeys(self.joints[joint].axis for joint in of))
+            raise WorldError(f"{whose}: '{name}' has several joints; say about which axis it is to turn: {axes}")
+        by_axis = {self.joints[joint].axis: joint for joint, part in self.group_of.items() if part == name}
+        if not by_axis:
+            known(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
+        return by_axis[known(axis, by_axis, f"{whose}: {name}", "axis")]
+
+    def movement(self, name: str, side: str | None) -> NamedMovement:
+        """Returns a movement that the body has a name for.
+
+        Raises:
+            WorldError: If there is none of that name, or none on that side.
+        """
+        known(name, dict.fromkeys(movement.name for movement in self.plan.movements), self.plan.name, "movement")
+        sides = {movement.side: movement for movement in self.plan.movements if movement.name == name}
+        if side is None and None in sides:
+            return sides[None]
+        return sides[known(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
+
+    def possible(self, call: str, speed: float, kind: int, unit: float) -> None:
+        """Checks that a speed is one that the body can have.
+
+        Args:
+            call: What is to have that speed.
+            speed: The speed [m/s] or [rad/s].
+            kind: Which of `fastest` it is compared with.
+            unit: What one unit in which people give it is inside.
+
+        Raises:
+            WorldError: If it is faster; says what would be possible.
+        """
+        most = self.fastest[kind]
+        if abs(speed) > most + TINY:
+            raise WorldError(f"{call}: speed: {self.plan.name} can do at most {most / unit:g} (got {speed / unit:g})")
+
+    def inside(self, joint: str, position: float) -> bool:
+        """Tells whether a position [rad] or [m] is within a joint's limits."""
+        plan = self.joints[joint]
+        return (plan.lower is None or position >= plan.lower - TINY) and (plan.upper is None or position <= plan.upper + TINY)
+
+    def limit(self, joint: str, way: float) -> float | None:
+        """Returns the limit of a joint [rad] or [m] that lies in the way of a speed; None where there is none."""
+        plan = self.joints[joint]
+        return plan.upper if way > 0 else plan.lower
+
+    def unit(self, joint: str) -> float:
+        """Returns what one unit in which people give a joint's position is inside: a degree in radians, or a metre."""
+        return radians(1) if self.joints[joint].kind == "hinge" else 1.0
+
+
+TINY = 1e-9
+"""What conversion between degrees and radians may add [rad]."""
+
+
+def on_grid(value: float, grid: float) -> float:
+    """Returns the multiple of `grid` that is nearest to a value; a whole one as a whole number, so that it reads well."""
+    near = round(round(value / grid) * grid, 9)
+    return int(near) if near == int(near) else near

@@ -1,0 +1,89 @@
+"""The body schema: postures with the width, depth and height felt in them, as chunks for declarative memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from actr3d.motor.limbs import Limbs, on_grid
+
+AWAY = 5.0
+"""From where on a joint that is not always told of is away from where it was at the start [degrees]. Ours: limbs that are held still
+while others swing give way by about a degree."""
+
+
+class BodySchema:
+    """Makes posture chunks of what is felt. All numbers are on a grid: else no posture would ever be felt again, and merge.
+
+    A posture has a slot for each joint that the body's named movements turn as far as one likes (where there are none, for
+    each joint), and one for every other joint that is away from where it was at the start.
+
+    Args:
+        limbs: The body as it is felt at the start.
+        angle_grid: What angles are rounded to [degrees].
+        size_grid: What lengths are rounded to [m].
+        step: How much further than before a joint has to go for a new extreme [degrees]; None for never.
+    """
+
+    def __init__(self, limbs: Limbs, angle_grid: float, size_grid: float, step: float | None) -> None:
+        self._limbs = limbs
+        self._angle_grid = angle_grid
+        self._size_grid = size_grid
+        self._step = step
+        named = {joint for movement in limbs.plan.movements if movement.to is None for joint, _ in movement.joints}
+        self._always = [joint for joint in limbs.order if joint in named or not named]
+        self._first = dict(limbs.felt)
+        self._start = {joint: self.shown(joint, limbs.felt[joint]) for joint in limbs.order}
+        self._least, self._most = dict(limbs.felt), dict(limbs.felt)
+
+    def shown(self, joint: str, position: float) -> float:
+        """Returns a joint's position as people read it, on the grid: degrees, or metres where it slides."""
+        hinge = self._limbs.joints[joint].kind == "hinge"
+        return on_grid(position / self._limbs.unit(joint), self._angle_grid if hinge else self._size_grid)
+
+    def size(self, length: float) -> float:
+        """Returns a length on the grid [m]."""
+        return on_grid(length, self._size_grid)
+
+    def posture(self, name: str, end: str, joint: str | None, box: dict[str, Any]) -> dict[str, Any]:
+        """Returns the present posture as a chunk.
+
+        Args:
+            name: The movement that led here, or what else it is to be called.
+            end: How that ended.
+            joint: The joint that was turned: `extreme` tells whether it has never been further.
+            box: The width, depth and height felt.
+        """
+        limbs = self._limbs
+        at = {of: self.shown(of, position) for of, position in limbs.felt.items()}
+        extreme = "none"
+        if joint is not None:
+            ends = {"maximum": self.shown(joint, limbs.most[joint]), "minimum": self.shown(joint, limbs.least[joint])}
+            extreme = next((which for which, end_at in ends.items() if at[joint] == end_at != self._start[joint]), "none")
+            self.note((joint,))
+        angles = {of: value for of, value in at.items() if of in self._always or self._away(of)}
+        return {"posture": name, "end": end, "extreme": extreme, **angles, **box}
+
+    def _away(self, joint: str) -> bool:
+        limbs = self._limbs
+        return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit(joint)
+
+    def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
+        """Returns those of some joints that have gone further by a step than in any posture so far."""
+        if self._step is None:
+            return ()
+        limbs = self._limbs
+        further: list[str] = []
+        for joint in joints:
+            at = limbs.felt[joint]
+            step = self._step * limbs.unit(joint)
+            if at >= self._most[joint] + step or at <= self._least[joint] - step:
+                further.append(joint)
+        return tuple(further)
+
+    def note(self, joints: Iterable[str]) -> None:
+        """Notes that some joints are in a posture as they are now."""
+        for joint in joints:
+            at = self._limbs.felt[joint]
+            self._least[joint] = min(self._least[joint], at)
+            self._most[joint] = max(self._most[joint], at)

@@ -1,0 +1,80 @@
+"""The options of a model file: `--name value` for each parameter of what it builds, and their help."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import MISSING
+from typing import Any
+
+from actr3d.errors import SettingError, did_you_mean
+from actr3d.fields import Field, literal
+
+_INDENT = 22
+_WIDTH = 110
+
+
+def read_options(words: Sequence[str], fields: Sequence[Field], others: Iterable[str] = ()) -> dict[str, Any]:
+    """Returns the values that options give, by the names of fields.
+
+    Args:
+        words: `--name value` or `--name=value` for each; of a field that is True or False, `--name` and `--no-name` too.
+        fields: What there is to be set.
+        others: Options that are not the model's, and may be meant too.
+
+    Raises:
+        SettingError: If there is no such option, or its value is missing.
+    """
+    known = {field.option: field for field in fields}
+    settings: dict[str, Any] = {}
+    waiting = list(words)
+    while waiting:
+        word, equals, text = waiting.pop(0).partition("=")
+        option = "--" + word.removeprefix("--").replace("_", "-")
+        field = known.get(option)
+        switch = known.get("--" + option.removeprefix("--no-")) if option.startswith("--no-") else None
+        if switch is not None and switch.choices == (True, False) and not equals:
+            settings[switch.name] = False
+        elif field is None or not word.startswith("--"):
+            raise SettingError(_unknown(word, known, others))
+        elif equals or (waiting and not waiting[0].startswith("--")):
+            settings[field.name] = field.value(text if equals else waiting.pop(0))
+        elif field.choices == (True, False):
+            settings[field.name] = True
+        else:
+            raise SettingError(f"{option} takes a value: {field.domain()}")
+    return settings
+
+
+def read_settings(texts: Sequence[str], fields: Sequence[Field]) -> dict[str, Any]:
+    """Returns parameters from texts `name=value`; a name that no field has gets a value, too, for who builds to refuse it.
+
+    Raises:
+        SettingError: If a text is not of this form.
+    """
+    known = {field.name: field for field in fields}
+    settings: dict[str, Any] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.isidentifier():
+            raise SettingError(f"a parameter is set by name=value (got {text!r})")
+        settings[name] = known[name].value(value) if name in known else literal(value)
+    return settings
+
+
+def options_help(fields: Sequence[Field]) -> str:
+    """Returns lines that tell of each option what it takes, what it is, and its default."""
+    lines: list[str] = []
+    for field in fields:
+        default = "must be given" if field.default is MISSING else f"default {field.default}"
+        head = f"  {field.option}"
+        lines.append(head.ljust(_INDENT) + f"{field.domain()}; {default}")
+        pad = " " * _INDENT
+        lines += textwrap.wrap(field.meaning, _WIDTH, initial_indent=pad, subsequent_indent=pad)
+    return "\n".join(lines)
+
+
+def _unknown(word: str, known: dict[str, Field], others: Iterable[str]) -> str:
+    if not word.startswith("--"):
+        return f"unexpected '{word}': a parameter is given as --name value"
+    return f"no option '{word}'{did_you_mean(word, [*known, *others])}; the model has: {', '.join(known) or 'none'}"

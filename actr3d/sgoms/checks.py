@@ -1,0 +1,50 @@
+"""Checks what planning units and productions say of each other, before an agent begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from actr3d.actr import ProductionSystem
+from actr3d.actr.production import Production
+from actr3d.errors import PlanError, did_you_mean
+from actr3d.saying import warn_at
+from actr3d.sgoms.units import PlanningUnit
+
+
+def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
+    """Checks that there is a production for every unit task, and warns of productions for what no plan has.
+
+    Raises:
+        PlanError: If no production can ever take on a unit task.
+    """
+    productions = [p for part in agent._tree() if isinstance(part, ProductionSystem) for p in part._productions]
+    productions = [p for p in productions if not p.name.startswith("sgoms_")]
+    tasks = {task: name for name, unit in units.items() for task in unit.unit_tasks}
+    taken = {name for production in productions for name in _named(production, "unit_task")}
+    if not any(_takes_any(production) for production in productions):
+        for task, unit in tasks.items():
+            if task not in taken:
+                raise PlanError(
+                    f"planning unit '{unit}' of {type(agent).__name__}: no production takes on its unit task '{task}': none has "
+                    f"b_unit_task='unit_task:{task} …'{did_you_mean(task, taken - tasks.keys())}"
+                )
+    for production in productions:
+        for key, known in (("unit_task", tasks), ("planning_unit", units)):
+            for name in _named(production, key):
+                if name not in known and name not in ("none", "start", "finished"):
+                    what = f"no planning unit has a unit task '{name}'" if key == "unit_task" else f"there is no planning unit '{name}'"
+                    warn_at(f"production '{production.name}' can never match: {what}{did_you_mean(name, known)}", production.original_func)
+
+
+def _named(production: Production, key: str) -> Iterator[str]:
+    """Yields the names that a production asks for in the buffers of planning units and unit tasks."""
+    for condition in production.conditions:
+        if condition.name in ("b_unit_task", "b_plan_unit") and condition.key == key and condition.op == "is":
+            yield condition.value
+
+
+def _takes_any(production: Production) -> bool:
+    """Tells whether a production may take on any unit task."""
+    found = [condition for condition in production.conditions if condition.name == "b_unit_task" and condition.op != "empty"]
+    return bool(found) and not any(condition.key == "unit_task" and condition.op == "is" for condition in found)

@@ -1,0 +1,232 @@
+"""How a body passes an aperture: what the world tells, whatever its mind believes."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import mujoco
+import numpy as np
+
+from actr3d.errors import WorldError, did_you_mean
+from actr3d.world import World
+from actr3d.world.parts import Aperture
+from actr3d.world.sensors.touch import last_felt
+
+SET_OUT = 0.05
+"""Who has come as far as this from the start [m] has set out. Ours."""
+TINY = 1e-9
+"""Less than any physics step [s]."""
+TURNED = math.radians(1)
+"""A turn begins where the shoulder line is turned as far as this [rad]. Ours."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassageResult:
+    """What came of a walk to an aperture. Distances are from the body's axis to the middle plane of the wall, before it positive."""
+
+    outcome: Literal["passed", "declined", "stopped"]
+    """Whether all of the body came through; never set out and ended so; or neither."""
+    peak_angle_deg: float | None
+    """The greatest angle between the shoulder line and the wall while walking [degrees, 0 to 90]; None where it did not set out."""
+    wall_angle_deg: float | None
+    """The same as the axis reached the wall; None where it did not."""
+    logged_angle_deg: float | None
+    """Torso plus clavicle, as joints, at that moment [degrees]: what the original model logged (human-data)."""
+    onset_distance_m: float | None
+    """How far before the wall the shoulders began to turn; None where they did not."""
+    onset_time_s: float | None
+    """When."""
+    contacts: int
+    """How often a part of the body came to touch something."""
+    max_force_n: float
+    """The hardest touch."""
+    clearance_left_m: float | None
+    """The smallest distance between any part of the body and the left segment of the wall, while something of the body was between
+    its faces; None where nothing was."""
+    clearance_right_m: float | None
+    """The same on the right."""
+    speed_m_s: float | None
+    """How fast it walked on average, from setting out until it reached the wall, or else until the end."""
+    time_s: float
+    """How long the run took."""
+
+    def __str__(self) -> str:
+        lines = [f"{self.outcome} after {self.time_s:.2f} s"]
+        if self.peak_angle_deg is not None:
+            wall = "" if self.wall_angle_deg is None else f", {self.wall_angle_deg:.1f} at the wall"
+            lines.append(f"  shoulders turned by {self.peak_angle_deg:.1f} degrees{wall}")
+        if self.onset_distance_m is not None:
+            lines.append(f"  from {self.onset_distance_m:.2f} m before it on, at {self.onset_time_s:.2f} s")
+        if self.clearance_left_m is not None and self.clearance_right_m is not None:
+            lines.append(f"  room on the left {100 * self.clearance_left_m:.1f} cm, on the right {100 * self.clearance_right_m:.1f} cm")
+        if self.speed_m_s is not None:
+            lines.append(f"  walked at {self.speed_m_s:.2f} m/s")
+        if self.contacts:
+            lines.append(f"  touched something {self.contacts} times, with up to {self.max_force_n:.0f} N")
+        return "\n".join(lines)
+
+
+class _Sample(NamedTuple):
+    """The beginning of a physics step on the way."""
+
+    time: float
+    """[s]"""
+    before: float
+    """How far the axis is before the wall [m]."""
+    angle: float
+    """Between shoulder line and wall [rad]."""
+    logged: float
+    """Torso plus clavicle [rad]."""
+    room: tuple[float, float] | None
+    """To the left and right segment [m], while in the doorway."""
+    touches: frozenset[tuple[str, str]]
+    force: float
+
+
+class Passage:
+    """Measures one body at one aperture, at every physics step.
+
+    Args:
+        body: Whose passage; one with shoulders.
+        aperture: Through which aperture.
+    """
+
+    def __init__(self, body: str, aperture: str = "aperture") -> None:
+        self._names = body, aperture
+        self._times: list[float] = []
+        self._samples: list[_Sample] = []
+
+    def begin(self, world: World) -> None:
+        """Finds body and aperture.
+
+        Raises:
+            WorldError: If they are not there, or the body has no shoulders.
+        """
+        body, aperture = self._names
+        if body not in world.bodies:
+            raise WorldError(f"no body '{body}' to measure{did_you_mean(body, world.bodies)}")
+        self._world, self._body = world, world.bodies[body]
+        wall = next((part for part in world.scene.parts if isinstance(part, Aperture) and part.name == aperture), None)
+        if wall is None:
+            raise WorldError(f"no aperture '{aperture}' in this scene to measure a passage through")
+        self._wall = wall
+        self._ahead = math.cos(wall.heading), math.sin(wall.heading)
+        model = world.mj_model
+        joints = [f"{side}_shoulder_joint" for side in ("left", "right")]
+        geoms = {self._body.geom_name(geom): geom for geom in self._body.geoms.tolist()}
+        if not geoms.keys() >= {*joints}:
+            raise WorldError(f"body '{body}' has no shoulders to measure")
+        self._shoulders = [geoms[name] for name in joints]
+        self._segments = [int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right")]
+        hinges = (("torso_yaw", 1.0), ("left_shoulder_yaw", 0.5), ("right_shoulder_yaw", 0.5))
+        self._hinges = [(self._body.joints[name].q, self._body.joints[name].v, share) for name, share in hinges]
+        x, y, _ = world.mj_data.xpos[self._body.root].tolist()
+        self._start = x, y
+        self._reach = 2.0 + wall.thickness
+
+    def look(self) -> None:
+        """Keeps what is to be known of a physics step, once the body has set out; in place of what was kept of that time before."""
+        data = self._world.mj_data
+        end, ago = float(data.time), float(self._world.mj_model.opt.timestep)
+        x, y, _ = data.xpos[self._body.root].tolist()
+        new = [] if math.dist((x, y), self._start) < SET_OUT else [self._sample(x, y, end - ago, ago)]
+        place = slice(bisect_right(self._times, end - ago + TINY), bisect_right(self._times, end + TINY))
+        self._times[place] = [end] * len(new)
+        self._samples[place] = new
+
+    def _sample(self, x: float, y: float, time: float, ago: float) -> _Sample:
+        """Returns what is to be known of a moment.
+
+        Args:
+            x: Where the body's axis is [m].
+            y: The same.
+            time: When [s].
+            ago: How much further the joints have gone already [s].
+        """
+        data = self._world.mj_data
+        forward, left = self._ahead
+        before = (self._wall.position[0] - x) * forward + (self._wall.position[1] - y) * left
+        (x1, y1, _), (x2, y2, _) = (data.geom_xpos[geom].tolist() for geom in self._shoulders)
+        dx, dy = x1 - x2, y1 - y2
+        angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
+        # The integrator has moved the joints on from the geometry, with these speeds.
+        logged = sum(share * float(data.qpos[q] - ago * data.qvel[v]) for q, v, share in self._hinges)
+        touches = last_felt(self._body)
+        force = max((touch.force for touch in touches), default=0.0)
+        pairs = frozenset((touch.part, touch.other) for touch in touches)
+        room = self._room() if abs(before) < self._reach else None
+        return _Sample(time, before, angle, logged, room, pairs, force)
+
+    def _room(self) -> tuple[float, float] | None:
+        """Returns the smallest distances of the body to the segments [m]; None where nothing of it is between their faces."""
+        model, data, body = self._world.mj_model, self._world.mj_data, self._body
+        geoms = np.array([*body.geoms.tolist(), *(geom for hand in body.hands.values() for geom in hand.geoms)], dtype=np.intp)
+        half = self._wall.thickness / 2
+        (x, y), (forward, left) = self._wall.position, self._ahead
+        past = (data.geom_xpos[geoms, 0] - x) * forward + (data.geom_xpos[geoms, 1] - y) * left
+        if (past - model.geom_rbound[geoms] > half).all() or (past + model.geom_rbound[geoms] < -half).all():
+            return None
+        lower, upper = self._along()
+        if upper < -half or lower > half:
+            return None
+        rooms: list[float] = []
+        for segment in self._segments:
+            turned = (data.geom_xpos[geoms] - data.geom_xpos[segment]) @ data.geom_xmat[segment].reshape(3, 3)
+            least = np.linalg.norm(np.maximum(np.abs(turned) - model.geom_size[segment], 0), axis=1) - model.geom_rbound[geoms]
+            nearest = math.inf
+            for number in np.argsort(least, kind="stable").tolist():
+                if least[number] >= nearest:
+                    break
+                nearest = min(nearest, mujoco.mj_geomDistance(model, data, int(geoms[number]), segment, 10.0, None))
+            rooms.append(nearest)
+        return rooms[0], rooms[1]
+
+    def _along(self) -> tuple[float, float]:
+        """Returns how far the body reaches along the way through, from the wall's middle [m]."""
+        x, y = self._wall.position
+        c, s = self._ahead
+        held = [geom for hand in self._body.hands.values() for geom in hand.geoms]
+        box = self._body.extent.box(np.array([x, y, 0.0]), np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), held)
+        return box.lower[0], box.upper[0]
+
+    def result(self, *, over: bool) -> PassageResult:
+        """Returns what has been measured up to now."""
+        now = float(self._world.mj_data.time)
+        samples = self._samples[: bisect_right(self._times, now + TINY)]
+        at_wall = next((sample for sample in samples if sample.before <= 0), None)
+        onset = next((sample for sample in samples if sample.angle >= TURNED), None)
+        rooms = [sample.room for sample in samples if sample.room is not None]
+        touches, before = 0, frozenset[tuple[str, str]]()
+        for sample in samples:
+            touches += len(sample.touches - before)
+            before = sample.touches
+        last = at_wall or (samples[-1] if samples else None)
+        way = samples[0].before - last.before if last is not None else 0.0
+        walked = last.time - samples[0].time if last is not None else 0.0
+        return PassageResult(
+            outcome=_outcome(samples[-1] if samples else None, over),
+            peak_angle_deg=_degrees(max(sample.angle for sample in samples)) if samples else None,
+            wall_angle_deg=_degrees(at_wall.angle) if at_wall else None,
+            logged_angle_deg=_degrees(abs(at_wall.logged)) if at_wall else None,
+            onset_distance_m=round(onset.before, 4) if onset else None,
+            onset_time_s=round(onset.time, 3) if onset else None,
+            contacts=touches,
+            max_force_n=round(max((sample.force for sample in samples), default=0.0), 1),
+            clearance_left_m=round(min(left for left, _ in rooms), 4) if rooms else None,
+            clearance_right_m=round(min(right for _, right in rooms), 4) if rooms else None,
+            speed_m_s=round(way / walked, 3) if walked else None,
+            time_s=round(now, 3),
+        )
+
+
+def _outcome(last: _Sample | None, over: bool) -> Literal["passed", "declined", "stopped"]:
+    if last is None:
+        return "declined" if over else "stopped"
+    return "passed" if last.before < 0 and last.room is None else "stopped"
+
+
+def _degrees(angle: float) -> float:
+    return round(math.degrees(angle), 2)

@@ -1,0 +1,100 @@
+"""Obstacles: whatever is there, within a bearing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from actr3d.camera import View
+from actr3d.vision.detectors.registry import detector
+from actr3d.vision.feature import Feature
+from actr3d.vision.kernel import detect
+from actr3d.vision.kernel.surfaces import SURFACE
+from actr3d.vision.units import Label, Metres, MetresPerSecond, Radians, Seconds
+
+
+@dataclass(frozen=True, kw_only=True)
+class Obstacle(Feature):
+    """An object, as far as it is seen. `distance` and `direction` are those of its nearest point within the bearing."""
+
+    salience: ClassVar[str] = "nearness"
+    bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "time_to_contact": "<=", "width": ">=", "height": ">="}
+    aliases: ClassVar[Mapping[str, str]] = {"radius": "distance"}
+
+    width: Metres
+    """Between its leftmost and its rightmost visible points, on the ground."""
+    height: Metres
+    """Between its uppermost and its lowest visible edges."""
+    top: Metres
+    """Its uppermost visible edge, above the eye."""
+    bottom: Metres
+    """Its lowest visible edge, above the eye, mostly below 0."""
+    leftmost: Radians
+    """The direction of its leftmost visible point."""
+    rightmost: Radians
+    """The direction of its rightmost visible point."""
+    object: Label
+    """Which object."""
+    time_to_contact: Seconds | None = None
+    """Its distance over how fast that shrinks, by the speed that was given or else since the last look; None where that is not
+    known, or it does not come nearer."""
+
+    def since(self, before: Feature, elapsed: float) -> Self:
+        """Returns it with its motion, and the time to contact where no speed was given."""
+        moved = super().since(before, elapsed)
+        nearer = (before.distance - self.distance) / elapsed
+        if self.time_to_contact is None and nearer > 0:
+            return moved._changed(time_to_contact=self.distance / nearer)
+        return moved
+
+
+@detector(Obstacle)
+def obstacle(view: View, *, bearing: Radians = math.pi, speed: MetresPerSecond | None = None) -> tuple[Obstacle, ...]:
+    """Finds all objects within a bearing, in the order of their labels.
+
+    What is seen between the edges of an object on a scan line is taken to be straight: exact for walls, not for what is round.
+
+    Args:
+        view: What is seen.
+        bearing: How far to the left and right of straight ahead.
+        speed: How fast the agent walks straight ahead; None where that is not known.
+    """
+    extents = view.extents
+    points, surfaces, find = np.empty((len(extents), 2, 4)), np.empty(32, SURFACE), detect.surfaces()
+    most = find(extents, view.optics, view.axes, bearing, points, surfaces)
+    if most >= len(surfaces):
+        surfaces = np.empty(most + 1, SURFACE)
+        find(extents, view.optics, view.axes, bearing, points, surfaces)
+    found: list[Any] = surfaces[: most + 1].tolist()
+    return tuple(_obstacle(speed, *numbers) for numbers in found if numbers[1] < math.inf)
+
+
+def _obstacle(
+    speed: float | None,
+    label: int,
+    distance: float,
+    ahead: float,
+    aside: float,
+    lefts: Any,
+    rights: Any,
+    top: float,
+    bottom: float,
+) -> Obstacle:
+    direction = math.atan2(aside, ahead)
+    nearer = 0.0 if speed is None else speed * math.cos(direction)
+    return Obstacle(
+        distance=distance,
+        direction=direction,
+        width=math.hypot(lefts[0] - rights[0], lefts[1] - rights[1]),
+        height=top - bottom,
+        top=top,
+        bottom=bottom,
+        leftmost=float(lefts[2]),
+        rightmost=float(rights[2]),
+        object=label,
+        time_to_contact=distance / nearer if nearer > 0 else None,
+    )

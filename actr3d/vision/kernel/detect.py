@@ -1,0 +1,79 @@
+"""The compiled functions that are called from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import TypeAlias
+
+from actr3d.camera.kernel.jit import compiled, kept, sources_digest
+from actr3d.camera.kernel.layout import Array, Record, Records
+from actr3d.vision.kernel.gaps import find_gaps, link_gaps
+from actr3d.vision.kernel.openings import set_openings
+from actr3d.vision.kernel.points import set_points
+from actr3d.vision.kernel.surfaces import set_surfaces
+
+Gaps: TypeAlias = Callable[[Records, Array, Array, float, float, Array, Records, Records], tuple[int, int]]
+Surfaces: TypeAlias = Callable[[Records, Array, Array, float, Array, Records], int]
+
+
+@cache
+def gaps() -> Gaps:
+    """Returns the function that finds openings; the first call of it in a new installation takes seconds.
+
+    It takes: the extents, an array of one optics, the eye's axes, the step behind a gap, how far apart the edges of one
+    opening may be from row to row, and room for points, gaps and openings. It returns how many gaps and openings there are;
+    what there is no room for is not written.
+    """
+    return _gaps_of(_digest())
+
+
+@cache
+def surfaces() -> Surfaces:
+    """Returns the function that finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
+    and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
+    """
+    return _surfaces_of(_digest())
+
+
+def _digest() -> int:
+    return sources_digest(Path(__file__).parent)
+
+
+def _gaps_of(digest: int) -> Gaps:
+    # Numba keeps the compiled function under the values it encloses, so that a change in any file is seen.
+    @kept
+    def find(
+        extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
+    ) -> tuple[int, int]:
+        if digest == 0:
+            return 0, 0
+        return _find(extents, optics[0], axes, step, apart, points, gaps, openings)
+
+    return find
+
+
+@compiled
+def _find(
+    extents: Records, optics: Record, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
+) -> tuple[int, int]:
+    set_points(extents, optics, axes, points)
+    count = find_gaps(extents, points, optics, axes[1, 2], step, gaps)
+    if count > len(gaps):
+        return count, 0
+    there = link_gaps(extents, points, gaps, count, apart)
+    if there <= len(openings):
+        set_openings(extents, points, gaps, count, optics.rows, openings[:there])
+    return count, there
+
+
+def _surfaces_of(digest: int) -> Surfaces:
+    @kept
+    def find(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
+        if digest == 0:
+            return 0
+        set_points(extents, optics[0], axes, points)
+        return set_surfaces(extents, points, bearing, surfaces)
+
+    return find

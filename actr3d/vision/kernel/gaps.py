@@ -1,0 +1,182 @@
+"""Gaps on scan lines: between two edges, with nothing between them that is as near."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from actr3d.camera.kernel.jit import compiled
+from actr3d.camera.kernel.layout import Array, Record, Records
+from actr3d.camera.kernel.screen import row_tangent
+
+NARROWEST = 1e-6
+"""Parts of the screen's width below this are no gap: edges that touch."""
+IN_LINE = 0.35
+"""How far the edges of a gap may lie off the line through the far ends of what bounds it, to be a gap in that line: the jambs of
+one wall, up to so thick [m]. Ours; walls of buildings are 0.1 to 0.3 m thick."""
+
+GAP = np.dtype(
+    [
+        ("row", "i8"),
+        ("left", "i8"),  # the numbers of the extents that bound it
+        ("right", "i8"),
+        ("before", "i8"),  # the gap that it goes on from, on the row above, or -1
+        ("number", "i8"),  # of the opening it is part of
+        ("along", "f8", (2,)),  # the direction from left to right in which its width is meant (ahead, left)
+        ("width", "f8"),  # [m]
+        ("deep", "f8"),  # how far it is free behind, square to its width [m]
+        ("high", "f8"),  # where its row ends above and below, above the eye [m]
+        ("low", "f8"),
+        ("far", "f8"),  # the distance of the farther edge from the eye [m]
+    ],
+    align=True,
+)
+"""A gap on one row."""
+
+
+@compiled
+def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: float, gaps: Records) -> int:
+    """Writes all gaps, by rows; returns how many there are, also those for which there is no room.
+
+    A gap goes from the right edge of one extent to the left edge of another on the same row, if all between them is farther
+    than both by `step` at least [m], or nothing is there. `up` is how upright the eye is, the cosine of its tilt.
+    """
+    count, first, total = 0, 0, len(extents)
+    while first < total:
+        last = first
+        while last < total and extents[last].row == extents[first].row:
+            last += 1
+        for i in range(first, last - 1):
+            behind = math.inf
+            for j in range(i + 1, last):
+                if j > i + 1:
+                    behind = min(behind, extents[j - 1].d1, extents[j - 1].d2)
+                if behind <= extents[i].d2 + step:
+                    break
+                if extents[j].x1 - extents[i].x2 > NARROWEST and behind > extents[j].d1 + step:
+                    if count < len(gaps):
+                        gaps[count].row, gaps[count].left, gaps[count].right = extents[first].row, i, j
+                        gaps[count].far = max(extents[i].d2, extents[j].d1)
+                        measure(points, gaps, count)
+                        _set_levels(points, gaps[count], optics, up)
+                    count += 1
+        first = last
+    return count
+
+
+@compiled
+def measure(points: Array, gaps: Records, number: int) -> None:
+    """Sets how wide a gap is, in the line of what bounds it, and how far it is free behind.
+
+    Heights do not count: the two edges of a row are at different heights where one is nearer. In a wall of some thickness one of
+    the edges may be its front's and the other its back's; so the width is measured along the wall's front: the line from one
+    side of the gap to the other that all visible ends of what bounds it lie on or behind.
+    """
+    gap = gaps[number]
+    left, right = points[gap.left, 1], points[gap.right, 0]
+    ahead, aside = right[0] - left[0], right[1] - left[1]
+    width = math.sqrt(ahead * ahead + aside * aside)
+    for i in range(2):
+        for j in range(2):
+            start, end = points[gap.left, i], points[gap.right, j]
+            if not _is_front(start, end, points[gap.left, 1 - i], points[gap.right, 1 - j]):
+                continue
+            x, y = end[0] - start[0], end[1] - start[1]
+            length = math.sqrt(x * x + y * y)
+            along = (x * ahead + y * aside) / length
+            off = max(abs(_beyond(left, start, end)), abs(_beyond(right, start, end))) / length
+            if off <= IN_LINE and 0.0 < along < width:
+                ahead, aside, width = x / length * along, y / length * along, along
+    if width > 0.0:
+        ahead, aside = ahead / width, aside / width
+    gap.along[0], gap.along[1], gap.width = ahead, aside, width
+    # Square to that, away from the eye.
+    x, y = -aside, ahead
+    near_left, near_right = x * left[0] + y * left[1], x * right[0] + y * right[1]
+    if near_left + near_right < 0.0:
+        x, y, near_left, near_right = -x, -y, -near_left, -near_right
+    deep = math.inf
+    for k in range(gap.left + 1, gap.right):
+        for side in range(2):
+            deep = min(deep, x * points[k, side, 0] + y * points[k, side, 1])
+    gap.deep = max(0.0, deep - max(near_left, near_right))
+
+
+@compiled
+def _set_levels(points: Array, gap: Record, optics: Record, up: float) -> None:
+    """Sets where the row of a gap ends above and below, half way to the next rows."""
+    left, right = points[gap.left, 1], points[gap.right, 0]
+    middle, deep = 0.5 * (left[2] + right[2]), 0.5 * (left[3] + right[3])
+    here = row_tangent(gap.row, optics)
+    gap.high = middle + deep * up * (row_tangent(gap.row - 0.5, optics) - here)
+    gap.low = middle + deep * up * (row_tangent(gap.row + 0.5, optics) - here)
+
+
+@compiled
+def _is_front(start: Array, end: Array, one: Array, other: Array) -> bool:
+    """Tells whether, as seen from the eye, nothing of what bounds a gap lies before the line between two points of it."""
+    eye = start[0] * end[1] - start[1] * end[0]
+    if abs(eye) < 1e-12:
+        return False
+    least = -1e-9
+    return _beyond(one, start, end) * math.copysign(1.0, -eye) >= least and _beyond(other, start, end) * math.copysign(1.0, -eye) >= least
+
+
+@compiled
+def _beyond(point: Array, start: Array, end: Array) -> float:
+    """Returns how far a point lies to the left of the line between two others, times the line's length [m²]."""
+    return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
+
+
+@compiled
+def link_gaps(extents: Records, points: Array, gaps: Records, count: int, apart: float) -> int:
+    """Joins gaps of neighbouring rows whose edges are no farther apart than `apart` [m]; returns how many openings there are.
+
+    A gap goes on from the one above whose edges are nearest to its own, unless another one does already. Between the same
+    things, edges may be as far apart as a wall is thick: at its foot, what is seen goes over from its back to its front.
+    """
+    openings, above, first = 0, 0, 0
+    while first < count:
+        last = first
+        while last < count and gaps[last].row == gaps[first].row:
+            last += 1
+        if above < first and gaps[above].row != gaps[first].row - 1:
+            above = first
+        for i in range(first, last):
+            best, before = math.inf, -1
+            left, right = gaps[i].left, gaps[i].right
+            for k in range(above, first):
+                way = max(_apart(points[left, 1], points[gaps[k].left, 1]), _apart(points[right, 0], points[gaps[k].right, 0]))
+                same = (
+                    extents[left].label == extents[gaps[k].left].label
+                    and extents[right].label == extents[gaps[k].right].label
+                    and extents[left].x2 < extents[gaps[k].right].x1
+                    and extents[right].x1 > extents[gaps[k].left].x2
+                )
+                if way <= (IN_LINE if same else apart) and way < best and not _taken(gaps, first, i, k):
+                    best, before = way, k
+            gaps[i].before = before
+            if before < 0:
+                gaps[i].number = openings
+                openings += 1
+            else:
+                gaps[i].number = gaps[before].number
+        above, first = first, last
+    return openings
+
+
+@compiled
+def _apart(one: Array, other: Array) -> float:
+    """Returns how far two points are apart on the ground [m]."""
+    x, y = one[0] - other[0], one[1] - other[1]
+    return math.sqrt(x * x + y * y)
+
+
+@compiled
+def _taken(gaps: Records, first: int, end: int, before: int) -> bool:
+    """Tells whether a gap of the row from `first` to `end` goes on from one above."""
+    for i in range(first, end):  # noqa: SIM110 - compiled
+        if gaps[i].before == before:
+            return True
+    return False

@@ -1,0 +1,108 @@
+"""Openings: gaps that go on from scan line to scan line."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from actr3d.camera.kernel.jit import compiled
+from actr3d.camera.kernel.layout import Array, Record, Records
+
+BESIDE = 0.35
+"""How much farther than a gap's edges something above or below it may be, to be what bounds it there [m]. Ours: a wall's thickness."""
+
+OPENING = np.dtype(
+    [
+        ("width", "f8"),  # [m]
+        ("deep", "f8"),  # [m]
+        ("top", "f8"),  # above the eye [m]
+        ("bottom", "f8"),
+        ("ahead", "f8"),  # the middle between its edges [m]
+        ("aside", "f8"),
+        ("left", "i8"),  # labels of what bounds it; 0 for nothing
+        ("right", "i8"),
+        ("above", "i8"),
+        ("below", "i8"),
+        ("cut", "i8"),  # whether it goes on above or below the field of view
+        ("first", "i8"),  # the numbers of its uppermost and its lowest gap
+        ("last", "i8"),
+        ("area", "f8"),  # [m^2]
+    ],
+    align=True,
+)
+
+
+@compiled
+def set_openings(extents: Records, points: Array, gaps: Records, count: int, rows: int, openings: Records) -> None:
+    """Writes each opening: the largest upright rectangle that fits between the edges of its gaps.
+
+    Args:
+        extents: The view's.
+        points: Where their edges are.
+        gaps: All gaps.
+        count: How many there are.
+        rows: How many the view has.
+        openings: Where they are written, as many as there are.
+    """
+    for number in range(len(openings)):
+        openings[number].area = -1.0
+    for i in range(count):
+        opening = openings[gaps[i].number]
+        # From each row upwards: where the edges come nearest to each other decides.
+        x, y = gaps[i].along[0], gaps[i].along[1]
+        low, high = -math.inf, math.inf
+        k = i
+        while k >= 0:
+            left, right = points[gaps[k].left, 1], points[gaps[k].right, 0]
+            low, high = max(low, x * left[0] + y * left[1]), min(high, x * right[0] + y * right[1])
+            if high <= low and k < i:
+                break
+            area = max(0.0, high - low) * (gaps[k].high - gaps[i].low)
+            if area > opening.area * (1.0 + 1e-9):
+                opening.area, opening.width = area, max(0.0, high - low)
+                opening.first, opening.last = k, i
+            k = gaps[k].before
+    for number in range(len(openings)):
+        _finish(extents, points, gaps, rows, openings[number])
+
+
+@compiled
+def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: Record) -> None:
+    """Writes what follows from the first and the last gap of an opening."""
+    first, last = gaps[opening.first], gaps[opening.last]
+    opening.top, opening.bottom = first.high, last.low
+    opening.cut = first.row == 0 or last.row == rows - 1
+    opening.deep = math.inf
+    middle = k = opening.last
+    while True:
+        opening.deep = min(opening.deep, gaps[k].deep)
+        if 2 * gaps[k].row >= first.row + last.row:
+            middle = k
+        if k == opening.first:
+            break
+        k = gaps[k].before
+    left, right = points[gaps[middle].left, 1], points[gaps[middle].right, 0]
+    opening.ahead, opening.aside = 0.5 * (left[0] + right[0]), 0.5 * (left[1] + right[1])
+    opening.left, opening.right = extents[gaps[middle].left].label, extents[gaps[middle].right].label
+    opening.above = _bound(extents, first, first.row - 1)
+    opening.below = _bound(extents, last, last.row + 1)
+
+
+@compiled
+def _bound(extents: Records, gap: Record, row: int) -> int:
+    """Returns the label of what is seen on another row over most of a gap, as near as its edges; 0 for nothing."""
+    low, high = extents[gap.left].x2, extents[gap.right].x1
+    most, label = 0.0, 0
+    at = gap.left
+    if row < gap.row:
+        while at > 0 and extents[at].row >= row:
+            at -= 1
+    while at < len(extents) and extents[at].row <= row:
+        extent = extents[at]
+        if extent.row == row and min(extent.d1, extent.d2) <= gap.far + BESIDE:
+            shared = min(high, extent.x2) - max(low, extent.x1)
+            if shared > most:
+                most, label = shared, extent.label
+        at += 1
+    return label

@@ -1,0 +1,56 @@
+"""Noise of seeing: where edges are, and how far away."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.random import PCG64, Generator
+from numpy.typing import NDArray
+
+from actr3d.camera import CameraParameters, View
+
+Floats = NDArray[np.float64]
+LEAST = 0.05
+"""No distance is seen as less than this part of it, however large the noise."""
+
+
+def blurred(view: View, edges: float, distances: float, seed: int) -> View:
+    """Returns a view as it is misjudged: for each object, its left and its right edges on all rows alike.
+
+    So straight edges stay straight, and what is measured over many rows gets no sharper for that.
+
+    Args:
+        view: The exact one.
+        edges: The standard deviation of the directions of edges [rad].
+        distances: That of their distances, as a part of these.
+        seed: What the noise comes from.
+    """
+    if not len(view.extents):
+        return view
+    numbers = Generator(PCG64(seed)).standard_normal((int(view.extents["label"].max()) + 1, 2, 2))
+    extents = view.extents.copy()
+    noise = numbers[extents["label"]]
+    for side, (x, d) in enumerate((("x1", "d1"), ("x2", "d2"))):
+        if edges > 0:
+            extents[x] = _moved(extents[x], edges * noise[:, side, 0], view.parameters)
+        extents[d] *= np.maximum(LEAST, 1 + distances * noise[:, side, 1])
+    extents.flags.writeable = False
+    return replace(view, extents=extents)
+
+
+def _moved(x: Floats, angle: Floats, parameters: CameraParameters) -> Floats:
+    """Returns places on the screen moved to the right by angles [rad]; what leaves the screen stays at its border."""
+    half, part = parameters.horizontal_fov / 2, 2 * x - 1
+    if parameters.retinotopic:
+        span = math.log1p(half / parameters.e2)
+        at = np.sign(part) * parameters.e2 * np.expm1(np.abs(part) * span)
+    else:
+        at = np.arctan(part * math.tan(half))
+    at = np.clip(at + angle, -half, half)
+    if parameters.retinotopic:
+        part = np.sign(at) * np.log1p(np.abs(at) / parameters.e2) / math.log1p(half / parameters.e2)
+    else:
+        part = np.tan(at) / math.tan(half)
+    return np.where((x > 0) & (x < 1), 0.5 + 0.5 * part, x)  # at the screen's border there is no edge

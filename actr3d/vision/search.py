@@ -1,0 +1,96 @@
+"""One request to vision, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from random import Random
+from typing import Any
+
+from actr3d.actr.modules.port import Reading
+from actr3d.vision.feature import Feature
+from actr3d.vision.query import Query, Test, refusal
+from actr3d.vision.salience import Function, share, survivors, weigh
+
+
+class Search(Reading):
+    """A request that is under way; `yield` it to wait until it is over."""
+
+    __slots__ = ("begun", "bottom_up", "chosen", "due", "noticed", "outcome", "query", "refused", "seen", "weights", "why")
+    noticed: Sequence[Feature]
+    """What is as was asked for."""
+    weights: Sequence[float]
+    """How salient each of these is."""
+    refused: list[tuple[Feature, Test]]
+    """What is not, and what it fails."""
+    chosen: int | None
+    """Which of those noticed is brought."""
+    why: str | None
+    """Why none is brought, though some are noticed."""
+    outcome: str
+    """What came of it, in a word."""
+
+    def __init__(self, query: Query, *, bottom_up: bool, begun: int, due: int) -> None:
+        super().__init__("view")
+        self.query = query
+        self.bottom_up = bottom_up
+        self.begun = begun
+        """When it was begun [us]."""
+        self.due = due
+        """When it ends [us], unless the view comes later."""
+        self.seen = begun
+        """When its view was taken in [us]."""
+        self.clear()
+        self._value = None
+
+    def clear(self) -> None:
+        """Forgets what it has found; it begins anew."""
+        self.noticed, self.weights, self.refused, self.chosen, self.why, self.outcome = (), (), [], None, None, "pending"
+
+    def sift(self, features: Sequence[Feature], salience: Function) -> None:
+        """Notes what of the features is as was asked for and how salient it is, and what is not.
+
+        Raises:
+            VisionError: If a salience is no number from 0 on.
+        """
+        noticed: list[Feature] = []
+        for feature in features:
+            test = self.query.failing(feature)
+            if test is None:
+                noticed.append(feature)
+            else:
+                self.refused.append((feature, test))
+        self.noticed = noticed
+        self.weights = weigh(noticed, salience, f"the salience of '{self.query.detector.name}'")
+
+    def choose(self, rule: str, random: Random) -> None:
+        """Draws one of those noticed, by a rule of `RULES`."""
+        if not self.noticed:
+            return
+        if rule == "share":
+            self.chosen = share(self.weights, random)
+            return
+        left = survivors(self.weights, random)
+        if left:
+            self.chosen = random.choice(left)
+        else:
+            self.why = "none survived"
+
+    @property
+    def feature(self) -> Feature | None:
+        """What is brought; None where nothing was found."""
+        return None if self.chosen is None else self.noticed[self.chosen]
+
+    def describe(self) -> str:
+        """Names what was asked."""
+        return f"search for '{self.query.asked}'"
+
+    def to_data(self) -> dict[str, Any]:
+        """Returns all of it as plain values, for the trace."""
+        return {
+            "asked": self.query.asked,
+            "bottom_up": self.bottom_up,
+            "noticed": [[feature.slots(), weight] for feature, weight in zip(self.noticed, self.weights, strict=True)],
+            "refused": [[feature.slots(), refusal(test, feature)] for feature, test in self.refused],
+            "chosen": self.chosen,
+            **({} if self.why is None else {"why": self.why}),
+        }

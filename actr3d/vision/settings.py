@@ -1,0 +1,82 @@
+"""The parameters of a vision module: what is wrong with them, and what words stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, cast
+
+from actr3d.camera import CameraParameters
+from actr3d.errors import ParameterError, did_you_mean
+from actr3d.vision.detectors.registry import Detector
+from actr3d.vision.encoding import Emma
+from actr3d.vision.salience import RULES, Function, salience_of
+
+FROM_ZERO = ("delay", "delay_sd", "bottom_up_delay", "hold", "edge_noise", "distance_noise")
+
+
+def check_numbers(given: Mapping[str, Any]) -> None:
+    """Checks the numbers and the rule that a module is given.
+
+    Raises:
+        ParameterError: If one is out of bounds.
+    """
+    for name in FROM_ZERO:
+        if given[name] is not None and not given[name] >= 0:
+            raise ParameterError(f"Vision.{name}: must be at least 0 (got {given[name]!r})")
+    if not 0 <= given["error_rate"] <= 1:
+        raise ParameterError(f"Vision.error_rate: must be a probability, 0 to 1 (got {given['error_rate']!r})")
+    if given["rule"] not in RULES:
+        raise ParameterError(f"Vision.rule: must be one of {', '.join(RULES)} (got {given['rule']!r})")
+
+
+def check_camera(camera: Mapping[str, Any], own: list[str]) -> None:
+    """Checks what is given besides a module's own parameters.
+
+    Raises:
+        ParameterError: If the camera has no such parameter either.
+        ConfigurationError: If a value is not what the camera takes.
+    """
+    known = [field.name for field in fields(CameraParameters)]
+    for name in camera:
+        if name not in known:
+            hint = did_you_mean(name, [*own, *known])
+            raise ParameterError(f"Vision has no parameter '{name}'{hint}; it has: {', '.join(own)}, and the camera's {', '.join(known)}")
+    CameraParameters.from_mapping(camera)
+
+
+def saliences_of(given: Any, detectors: Mapping[str, Detector]) -> dict[str, Function]:
+    """Returns the salience of each feature, by name.
+
+    Args:
+        given: A word or function for all features; or by the names of some; None for what each feature says of itself.
+        detectors: Those that there are.
+
+    Raises:
+        ParameterError: If there is no such feature.
+        VisionError: If a salience is neither word nor function.
+    """
+    by_name: dict[Any, Any] = dict(cast("Mapping[Any, Any]", given)) if isinstance(given, Mapping) else {}
+    for name in by_name:
+        if name not in detectors:
+            raise ParameterError(f"Vision.salience: no feature '{name}'{did_you_mean(str(name), detectors)}")
+    saliences: dict[str, Function] = {}
+    for name, detector in detectors.items():
+        own = detector.finds.salience if given is None or by_name else cast("Any", given)
+        saliences[name] = salience_of(by_name.get(name, own), "Vision.salience")
+    return saliences
+
+
+def encoding_of(given: Any) -> Emma | float:
+    """Returns how encoding is timed: by EMMA, or a time [s].
+
+    Raises:
+        ParameterError: If it is neither.
+    """
+    if isinstance(given, Emma):
+        return given
+    if given == "emma":
+        return Emma()
+    if isinstance(given, (int, float)) and not isinstance(given, bool) and given >= 0:
+        return float(given)
+    raise ParameterError(f"Vision.encoding: must be a time from 0 on [s], 'emma' or an Emma (got {given!r})")

@@ -1,0 +1,82 @@
+"""What a body consists of, as it tells its mind: parts, joints, limits, and what it can be told to do. It never changes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from actr3d.world.anatomy import NamedMovement
+from actr3d.world.sensors.registry import sensor
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+    from actr3d.world.joints import Joint
+
+HINGE_AXES = ("roll", "pitch", "yaw")
+SLIDE_AXES = ("x", "y", "z")
+"""What the axes of joints are called, by the axis of the part that they are nearest to."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointPlan:
+    """One degree of freedom."""
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    axis: str
+    """What it turns about, `yaw`, `pitch` or `roll`, or slides along, `x`, `y` or `z`: the nearest axis of its part."""
+    lower: float | None
+    """Its least position [rad] or [m]; None without limit."""
+    upper: float | None
+    """Its greatest."""
+    driven: bool
+    """Whether the body can be told to turn it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartPlan:
+    """One part, and the joints by which it hangs on another."""
+
+    name: str
+    on: str | None
+    """The part that carries it; None for the base."""
+    joints: tuple[JointPlan, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyPlan:
+    """All parts of a body."""
+
+    name: str
+    parts: tuple[PartPlan, ...]
+    """Each after the one that carries it; the base first."""
+    movements: tuple[NamedMovement, ...]
+    """What it has names for."""
+    actuators: tuple[str, ...]
+    """The words that it can be told."""
+    fastest: tuple[float, float, float] | None
+    """The fastest that it can be told to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None has no limits."""
+
+
+@sensor
+def anatomy(body: Body) -> BodyPlan:
+    """Senses what the body consists of: its parts, with joints and limits, and its named movements."""
+    model = body.world.mj_model
+    names = dict(zip((int(number) for number in body.members.nonzero()[0]), body.parts, strict=True))
+    joints: dict[int, list[JointPlan]] = {number: [] for number in names}
+    for joint in body.joints.values():
+        joints[int(model.jnt_bodyid[joint.number])].append(_plan(model, joint))
+    parts = tuple(
+        PartPlan(name=name, on=names.get(int(model.body_parentid[number])), joints=tuple(joints[number])) for number, name in names.items()
+    )
+    known = body.anatomy
+    return BodyPlan(name=body.name, parts=parts, movements=known.movements, actuators=body.actuators, fastest=known.fastest)
+
+
+def _plan(model: Any, joint: Joint) -> JointPlan:
+    hinge = int(model.jnt_type[joint.number]) == 3
+    along = [abs(float(value)) for value in model.jnt_axis[joint.number]]
+    axis = (HINGE_AXES if hinge else SLIDE_AXES)[along.index(max(along))]
+    lower, upper = (None if math.isinf(limit) else limit for limit in joint.limits)
+    return JointPlan(name=joint.name, kind="hinge" if hinge else "slide", axis=axis, lower=lower, upper=upper, driven=joint.driven)

@@ -1,0 +1,79 @@
+"""What a body feels of its own posture and movement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from actr3d.errors import WorldError
+from actr3d.world.sensors.registry import sensor
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+
+
+@dataclass(frozen=True, kw_only=True)
+class Size:
+    """Of the smallest box around a body and what it holds."""
+
+    width: float
+    """To the left and right, along the frame's y [m]."""
+    depth: float
+    """Front to back, along its x [m]."""
+    height: float
+    """Along its z [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proprioception:
+    """How a body stands and moves, in as few numbers as a motor module needs each tick."""
+
+    positions: tuple[float, ...]
+    """Of all joints, in the order of the word `anatomy` [rad] or [m]."""
+    moving: tuple[str, ...]
+    """The joints that a command still moves, or tries to."""
+    speed: tuple[float, float, float]
+    """Of the base, forward and to the left [m/s], and turning to the left [rad/s]; 0 for one that cannot walk."""
+    walking: bool
+    """Whether it is told to go or turn at some speed."""
+    turning: float
+    """How far it still turns, of the angle that it was told to turn by [rad]."""
+    width: float
+    """To the left and right [m], of the smallest box around the body, upright and along its heading."""
+    depth: float
+    """Of that box, front to back [m]."""
+    height: float
+    """Of that box [m]."""
+
+    def with_noise(self, sd: Any, random: Any) -> Proprioception:
+        """Refuses noise: by these numbers a motor module knows when a movement is over, and it has parameters for noise of its own.
+
+        Raises:
+            WorldError: Always.
+        """
+        raise WorldError("proprioception: takes no noise; give it to the motor module instead (angle_noise, size_noise)")
+
+
+@sensor
+def bounding_box(body: Body, frame: str = "body") -> Size:
+    """Senses how wide, deep and high the body is with what it holds, upright and along its heading, or in the frame of a part."""
+    depth, width, height = body.bounding_box(frame).size
+    return Size(width=width, depth=depth, height=height)
+
+
+@sensor
+def proprioception(body: Body) -> Proprioception:
+    """Senses at once how all joints stand, what still moves, and how wide, deep and high the body is in this posture."""
+    positions: list[float] = body.world.mj_data.qpos.tolist()
+    walks = body.anatomy.push is not None
+    depth, width, height = body.bounding_box("body").size
+    return Proprioception(
+        positions=tuple([positions[joint.q] for joint in body.joints.values()]),
+        moving=tuple([name for name, joint in body.joints.items() if joint.told(body)]),
+        speed=body.base.speed if walks else (0.0, 0.0, 0.0),
+        walking=walks and body.holding.commanded != (0.0, 0.0, 0.0),
+        turning=body.running.turning() if walks else 0.0,
+        width=width,
+        depth=depth,
+        height=height,
+    )

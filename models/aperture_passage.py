@@ -1,0 +1,401 @@
+"""A person walks to a doorway, and turns the shoulders where it is too narrow: the main job of ACT-R 3D.
+
+What is modelled: people turn their shoulders to pass an aperture that is narrower than 1.30 times these, and judge from afar
+that they can pass as they are where it is wider than 1.16 times (Warren & Whang 1987, JEP:HPP 13). What counts is the ratio of
+the aperture to the body, which the walker has to know, and sees nothing of: it learns it.
+
+Mechanism, in four unit tasks of one planning unit (SGOMS): (1) *learn*: it turns its shoulders each way several times; how wide it
+is in each posture goes to declarative memory. (2) *judge*: is there an opening that is wide enough for it as it is? Else it
+remembers how narrow it can make itself, and asks for an opening of that size; finds none, and declines. (3) *approach*: it walks.
+Its eyes, a parallel system of productions of 10 ms, scan for obstacles ahead. (4) An obstacle interrupts: the planning unit
+*squeeze* has it turn its shoulders at a constant speed until vision finds an opening that is wider than it feels itself to be,
+by some part. Then it goes on, passes, and turns back (*leave*).
+
+`--variant replication` follows the original ACT-R 3D (facts about its code and its trials: human-data): what is within 3 times its
+width starts a turn of 240 degrees a second, 120 with the torso alone, whatever the size of the opening. It stops with each answer
+of its vision, and turns on where that is no. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one each 175 ms, which
+is where the original's own means lie, and why a fast walker, who has time for fewer, turns less. It turns by about 18 degrees
+before any doorway. Two numbers of this are not facts but inferred from these means: that it turns in pieces, and how deep the trunk is.
+`--variant human` (the default) looks first: it turns below 1.30 times its width only, from 1.2 s before the wall on, and the faster it
+walks the faster it turns.
+
+What to expect: `--aperture 0.45` is passed with the shoulders turned by about 40 degrees, nothing is touched, and some 6 cm are left
+on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.35` is declined. The last lines say what
+the world measured.
+
+Try: `--condition fast`; `--variant replication --aperture 0.7`; `--margin 0`, and `--noise 0.05`.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le
+
+from actr3d.actr import *
+from actr3d.configuration import Configuration
+from actr3d.motor import Motor
+from actr3d.sgoms import SGOMS, Ordered, Situated
+from actr3d.simulation import Passage, Simulation
+from actr3d.vision import Vision
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+WIDTHS = {"small": 0.404, "large": 0.484}
+SPEEDS = {("small", "normal"): 1.29, ("small", "fast"): 1.61, ("large", "normal"): 1.28, ("large", "fast"): 1.77}
+HEIGHT = 1.714
+"""[m]. Source: shoulders of 0.444 m, the mean of both groups, over 0.259, their part of the height (Drillis & Contini 1966)."""
+
+TORSO, CLAVICLE = 60, 20
+"""How far the torso and the shoulders on it turn [degrees]: 80 together. Source: the original's limits of 20 and 80 (human-data)."""
+BEARING = 19.6
+"""What is further off the way ahead is no obstacle [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
+TIGHT = 1.03
+"""An opening this many times as wide as it is lets it through, if it cannot turn any further. Ours."""
+NEAR = 0.5
+"""Where an obstacle is as near as this and no opening is found, it stops walking [m]. Ours: it takes some 0.2 s for that."""
+BEHIND = 0.8
+"""How far it goes on behind the middle of an opening [m]: more than its own depth, sideways. Ours."""
+DOOR = "feature:opening height:>1.5 depth:>0.5"
+"""What one can walk through [m]. Source: the original's requests."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(Configuration):
+    """What may be set."""
+
+    variant: Literal["human", "replication"] = "human"
+    """Who walks: a model of people, or the original ACT-R 3D's model."""
+
+    aperture: Annotated[float, Gt(0), Le(3)] = 0.5
+    """The free width of the doorway [m]. Source: Warren & Whang (1987) have 0.35 to 0.70."""
+
+    group: Literal["small", "large"] = "small"
+    """Of which group its shoulders and its speed are: 0.404 or 0.484 m wide. Source: Warren & Whang (1987)."""
+
+    shoulder_width: Annotated[float, Ge(0.3), Le(0.7)] | None = None
+    """How wide its shoulders are [m]; None: the mean of its group."""
+
+    condition: Literal["normal", "fast"] = "normal"
+    """How fast its group walks: small 1.29 or 1.61 m/s, large 1.28 or 1.77 m/s. Source: Warren & Whang (1987)."""
+
+    speed: Annotated[float, Gt(0), Le(3)] | None = None
+    """How fast it walks [m/s]; None: as its condition says."""
+
+    margin: Annotated[float, Ge(0), Le(1)] | None = None
+    """By which part of its width an opening must be wider for it not to turn; None: 0.30 for people (Warren & Whang 1987), 0.139 in
+    the replication (human-data)."""
+
+    noise: Annotated[float, Ge(0), Le(0.2)] = 0.01
+    """The standard deviation of seen distances, as a part of these. Source: ours; 0 judges exactly."""
+
+
+class Wait(Model):
+    """Is over some time after it began; begun anew, it starts from the beginning."""
+
+    state = "idle"
+    begun = 0
+
+    def go(self, seconds):
+        self.state = "on"
+        self.begun += 1
+        mine = self.begun
+        yield seconds
+        if mine == self.begun:
+            self.state = "over"
+
+    def reset(self):
+        self.state = "idle"
+        self.begun += 1
+
+
+class Shoulders(Model):
+    """Turns the shoulders against the legs, while the eye goes on looking ahead."""
+
+    def turn(self, part, torso_rate, clavicle_rate):
+        """Turns them to a part of all that they can be turned, to the side that was chosen [degrees/s]."""
+        motor, angle = self.parent.motor, self.side * part
+        motor.rotate_torso(angle * TORSO, torso_rate)
+        motor.rotate("head", "yaw", -angle * TORSO, torso_rate)
+        motor.rotate("left_shoulder", "yaw", angle * CLAVICLE, clavicle_rate)
+        motor.rotate("right_shoulder", "yaw", angle * CLAVICLE, clavicle_rate)
+
+    def stop(self):
+        for group in ("torso", "head", "left_shoulder", "right_shoulder"):
+            self.parent.motor.stop(group)
+
+    def angle(self):
+        """Returns how far the torso is felt to be turned [degrees]."""
+        return abs(float(self.parent.motor.torso_yaw_angle))
+
+
+class Eyes(ACTR):
+    """Scans for obstacles ahead, asks for an opening where there is one, and lets the shoulders turn.
+
+    Source of the times: productions 10 ms, a scan 50 ms, a search for obstacles 20 ms, a request 50 ms (human-data).
+    """
+
+    production_time = 0.01
+
+    def scan_ahead(b_turn="watch:yes", scan="state:idle", vision="busy:False watching:False", b_visual=None):
+        scan.go(0.05)
+
+    def search(b_turn="watch:yes", scan="state:over"):
+        scan.reset()
+        vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BEARING)
+
+    def first_alert(b_turn="watch:yes way:unknown", b_context="way:open", b_visual="feature:obstacle distance:?far"):
+        b_context.set("way:narrow")
+        b_interrupt.set("planning_unit:squeeze when:now")
+        b_turn.set(f"watch:no way:unknown near:{float(far) < NEAR} do:{answer}")
+        b_visual.clear()
+        near.go(max(0, float(far) - NEAR) / speed)
+
+    def alert(b_turn="watch:yes way:?way", b_context="way:!open", b_visual="feature:obstacle distance:?far"):
+        b_turn.set(f"watch:no way:{way} near:{float(far) < NEAR} do:ask")
+        b_visual.clear()
+        near.go(max(0, float(far) - NEAR) / speed)
+
+    def turn(b_turn="do:turn"):
+        shoulders.turn(1, torso_rate, clavicle_rate)
+        b_turn.modify(do="ask")
+
+    def ask(b_turn="do:ask", motor="width:?width"):
+        vision.request(DOOR, width=f">{self.parent.wanted(float(width)):.4f}")
+        b_turn.modify(do="wait")
+
+    def found(b_turn="do:wait", vision="busy:False", b_visual="feature:opening distance:?far"):
+        shoulders.stop()
+        b_visual.clear()
+        b_context.set("way:clear")
+        b_turn.set("watch:yes way:clear")
+        way.go((float(far) + BEHIND) / speed)
+
+    def notice(b_turn="do:wait way:clear", vision="busy:False error:True"):
+        """What was wide enough is so no longer."""
+        b_context.set("way:narrow")
+        b_interrupt.set("planning_unit:squeeze when:now")
+        b_turn.modify(way="unknown")
+
+    def give_up(b_turn="do:wait near:True way:unknown", vision="busy:False error:True"):
+        motor.stop()
+        print(f"{self.now():.2f} s: stops before the wall")
+        self.stop()
+
+
+class EyesInPieces(Eyes):
+    """Stops turning with each answer, scans again, and turns on."""
+
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True"):
+        shoulders.stop()
+        scan.go(0.05)
+        b_turn.modify(do="scan")
+
+    def search_again(b_turn="do:scan", scan="state:over"):
+        scan.reset()
+        vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BEARING)
+        b_turn.modify(do="search")
+
+    def turn_on(b_turn="do:search", vision="watching:False", b_visual=None):
+        b_turn.modify(do="turn")
+
+    def turn_on_before(b_turn="do:search", vision="watching:False", b_visual="feature:obstacle distance:?far"):
+        b_turn.modify(do="turn", near=float(far) < NEAR)
+        b_visual.clear()
+
+
+class EyesAtOnce(Eyes):
+    """Turns on until an opening is found."""
+
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:False", near="state:!over"):
+        b_turn.modify(do="turn")
+
+    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:True", near="state:!over"):
+        b_turn.modify(do="ask")
+
+    def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over"):
+        near.reset()
+        vision.request("feature:obstacle", bottom_up=True, radius=NEAR, bearing=BEARING)
+        b_turn.modify(do="beware")
+
+    def go_on_with_care(b_turn="do:beware", vision="watching:False", b_visual=None):
+        b_turn.modify(do="ask")
+
+    def see_the_wall(b_turn="do:beware", vision="watching:False", b_visual="feature:obstacle"):
+        b_visual.clear()
+        b_turn.modify(do="ask", near=True)
+
+
+class Walker(SGOMS):
+    """What both variants have in common.
+
+    Source of the times: productions 50 ms, no latency of declarative memory (human-data); of their standard deviation of 20 ms: that
+    of the original's angle before wide doorways, 4.7 degrees at 240 degrees a second.
+    """
+
+    b_visual = Buffer()
+    b_turn = Buffer()
+    DM = Memory(SGOMS.b_DM, latency=0)
+    vision = Vision(b_visual, delay=0.05, bottom_up_delay=0.02, delay_sd=0.02)
+    motor = Motor(memory=DM, size_grid=0.001, extreme_step=8)
+    shoulders = Shoulders()
+    scan = Wait()
+    way = Wait()
+    near = Wait()
+    pass_doorway = Ordered("learn", "judge", "approach", "leave")
+    squeeze = Situated(turn="way:narrow", until="way:clear")
+
+    def init():
+        vision.distance_noise = noise
+        shoulders.side = 1
+        b_context.set("way:open")
+        b_plan_unit.set("planning_unit:pass_doorway")
+
+    # -- learning what its body is like
+
+    def swing_out(b_unit_task="unit_task:learn state:start", motor="busy:False"):
+        b_method.set("method:swing left:4")
+        b_unit_task.modify(state="out")
+        shoulders.turn(1, 120, 120)
+
+    def swing_back(b_unit_task="unit_task:learn state:out", motor="busy:False"):
+        b_unit_task.modify(state="back")
+        shoulders.turn(0, 120, 120)
+
+    def swing_to_the_other_side(b_unit_task="unit_task:learn state:back", b_method="left:?left!1", motor="busy:False"):
+        b_method.modify(left=int(left) - 1)
+        b_unit_task.modify(state="out")
+        shoulders.side = -shoulders.side
+        shoulders.turn(1, 120, 120)
+
+    def know(b_unit_task="unit_task:learn state:back", b_method="left:1", motor="busy:False"):
+        b_unit_task.modify(state="finished")
+
+    # -- judging
+
+    def look(b_unit_task="unit_task:judge state:start", motor="width:?width"):
+        shoulders.side = self.random.choice([1, -1])
+        b_unit_task.modify(state="looking")
+        vision.request(DOOR, width=f">{passable * float(width):.4f}")
+
+    def remember(b_unit_task="unit_task:judge state:looking", vision="busy:False error:True"):
+        b_unit_task.modify(state="remembering")
+        DM.request(f"posture:rotate_torso end:done extreme:{'maximum' if shoulders.side > 0 else 'minimum'}")
+
+    def imagine(b_unit_task="unit_task:judge state:remembering", b_DM="posture:? width:?width"):
+        b_unit_task.modify(state="imagining")
+        vision.request(DOOR, width=f">{passable * float(width):.4f}")
+        b_DM.clear()
+
+    def can_pass(b_unit_task="unit_task:judge state:?how", vision="busy:False", b_visual="feature:opening distance:?far"):
+        print(f"{self.now():.2f} s: can pass {'as it is' if how == 'looking' else 'turned'}")
+        b_unit_task.modify(state="finished")
+        b_visual.clear()
+        way.go((float(far) + BEHIND) / speed)
+
+    def decline(b_unit_task="unit_task:judge state:imagining", vision="busy:False error:True"):
+        print(f"{self.now():.2f} s: cannot pass")
+        self.stop()
+
+    # -- walking
+
+    def set_out(b_unit_task="unit_task:approach state:start resumed:no"):
+        b_unit_task.modify(state="walking")
+        b_turn.set("watch:yes way:unknown")
+        motor.walk(speed)
+
+    def walk_on(b_unit_task="unit_task:approach state:start resumed:yes"):
+        b_unit_task.modify(state="walking")
+
+    def arrive(b_unit_task="unit_task:approach state:walking", way="state:over"):
+        b_unit_task.modify(state="finished")
+
+    def arrive_while_turning(b_unit_task="unit_task:turn", way="state:over"):
+        b_context.set("way:clear")
+        b_unit_task.modify(state="finished")
+
+    def turn_back(b_unit_task="unit_task:leave state:start"):
+        b_turn.set("watch:no")
+        b_unit_task.modify(state="turning")
+        shoulders.stop()
+        shoulders.turn(0, 120, 120)
+        motor.stop("legs")
+
+    def stand(b_unit_task="unit_task:leave state:turning", motor="busy:False"):
+        print(f"{self.now():.2f} s: is through")
+        self.stop()
+
+    def be_held(b_turn="watch:?", motor="legs_end:blocked"):
+        print(f"{self.now():.2f} s: something is in the way")
+        motor.stop()
+        self.stop()
+
+
+class Replication(Walker):
+    """The original ACT-R 3D's model. Source of all numbers: facts about its code (human-data)."""
+
+    eyes = EyesInPieces()
+    answer = "turn"
+    passable = 1.139
+    torso_rate = clavicle_rate = 120.0
+
+    def wanted(self, width):
+        """Returns how wide an opening must be for it not to turn further [m]."""
+        fits = self.b_turn["way"] == "clear" or self.shoulders.angle() >= TORSO
+        return (TIGHT if fits else 1 + self.margin) * width
+
+
+class Human(Walker):
+    """A model of people.
+
+    It has three numbers that are not measured: when it reacts, how fast it turns, and up to which ratio. The last two
+    leave 6 to 8 cm on each side (Higuchi), and let it turn more when it is fast.
+    """
+
+    eyes = EyesAtOnce()
+    answer = "ask"
+    passable = 1.16
+
+    def wanted(self, width):
+        """Returns how wide an opening must be for it not to turn further [m]."""
+        angle = self.shoulders.angle()
+        return (TIGHT if angle >= TORSO else ENOUGH if angle > 1 else 1 + self.margin) * width
+
+
+REACTION = 1.2
+"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as shoulders turn."""
+TURNING = 93.0
+"""How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 120 degrees a second at 1.29 m/s, as the original's
+torso (human-data). That it grows with the speed is ours: people turn more when they are fast."""
+ENOUGH = 1.21
+"""Up to which ratio a person goes on turning. Ours: of what leaves 6 to 8 cm on each side (Higuchi, human-data)."""
+RADIUS = 3.0
+"""Within how many times its width an obstacle alerts the replication. Source: human-data."""
+TRUNK = 0.11
+"""How deep the replication's trunk is [m]. Ours: of what fits the original's means best; how deep it was is not known."""
+
+
+def body_of(parameters: Parameters) -> Mannequin:
+    """Returns who walks."""
+    p = parameters
+    trunk = {} if p.variant == "human" else {"trunk": "box", "depth": TRUNK}
+    return Mannequin(name="walker", height=HEIGHT, shoulder_width=p.shoulder_width or WIDTHS[p.group], **trunk)
+
+
+def mind_of(parameters: Parameters) -> Walker:
+    """Returns the mind of who walks."""
+    p = parameters
+    speed = p.speed or SPEEDS[p.group, p.condition]
+    given = {"speed": speed, "noise": p.noise}
+    if p.variant == "human":
+        rate = TURNING * speed
+        rates = {"torso_rate": rate * TORSO / (TORSO + CLAVICLE), "clavicle_rate": rate * CLAVICLE / (TORSO + CLAVICLE)}
+        return Human(margin=0.30 if p.margin is None else p.margin, radius=REACTION * speed, **rates, **given)
+    width = p.shoulder_width or WIDTHS[p.group]
+    return Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
+
+
+def build(parameters: Parameters) -> Simulation:
+    """Puts a walker 7 m before a doorway."""
+    scene = Scene(parts=(Floor(), Aperture(width=parameters.aperture), body_of(parameters)))
+    simulation = Simulation(scene, {"walker": lambda: mind_of(parameters)})
+    simulation.measure(Passage("walker"))
+    return simulation
