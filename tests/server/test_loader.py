@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from actr3d.actr.limits import RunLimits
 from actr3d.errors import ConfigurationError
+from actr3d.running.building import Blueprint
 from workbench.loader import Change, listing_of
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -144,3 +146,19 @@ def test_good_values_pass() -> None:
         listing.parameter(name).check(value)
     with pytest.raises(ConfigurationError, match="did you mean 'width'"):
         listing.parameter("widht")
+
+
+@pytest.mark.parametrize("name", ["doorway.py", "aperture_passage.py"])
+def test_a_text_tells_of_parameters_what_the_loaded_model_does(name: str) -> None:
+    source = (MODELS / name).read_text(encoding="utf-8")
+    with RunLimits(seed=1):
+        fields = Blueprint(source, name, MODELS).fields
+    told = listing_of(source, name).parameters
+    assert [(one.name, one.default, one.optional, one.unit, one.help) for one in told] == [
+        (one.name, one.default, one.optional, one.unit, one.meaning) for one in fields
+    ]
+    for parameter, one in zip(told, fields, strict=True):
+        signs = ((parameter.above, ">"), (parameter.least, ">="), (parameter.below, "<"), (parameter.most, "<="))
+        assert sorted(f"{sign} {limit}" for limit, sign in signs if limit is not None) == sorted(one.bounds)
+        assert parameter.choices == one.choices
+    assert [one.name for one in told if one.live == Change(word="aperture")] == [told[0].name if name == "doorway.py" else "aperture"]
