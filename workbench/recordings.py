@@ -113,6 +113,7 @@ def _summary(path: Path) -> Summary | None:
     try:
         with Recorded(path) as recorded:
             facts = recorded.facts
+            ended: dict[str, Any] | None = facts.get("ended")
             ticks = recorded.ticks
             last = seconds(ticks * facts["period_us"]) if "period_us" in facts else _last_time(recorded)
             return Summary(
@@ -121,7 +122,7 @@ def _summary(path: Path) -> Summary | None:
                 kind=facts["kind"],
                 seed=facts.get("program_seed", facts.get("seed")),
                 parameters=facts.get("parameters", {}),
-                ended=facts.get("ended", {}).get("by"),
+                ended=None if ended is None else ended["by"],
                 time=last,
                 events=recorded.event_count,
                 size=path.stat().st_size,
@@ -156,16 +157,24 @@ def events_csv(path: Path) -> Iterator[str]:
 def states_csv(path: Path) -> Iterator[str]:
     """Yields the physics of a recording as lines of CSV: the time, and all numbers of MuJoCo's integration state.
 
+    Of a program, which may make several simulations, the number of the run comes first, and each run begins with a head of its own.
+
     Raises:
         RecordingError: If it cannot be read.
     """
     with Recorded(path) as recorded:
-        period = recorded.facts.get("period_us", 0)
-        for _, tick, state, _ in recorded.states():
+        period: int | None = recorded.facts.get("period_us")
+        for run, tick, state, _ in recorded.states():
             numbers = array("d", state)
-            if tick == 0:
-                yield _csv_line(("time [s]", *(f"state_{n}" for n in range(len(numbers)))))
-            yield _csv_line((seconds(tick * period), *numbers))
+            names = [f"state_{n}" for n in range(len(numbers))]
+            if period is not None:
+                if tick == 0:
+                    yield _csv_line(("time [s]", *names))
+                yield _csv_line((seconds(tick * period), *numbers))
+            else:
+                if tick == 0:
+                    yield _csv_line(("run", "tick", *names))
+                yield _csv_line((run, tick, *numbers))
 
 
 def curves(path: Path, names: Sequence[str], most: int) -> dict[str, Any]:

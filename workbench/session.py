@@ -79,6 +79,7 @@ class Session(Telling):
         run: bool = False,
         source: str | None = None,
         commands: list[tuple[int, dict[str, Any]]] | None = None,
+        helpers: dict[str, tuple[str, str]] | None = None,
     ) -> None:
         """Begins a new run in a new worker; the old one stays until this one is built, so that an error leaves it on screen.
 
@@ -89,6 +90,7 @@ class Session(Telling):
             run: Whether it goes on at once.
             source: The model's text; None for what is in the file now.
             commands: What users did in an earlier run, to be done again.
+            helpers: The helper modules of that run, as `actr3d.actr.helper_texts` keeps them.
 
         Raises:
             ModelFileError: If the file cannot be read.
@@ -104,6 +106,7 @@ class Session(Telling):
             seed=fresh_seed() if seed is None else seed,
             record=str(self._new_recording(self.path.stem)) if record else None,
             commands=commands or [],
+            helpers=helpers or {},
             factor=self.speed,
             breakpoints=self.breakpoints,
             run=run,

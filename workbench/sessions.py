@@ -102,7 +102,8 @@ class Sessions:
         session = self._new(path, path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name)
         seed = facts.get("program_seed", facts["seed"])
         settings = facts.get("parameters", {})
-        await session.begin(settings, seed=seed, record=False, source=facts["sources"][file], commands=commands)
+        helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
+        await session.begin(settings, seed=seed, record=False, source=facts["sources"][file], commands=commands, helpers=helpers)
         return session
 
     def _new(self, path: Path, model: str) -> Session:

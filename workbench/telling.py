@@ -76,7 +76,7 @@ class Telling:
         if state is None:
             return b"null"
         told = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
-        return msgspec.json.encode({**told, "apertures": state.apertures, "parts": Raw(state.parts)})
+        return msgspec.json.encode({**told, "apertures": state.apertures, "result": Raw(state.result), "parts": Raw(state.parts)})
 
     def _text_differs(self, start: Start) -> bool:
         try:

@@ -170,7 +170,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
         else:
             if begun:
                 simulation._course.repeat_commands()
-            if "ended" in recorded.facts:
+            if recorded.facts.get("ended") is not None:  # it may have gone another way from before its end
                 simulation.conclude()
             if "whole" in recorded.facts:
                 simulation._journal.voice.finish()

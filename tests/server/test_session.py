@@ -10,6 +10,7 @@ import pytest
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.running.building import build
+from actr3d.running.printed import ProgramOutput
 from actr3d.trace import Trace
 from tests.server.desk import Desk, RefusedError, Talk
 
@@ -33,8 +34,8 @@ def traced_doorway(**settings: float) -> list[list[Any]]:
 
 
 def bare(events: list[list[Any]]) -> list[list[Any]]:
-    """Returns events without their data, and without lines that were printed."""
-    return [event[:3] for event in events if event[2] != "output"]
+    """Returns events without their data."""
+    return [event[:3] for event in events]
 
 
 def ended(talk: Talk) -> dict[str, Any]:
@@ -239,8 +240,9 @@ def test_a_program_runs_steps_goes_back_and_is_explained(desk: Desk, tmp_path: P
     assert talk.until("paused", time=0.15)["furthest"] == 0.25
     ended(talk)
     trace = Trace("all")
-    with RunLimits(seed=1):
-        run_text(COUNTING, "model.py", limits=RunLimits(seed=1, trace=trace))
+    limits = RunLimits(seed=1, trace=trace)
+    with ProgramOutput(limits):
+        run_text(COUNTING, "model.py", limits=limits)
     assert bare(talk.events) == [[event.time_us, event.source, event.kind] for event in trace]
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.picture import picture_of
 from actr3d.actr.shared_random import shared_random
@@ -37,6 +39,7 @@ BLOCK = 0.004
 """For about so long [s] the run goes on before it looks whether a user has said something."""
 MOST_TICKS = 64
 """And for no more ticks than these."""
+ENDINGS = {"stop": "a mind said stop", "done": "no mind has anything left to do"}
 
 
 class BuiltRun:
@@ -53,6 +56,8 @@ class BuiltRun:
         self._start = conductor.link.start
         self._recording: Recording | None = None
         self._tick_time = 0.0
+        self._end: tuple[int, str] | None = None
+        """At which tick the run is over, and why, once that is known."""
         self._simulation: Simulation
 
     def play(self) -> None:
@@ -64,10 +69,11 @@ class BuiltRun:
         start = self._start
         limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
         with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
-            simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder))
+            helpers = HelperTexts(start.helpers)
+            simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder), helpers)
             output.lead_to(simulation)
             self._simulation = simulation
-            self._prepare(limits, parameters)
+            self._prepare(limits, parameters, helpers)
             try:
                 self._conductor.run = self
                 self._conductor.link.post(self._facts(limits, parameters))
@@ -75,18 +81,19 @@ class BuiltRun:
                 self._conductor.link.flush()  # whatever the model does next, that it was built is known
                 while True:
                     self._conductor.attend()
-                    self._go_on(output.finish)
+                    self._go_on()
             finally:
                 if self._recording is not None:
                     self._recording.close()
 
-    def _prepare(self, limits: RunLimits, parameters: dict[str, Any]) -> None:
+    def _prepare(self, limits: RunLimits, parameters: dict[str, Any], helpers: HelperTexts) -> None:
         simulation, start = self._simulation, self._start
         simulation.traced()
         if start.record is not None:
-            facts = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
-            columns = columns_of(simulation.world.mj_model)
-            self._recording = simulation.record(start.record, **facts, program_seed=limits.program_seed, columns=columns)
+            facts: dict[str, Any] = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
+            facts.update(helpers=helpers.loaded, program_seed=limits.program_seed, columns=columns_of(simulation.world.mj_model))
+            self._recording = simulation.record(start.record, **facts)
+            helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
         if start.commands:
             simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
 
@@ -117,27 +124,34 @@ class BuiltRun:
         }
         return {"bodies": bodies, "apertures": [part.name for part in world.scene.parts if isinstance(part, Aperture)]}
 
-    def _go_on(self, finish: Callable[[], None]) -> None:
+    def _go_on(self) -> None:
         """Goes on by a few ticks."""
         conductor, simulation = self._conductor, self._simulation
         ticks = self._allowance()
         begin = perf_counter()
         try:
             report = simulation.run(ticks * simulation.period)
+            over = "stop" if report.ended_by == "stop" else "done" if simulation.done else None
+            if over is not None:
+                self._conclude()
         except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
             conductor.link.post(notice_of(error))
             conductor.end("failed", told_of(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
         conductor.passed()
-        if report.ended_by == "stop" or simulation.done:
-            finish()
-            by = "stop" if report.ended_by == "stop" else "done"
-            if self._recording is not None:
-                self._recording.fact("ended", {"by": by})
-            conductor.end("ended", "a mind said stop" if by == "stop" else "no mind has anything left to do")
-        else:
+        if over is None:
             conductor.pace(self.clock)
+            return
+        self._end = simulation.ticks, over
+        if self._recording is not None:
+            self._recording.fact("ended", {"by": over})
+        conductor.end("ended", ENDINGS[over])
+
+    def _conclude(self) -> None:
+        """Tells the result, and what was printed last; in the order of a replay."""
+        self._simulation.conclude()
+        self._simulation._journal.voice.finish()
 
     def _allowance(self) -> int:
         """Returns how many ticks to go before looking again what users want."""
@@ -200,14 +214,24 @@ class BuiltRun:
                 raise SimulationError(f"'{command.type}' is nothing that is said to a run")
 
     def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None) -> None:
+        if self._conductor.status == "ended":
+            raise SimulationError("the run is over: go back to an earlier time, or begin again")
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
         self._simulation.command(word, *values, body=body, **named)
+        if self._end is not None:
+            self._end = None
+            if self._recording is not None:
+                self._recording.fact("ended", None)
         self._conductor.goes_another_way(before)
 
     def _seek(self, tick: int) -> None:
         self._simulation.seek(seconds(tick * self.period))
-        self._conductor.went_back()
+        if self._end is None or tick != self._end[0]:
+            self._conductor.went_back()
+            return
+        self._conclude()
+        self._conductor.end("ended", ENDINGS[self._end[1]])
 
     def answer(self, question: Any) -> Any:
         """Returns what is asked.
@@ -222,6 +246,11 @@ class BuiltRun:
         world = self._simulation.world
         names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
         return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+
+    def result(self) -> dict[str, Any] | None:
+        """Returns what was measured of the run, if anything was."""
+        result = self._simulation.result()
+        return None if result is None else asdict(result)
 
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts of all minds are like."""

@@ -72,6 +72,10 @@ class Conducted(Protocol):
         """Returns the physics' state, and how wide apertures are."""
         ...
 
+    def result(self) -> dict[str, Any] | None:
+        """Returns what was measured of the run, if anything was."""
+        ...
+
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts are like."""
         ...
@@ -288,6 +292,7 @@ class Conductor:
             events=count,
             parts=to_json(run.parts()).encode(),
             apertures=apertures,
+            result=to_json(run.result() if self.status == "ended" else None).encode(),
             physics=physics,
         )
         self.link.show(state, self._sent, [to_json([e.time_us, e.source, e.kind, e.data]).encode() for e in news])

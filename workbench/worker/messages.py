@@ -34,6 +34,8 @@ class Start(Message, frozen=True, kw_only=True):
     record: str | None = None
     commands: list[tuple[int, dict[str, Any]]] = []
     """What users did in an earlier run, to be done again: after which tick, and what (`Command.to_data`)."""
+    helpers: dict[str, tuple[str, str]] = {}
+    """The file and text of each helper module of an earlier run, by name; others are read from the folder."""
     factor: float | None = None
     breakpoints: tuple[str, ...] = ()
     run: bool = False
@@ -93,6 +95,8 @@ class State(Message, frozen=True, kw_only=True):
     """JSON: see `actr3d.actr.picture`."""
     apertures: dict[str, float]
     """Free widths by name [m]."""
+    result: bytes
+    """JSON: what was measured of a run that has ended; null where nothing was, or it goes on."""
     physics: bytes | None
     """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.picture import picture_of
@@ -15,13 +16,14 @@ from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.running.printed import ProgramOutput
-from actr3d.trace import Trace, TraceEvent
+from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor, Leaving
 from workbench.worker.messages import Facts
+from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
@@ -56,7 +58,8 @@ class ProgramRun:
         self._rush: int | None = None
         """Up to where it goes without being shown or held [us]."""
         self._again = False
-        self._heard = 0
+        self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
+        """The helper modules as they were the first time; see `HelperTexts`."""
 
     def play(self) -> None:
         """Runs it, and again where a user goes back, until the worker is to leave."""
@@ -85,11 +88,14 @@ class ProgramRun:
         """Runs the program from its start to its end, or until it is left."""
         start, conductor = self._conductor.link.start, self._conductor
         self._again = False
-        self._clock = self._heard = 0
+        self._clock = 0
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass)
+        helpers = HelperTexts(self._helpers)
+        helpers.heard = self._keep_helpers
         if self._recording is not None:
-            trace.listen(self._record)
+            limits.recorder = again = RecordedOnce(self._recording)
+            trace.listen(again.event)
         if self._rush == 0:
             self._rush = None
             conductor.went_back()
@@ -101,7 +107,7 @@ class ProgramRun:
         try:
             with ProgramOutput(limits) as output:
                 if not self._again:
-                    run_text(self._source, start.path, limits=limits, folder=Path(start.folder))
+                    run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
                 if not self._left:
                     output.finish()
         except _Again:
@@ -127,12 +133,11 @@ class ProgramRun:
         self._furthest = max(self._furthest, self._clock)
         self._conductor.end(status, reason)
 
-    def _record(self, event: TraceEvent) -> None:
-        """Records an event, unless it is known from the first time."""
-        recording = self._recording
-        self._heard += 1
-        if recording is not None and self._heard > recording.events:
-            recording.event_alone(event)
+    def _keep_helpers(self, loaded: Mapping[str, Sequence[str]]) -> None:
+        new = {name: text for name, text in loaded.items() if name not in self._helpers}
+        self._helpers |= new
+        if new and self._recording is not None:
+            self._recording.fact("helpers", self._helpers)
 
     def _pass(self, begin: int, end: int) -> None:
         """Lets time pass, as fast as the conductor says; holds the program up meanwhile."""
@@ -217,6 +222,10 @@ class ProgramRun:
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns nothing: a program has no world that is shown."""
         return None, {}
+
+    def result(self) -> dict[str, Any] | None:
+        """Returns nothing: a program is not measured."""
+        return None
 
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts of its latest models are like."""
