@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -279,7 +280,10 @@ def scene_of(server: Served) -> str:
 def viser_ports(server: Served) -> list[int]:
     """Returns the other ports on which the server listens."""
     listening: list[int] = []
-    inodes = {link.readlink().name for link in Path(f"/proc/{server.process.pid}/fd").iterdir() if "socket" in str(link.readlink())}
+    inodes: set[str] = set()
+    for link in Path(f"/proc/{server.process.pid}/fd").iterdir():
+        with suppress(FileNotFoundError):  # the server closes and opens others meanwhile
+            inodes.add(link.readlink().name)
     for line in Path(f"/proc/{server.process.pid}/net/tcp").read_text(encoding="ascii").splitlines()[1:]:
         fields = line.split()
         if fields[3] == "0A" and f"socket:[{fields[9]}]" in inodes:

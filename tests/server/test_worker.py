@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import socket
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -182,3 +185,12 @@ def test_the_order_of_sets_is_that_of_the_command(desk: Desk, tmp_path: Path) ->
 def test_texts_with_half_characters_are_told(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("raise ValueError('half \\ud800 a character')"), run=True, wait=None)
     talk.wait_for_notice("half \\ud800 a character")
+
+
+def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behind() -> None:
+    ours, theirs = socket.socketpair()
+    ours.close()
+    command = [sys.executable, "-m", "workbench.worker.zygote", str(theirs.fileno())]
+    done = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, text=True, timeout=60)
+    theirs.close()
+    assert (done.returncode, done.stderr) == (0, "")

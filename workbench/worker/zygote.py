@@ -40,7 +40,7 @@ def main(number: int) -> None:
     signal.set_wakeup_fd(wake)
     gc.collect()
     gc.freeze()
-    control.sendall(ANSWER.pack(READY, os.getpid(), 0))
+    _answer(control, READY, os.getpid(), 0)
     children: set[int] = set()
     while True:
         ready, _, _ = select.select([control, woken], [], [])
@@ -58,10 +58,16 @@ def main(number: int) -> None:
             break
         pid = _born(control, (woken, wake), descriptors, ASK.unpack(data)[0])
         children.add(pid)
-        control.sendall(ANSWER.pack(BORN, pid, 0))
+        _answer(control, BORN, pid, 0)
     for pid in children:
         with suppress(OSError):
             os.killpg(pid, signal.SIGKILL)
+
+
+def _answer(control: socket.socket, *what: int) -> None:
+    """Tells the server something; that it is gone is found out where it is heard next."""
+    with suppress(OSError):
+        control.sendall(ANSWER.pack(*what))
 
 
 def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int], memory: int) -> int:
@@ -94,8 +100,7 @@ def _bury(control: socket.socket, children: set[int]) -> None:
             done, status = os.waitpid(pid, os.WNOHANG)
             if done:
                 children.discard(pid)
-                with suppress(OSError):
-                    control.sendall(ANSWER.pack(DEAD, pid, os.waitstatus_to_exitcode(status)))
+                _answer(control, DEAD, pid, os.waitstatus_to_exitcode(status))
 
 
 if __name__ == "__main__":
