@@ -6,7 +6,6 @@ import argparse
 import importlib
 import os
 import sys
-import traceback
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
@@ -17,15 +16,14 @@ from typing import Any, NoReturn, TextIO
 
 from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
-from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.actr.reading import read_source
-from actr3d.errors import Actr3dError, ModelFileError, SettingError
+from actr3d.errors import Actr3dError, SettingError
 from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
+from actr3d.running.complaint import complaint
 from actr3d.running.options import options_help, read_options, read_settings
 from actr3d.running.run import has_build, run_model
-from actr3d.saying import is_library
 from actr3d.trace import LEVELS, Trace, TraceEvent
 from actr3d.values import to_json
 
@@ -142,30 +140,9 @@ def replay_command(options: argparse.Namespace) -> int:
 
 
 def _complain(error: BaseException) -> int:
-    """Prints an error, and what caused it, with the modeller's own lines only; a file that cannot be loaded names its own line."""
-    report = traceback.TracebackException.from_exception(error)
-    _keep_own_lines(report)
-    if isinstance(error, ModelFileError):
-        report.stack.clear()
-    text = "".join(report.format())
-    if isinstance(error, Actr3dError):
-        if not report.stack:
-            text = text.removeprefix("Traceback (most recent call last):\n")
-        text = text.replace(f"{type(error).__module__}.{type(error).__qualname__}: ", "error: ")
-    name = getattr(error, "name", None)
-    if name in PYTHON_2_NAMES and isinstance(error, (NameError, ImportError, AttributeError)):
-        text += f"'{name}' is a name of Python 2: this file is written for Python 2; convert it to Python 3\n"
-    print(text, end="", file=sys.stderr)
+    """Prints an error, and what caused it, with the modeller's own lines only."""
+    print(complaint(error).text, end="", file=sys.stderr)
     return 1
-
-
-def _keep_own_lines(report: traceback.TracebackException | None) -> None:
-    """Leaves the library's own lines, and the loader's, out of a report and out of those of its causes."""
-    if report is not None:
-        own = [frame for frame in report.stack if not (is_library(frame.filename) or frame.filename.startswith("<frozen"))]
-        report.stack = traceback.StackSummary.from_list([frame for frame in own if Path(frame.filename).name != "actr3d"])
-        _keep_own_lines(report.__cause__)
-        _keep_own_lines(report.__context__)
 
 
 def _show_warning(

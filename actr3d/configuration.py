@@ -14,6 +14,28 @@ import annotated_types
 from actr3d.errors import ConfigurationError, did_you_mean
 
 
+class Live:
+    """Stands in a field's type: what changes while a run goes on, by which command.
+
+    `width: Annotated[float, Gt(0), Live("aperture")]` is changed by `simulation.command("aperture", width)`;
+    `Live("parameter", "walker.speed")` by `simulation.command("parameter", "walker.speed", speed)`. What it means for a run
+    that begins is up to who builds it.
+
+    Args:
+        word: The command.
+        before: What it takes before the value.
+        body: The body it is said to, for a word that more than one body takes.
+    """
+
+    def __init__(self, word: str, *before: str, body: str | None = None) -> None:
+        self.word = word
+        self.before = before
+        self.body = body
+
+    def __repr__(self) -> str:
+        return f"Live({', '.join(map(repr, (self.word, *self.before)))}{f', body={self.body!r}' if self.body else ''})"
+
+
 class Configuration:
     """Checks the fields of a frozen dataclass against the types and bounds they are declared with.
 

@@ -69,6 +69,11 @@ Listener = Callable[[TraceEvent], object]
 class Run(Protocol):
     """What a trace asks of a run that it records."""
 
+    @property
+    def model(self) -> Any:
+        """Its top model, to look at; None where it is over and gone."""
+        ...
+
     def now_us(self) -> int | None:
         """Returns its present [us]; None where it is over and gone, or has become part of another."""
         ...
@@ -235,6 +240,10 @@ class Trace:
 
     def __iter__(self) -> Iterator[TraceEvent]:
         return map(_event, self._records)
+
+    def since(self, number: int) -> list[TraceEvent]:
+        """Returns the events from a number on, counted from 0; in no more time than they are many."""
+        return list(map(_event, self._records[number:]))
 
     def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
         """Returns the events of one kind, of one source where it is named, in order."""

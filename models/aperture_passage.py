@@ -32,7 +32,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le
 
 from actr3d.actr import *
-from actr3d.configuration import Configuration
+from actr3d.configuration import Configuration, Live
 from actr3d.motor import Motor
 from actr3d.sgoms import SGOMS, Ordered, Situated
 from actr3d.simulation import Passage, Simulation
@@ -65,7 +65,7 @@ class Parameters(Configuration):
     variant: Literal["human", "replication"] = "human"
     """Who walks: a model of people, or the original ACT-R 3D's model."""
 
-    aperture: Annotated[float, Gt(0), Le(3)] = 0.5
+    aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
     """The free width of the doorway [m]. Source: Warren & Whang (1987) have 0.35 to 0.70."""
 
     group: Literal["small", "large"] = "small"

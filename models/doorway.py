@@ -16,7 +16,7 @@ from typing import Annotated
 from annotated_types import Gt, Le
 
 from actr3d.actr import *
-from actr3d.configuration import Configuration
+from actr3d.configuration import Configuration, Live
 from actr3d.simulation import BodyPort, Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
@@ -28,7 +28,7 @@ SIDEWAYS = {"pelvis_yaw": 0.6, "torso_yaw": 0.75}
 class Parameters(Configuration):
     """What may be set."""
 
-    width: Annotated[float, Gt(0), Le(3)] = 0.5
+    width: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
     """The free width of the doorway [m]."""
 
     speed: Annotated[float, Gt(0), Le(3)] = 1.2

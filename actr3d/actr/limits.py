@@ -60,6 +60,9 @@ class RunLimits:
     """Where else simulations tell what they do, beside a trace of everything; None for nowhere."""
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
     """Tells the time of the latest run [us]."""
+    passing: Callable[[int, int], object] | None = field(default=None, repr=False)
+    """Called before the time of a run goes on, when all that was to happen at that time has happened: from when, and to when
+    [us]. Here a program can be held up, or ended by an `EndOfRun`."""
     last_resort: Callable[[], Any] | None = field(default=None, repr=False)
     """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)

@@ -231,6 +231,7 @@ class Scheduler:
         queue = self.queue
         heap = queue.heap
         end = NEVER if until is None else until
+        passing = None if self.limits is None else self.limits.passing
         still = 0
         while not self.stop_flag:
             if self._incoming:
@@ -238,6 +239,8 @@ class Scheduler:
             if not heap or (time := heap[0][0]) > end:
                 break
             if time > self.now_us:
+                if passing is not None:
+                    passing(self.now_us, time)
                 self.now_us = LOG.time_us = time
                 still = 0
             else:
@@ -306,6 +309,8 @@ class Scheduler:
 
     def _advance(self, time: int, total: float) -> None:
         """Lets time pass without events, until then [us], which is also a sum of delays [s]."""
+        if self.limits is not None and self.limits.passing is not None and time > self.now_us:
+            self.limits.passing(self.now_us, time)
         self.now_us = time
         self.queue.sum = total
         LOG.time_us = time

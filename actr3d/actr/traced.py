@@ -60,6 +60,11 @@ class TracedRun:
     def __init__(self, top: TracedPart) -> None:
         self._top = ref(top)
 
+    @property
+    def model(self) -> TracedPart | None:
+        """Its top model; None where it is gone."""
+        return self._top()
+
     def now_us(self) -> int | None:
         """Returns its present [us]; None where the model is gone, or part of another now."""
         top = self._top()

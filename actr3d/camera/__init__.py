@@ -1,8 +1,9 @@
 """The Geometric Camera: the exact edges of what an eye sees, without pixels and without meanings."""
 
 from actr3d.camera.geometric import GeometricCamera
+from actr3d.camera.glance import glance
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.sense import Sight
 from actr3d.camera.view import View
 
-__all__ = ["CameraParameters", "GeometricCamera", "Sight", "View"]
+__all__ = ["CameraParameters", "GeometricCamera", "Sight", "View", "glance"]

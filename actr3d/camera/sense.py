@@ -29,6 +29,8 @@ class Sight:
     """
 
     def __init__(self, body: Body, parameters: CameraParameters) -> None:
+        self.parameters = parameters
+        """How it sees."""
         self._world = body.world
         self._root = body.root
         self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)

@@ -150,7 +150,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
         return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
     simulation._journal.raise_level("all")
     simulation._journal.listen(events.take)
-    simulation._course.plan([Command.from_data(command.tick, command.data) for command in recorded.commands()])
+    simulation.plan([Command.from_data(command.tick, command.data) for command in recorded.commands()])
     scene = "" if recorded.facts["scene"] == simulation.world.fingerprint else "; it compiles to another scene than then"
     difference: str | None = None
     begun = False
@@ -170,7 +170,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
         else:
             if begun:
                 simulation._course.repeat_commands()
-            if "ended" in recorded.facts:
+            if recorded.facts.get("ended") is not None:  # it may have gone another way from before its end
                 simulation.conclude()
             if "whole" in recorded.facts:
                 simulation._journal.voice.finish()

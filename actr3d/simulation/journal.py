@@ -51,12 +51,13 @@ class Journal:
         self.voice = Voice(self._say)
         """What the minds print to."""
 
-    def raise_level(self, level: str) -> None:
-        """Lets the next trace record at least as much as a level.
+    def raise_level(self, level: str, *, keep: bool = False) -> None:
+        """Lets the next trace record at least as much as a level, and keep it where that is asked for.
 
         Raises:
             ParameterError: If the level is unknown.
         """
+        self._keep |= keep
         self._level = max(self._level, Trace(level).level, key=LEVELS.index)
 
     def listen(self, listener: Listener) -> None:

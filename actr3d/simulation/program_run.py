@@ -86,6 +86,12 @@ class ProgramRun:
 
     # -- what the trace asks of it
 
+    @property
+    def model(self) -> Any:
+        """The environment of its minds; None where it is gone."""
+        present = self._present()
+        return None if present is None else present.model
+
     def now_us(self) -> int | None:
         """Returns its present [us]; None where it is gone."""
         present = self._present()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import asdict
 from functools import partial
@@ -16,6 +16,7 @@ from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.simulation.arguments import check_names, count_of, factor_of, named_minds, seed_of, steps_of, whole_ticks, world_of
+from actr3d.simulation.commands import Command
 from actr3d.simulation.course import Course
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.global_random import GlobalRandom
@@ -122,6 +123,11 @@ class Simulation:
         return {name: environment[name] for name in (*self._minds, *self._bodiless)}
 
     @property
+    def done(self) -> bool:
+        """Whether no mind has anything left to do, now or ever, and no user has asked for anything."""
+        return self._course.lockstep.minds.done and not self._submitted and self.ticks >= self._course.furthest
+
+    @property
     def trace(self) -> Trace | None:
         """The trace of the run up to now; None where nothing is traced. After `seek` it is another one."""
         return self._course.lockstep.trace
@@ -199,7 +205,7 @@ class Simulation:
         """Goes on until something ends the run; says what."""
         minds = self._course.lockstep.minds
         while end is None or self.ticks < end:
-            if open_end and minds.done and not self._submitted and self.ticks >= self._course.furthest:
+            if open_end and self.done:
                 return "done"
             self.tick()
             self.tock()
@@ -260,6 +266,27 @@ class Simulation:
     def observe(self, observer: Observer) -> None:
         """Calls an observer with a `Glimpse` after each tock, and after `seek`; it sees copies and can change nothing."""
         self._onlookers.add(observer)
+
+    def traced(self, level: str = "all") -> None:
+        """Lets the trace hold at least so much, whoever made the simulation, and keep it: `trace` then has it all.
+
+        Raises:
+            SimulationError: If the run has begun already.
+            ParameterError: If the level is unknown.
+        """
+        if self._course.begun:
+            raise SimulationError("a trace holds a run from its start on, and this one has begun already")
+        self._journal.raise_level(level, keep=True)
+
+    def plan(self, commands: Sequence[Command]) -> None:
+        """Lets the commands of an earlier run be done again, each after its tick, as if this run had gone back to its start.
+
+        Raises:
+            SimulationError: If the run has begun already.
+        """
+        if self._course.begun:
+            raise SimulationError("commands are planned before the run begins, and this one has begun already")
+        self._course.plan(commands)
 
     def measure(self, measure: Measure) -> None:
         """Lets a measure look at every physics step from the start of the run on; what it finds is the run's result.

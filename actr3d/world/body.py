@@ -198,6 +198,11 @@ class Body:
         for side, hand in self.hands.items():
             hand.restore(held.get(side))
 
+    @property
+    def senses(self) -> tuple[Sense, ...]:
+        """Its senses that remember something, in the order in which they were first used."""
+        return tuple(self._senses.values())
+
     def sense(self, make: Callable[[Body, P], S], parameters: P) -> S:
         """Returns the one sense of its kind and parameters, which is made when it is first asked for.
 

@@ -1,0 +1,76 @@
+"""What is told of an error that a model raises: the modeller's own lines, and none of the library's."""
+
+from __future__ import annotations
+
+import re
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+
+from actr3d.actr.python2 import PYTHON_2_NAMES
+from actr3d.errors import Actr3dError, ModelFileError
+from actr3d.saying import is_library
+
+
+@dataclass(frozen=True, kw_only=True)
+class Complaint:
+    """An error as its model's author is told of it."""
+
+    message: str
+    """What went wrong, without where."""
+    text: str
+    """All of it, with the modeller's lines that led there; ends with a line break."""
+    file: str | None
+    """The file of the innermost of these lines; None where there is none."""
+    line: int | None
+    """Its number in that file, from 1."""
+
+
+def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
+    """Returns what is told of an error, and of what caused it; a file that cannot be loaded names its own line.
+
+    Args:
+        error: The error.
+        hidden: The folder of the program that runs the model, whose lines are left out, too.
+    """
+    report = traceback.TracebackException.from_exception(error)
+    _keep_own_lines(report, hidden)
+    if isinstance(error, ModelFileError):
+        report.stack.clear()
+    text = "".join(report.format())
+    if isinstance(error, Actr3dError):
+        if not report.stack:
+            text = text.removeprefix("Traceback (most recent call last):\n")
+        text = text.replace(f"{type(error).__module__}.{type(error).__qualname__}: ", "error: ")
+    name = getattr(error, "name", None)
+    if name in PYTHON_2_NAMES and isinstance(error, (NameError, ImportError, AttributeError)):
+        text += f"'{name}' is a name of Python 2: this file is written for Python 2; convert it to Python 3\n"
+    file, line = _place(error, report)
+    # A text's own name for tracebacks is a kind of text of its own.
+    file = None if file is None else str(file)
+    message = str(error) if isinstance(error, Actr3dError) else "".join(report.format_exception_only()).strip()
+    return Complaint(message=message, text=text, file=file, line=line)
+
+
+def _place(error: BaseException, report: traceback.TracebackException) -> tuple[str | None, int | None]:
+    named = re.match(r"(.+?):(\d+): ", str(error)) if isinstance(error, ModelFileError) else None
+    if named is not None:
+        return named[1], int(named[2])
+    if isinstance(error, SyntaxError) and error.filename is not None:
+        return error.filename, error.lineno
+    if report.stack:
+        return report.stack[-1].filename, report.stack[-1].lineno
+    return None, None
+
+
+def _keep_own_lines(report: traceback.TracebackException | None, hidden: str | None) -> None:
+    """Leaves the library's own lines, and the loader's, out of a report and out of those of its causes."""
+    if report is not None:
+        report.stack = traceback.StackSummary.from_list([frame for frame in report.stack if not _is_ours(frame.filename, hidden)])
+        _keep_own_lines(report.__cause__, hidden)
+        _keep_own_lines(report.__context__, hidden)
+
+
+def _is_ours(file: str, hidden: str | None) -> bool:
+    loader = file.startswith("<frozen") or Path(file).name == "actr3d"
+    return loader or is_library(file) or (hidden is not None and file.startswith(hidden))

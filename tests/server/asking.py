@@ -1,0 +1,91 @@
+"""Speaks to the application without a server, as ASGI does: also with headers that no client would send."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable, MutableMapping
+from typing import Any
+
+from workbench.auth import App, Gate, Token
+
+TOKEN = "a-token-of-24-or-more-bytes-for-tests"
+GATE = Gate(token=Token(TOKEN), port=8000)
+HOST = ("host", "127.0.0.1:8000")
+ORIGIN = ("origin", "http://127.0.0.1:8000")
+COOKIE = ("cookie", f"workbench_8000={TOKEN}")
+JSON = ("content-type", "application/json")
+OURS = ("x-workbench", "1")
+
+Header = tuple[str, str]
+
+
+def _scope(kind: str, path: str, headers: Iterable[Header], query: str, method: str) -> dict[str, Any]:
+    return {
+        "type": kind,
+        "asgi": {"version": "3.0", "spec_version": "2.4"},
+        "http_version": "1.1",
+        "scheme": "http" if kind == "http" else "ws",
+        "method": method,
+        "path": path,
+        "raw_path": path.encode(),
+        "query_string": query.encode(),
+        "root_path": "",
+        "headers": [(name.lower().encode(), value.encode("latin-1")) for name, value in headers],
+        "client": ("127.0.0.1", 1),
+        "server": ("127.0.0.1", 8000),
+        "subprotocols": [],
+        "state": {},
+        "extensions": {},
+    }
+
+
+class Answer:
+    """What came back."""
+
+    def __init__(self, messages: list[MutableMapping[str, Any]]) -> None:
+        self.messages = messages
+
+    @property
+    def status(self) -> int:
+        return next(message["status"] for message in self.messages if message["type"] == "http.response.start")
+
+    @property
+    def headers(self) -> dict[str, str]:
+        start = next(message for message in self.messages if message["type"] == "http.response.start")
+        return {name.decode().lower(): value.decode("latin-1") for name, value in start["headers"]}
+
+    @property
+    def body(self) -> bytes:
+        return b"".join(message.get("body", b"") for message in self.messages if message["type"] == "http.response.body")
+
+    @property
+    def accepted(self) -> bool:
+        return self.messages[0]["type"] == "websocket.accept"
+
+
+def ask(
+    app: App, path: str, *headers: Header, query: str = "", method: str = "GET", body: bytes = b"", parts: Iterable[bytes] | None = None
+) -> Answer:
+    """Sends a request and returns the answer."""
+    waiting = [{"type": "http.request", "body": part, "more_body": True} for part in parts or ()]
+    waiting.append({"type": "http.request", "body": body, "more_body": False})
+    return asyncio.run(_call(app, _scope("http", path, headers, query, method), waiting))
+
+
+def connect(app: App, path: str, *headers: Header) -> Answer:
+    """Opens a websocket, and says nothing more."""
+    waiting: list[dict[str, Any]] = [{"type": "websocket.connect"}, {"type": "websocket.disconnect", "code": 1001}]
+    return asyncio.run(_call(app, _scope("websocket", path, headers, "", ""), waiting))
+
+
+async def _call(app: App, scope: dict[str, Any], waiting: list[dict[str, Any]]) -> Answer:
+    sent: list[MutableMapping[str, Any]] = []
+
+    async def receive() -> MutableMapping[str, Any]:
+        return waiting.pop(0) if waiting else {"type": "http.disconnect"}
+
+    async def send(message: MutableMapping[str, Any]) -> None:
+        sent.append(message)
+
+    await app(scope, receive, send)
+    return Answer(sent)

@@ -1,0 +1,60 @@
+"""The workbench as users start it: the command in a process of its own."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+MODELS = Path(__file__).parents[2] / "models"
+
+
+class Served:
+    """A running workbench."""
+
+    def __init__(self, process: subprocess.Popen[str], lines: list[str], folder: Path) -> None:
+        self.process = process
+        self.lines = lines
+        """What it has printed."""
+        self.folder = folder
+        self.address = lines[-1]
+        self.token = self.address.partition("?token=")[2]
+        self.url = self.address.partition("/?")[0]
+        self.port = int(self.url.rpartition(":")[2])
+        self.headers = {"authorization": f"Bearer {self.token}", "x-workbench": "1", "content-type": "application/json"}
+
+    def get(self, path: str, **more: Any) -> httpx.Response:
+        return httpx.get(self.url + path, headers=self.headers, timeout=60, **more)
+
+    def post(self, path: str, body: Any = None) -> httpx.Response:
+        return httpx.post(self.url + path, headers=self.headers, json={} if body is None else body, timeout=60)
+
+
+@contextmanager
+def served(folder: Path, *options: str) -> Generator[Served]:
+    """Starts the workbench with copies of some models, and ends it."""
+    folder.mkdir(exist_ok=True)
+    for name in ("doorway.py", "counting.py"):
+        shutil.copy(MODELS / name, folder / name)
+    command = [sys.executable, "-m", "workbench", str(folder), "--no-browser", *options]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        assert process.stdout is not None
+        lines: list[str] = []
+        while not lines or "token=" not in lines[-1]:
+            line = process.stdout.readline()
+            assert line, f"it did not start: {lines}"
+            lines.append(line.rstrip("\n"))
+        try:
+            yield Served(process, lines, folder)
+        finally:
+            process.terminate()
+            rest = process.stdout.read()
+            process.wait(30)
+            assert not re.search("Traceback|Exception", rest), rest

@@ -1,0 +1,171 @@
+"""The model files: nothing outside the folder, nothing lost, nothing overwritten unseen."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
+from workbench.shipped import models_folder, shipped
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> ModelFolder:
+    root = tmp_path / "models"
+    (root / "tutorial").mkdir(parents=True)
+    (root / "one.py").write_text("a = 1\n", encoding="utf-8")
+    (root / "tutorial" / "two.py").write_text("b = 2\n", encoding="utf-8")
+    (tmp_path / "secret.py").write_text("key = 1\n", encoding="utf-8")
+    return ModelFolder(root)
+
+
+def test_what_there_is(folder: ModelFolder, tmp_path: Path) -> None:
+    for name in (".hidden.py", "notes.txt", "_helper.py"):
+        (folder.root / name).write_text("", encoding="utf-8")
+    (folder.root / "out.py").symlink_to(tmp_path / "secret.py")
+    (folder.root / "away").symlink_to(tmp_path, target_is_directory=True)
+    (folder.root / "inside.py").symlink_to(folder.root / "one.py")
+    assert folder.paths() == ["inside.py", "one.py", "tutorial/two.py"]
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "../secret.py",
+        "tutorial/../../secret.py",
+        "/etc/passwd.py",
+        "//etc/x.py",
+        "..\\secret.py",
+        "C:\\x.py",
+        "c:x.py",
+        "one.py\0.py",
+        "\0",
+        "",
+        ".",
+        "..",
+        "./one.py",
+        "tutorial//two.py",
+        "tutorial/",
+        ".workbench/trash/x.py",
+        "tutorial/.hidden.py",
+        "one.txt",
+        "one",
+        "x" * 300 + ".py",
+        "a/" * 300 + "b.py",
+        "\ud800.py",
+        "new\nline.py",
+        "away/secret.py",
+        "out.py",
+        "loop.py",
+    ],
+)
+def test_nothing_outside_the_folder_is_touched(folder: ModelFolder, tmp_path: Path, path: str) -> None:
+    (folder.root / "away").symlink_to(tmp_path, target_is_directory=True)
+    (folder.root / "out.py").symlink_to(tmp_path / "secret.py")
+    (folder.root / "loop.py").symlink_to(folder.root / "loop.py")
+    before = (tmp_path / "secret.py").read_bytes()
+    for work in (
+        lambda: folder.read(path),
+        lambda: folder.save(path, "x", None),
+        lambda: folder.save(path, "x", folder.version(tmp_path / "secret.py")),
+        lambda: folder.copy("one.py", path),
+        lambda: folder.rename("one.py", path),
+        lambda: folder.rename(path, "new.py"),
+        lambda: folder.delete(path),
+    ):
+        with pytest.raises(FileError):
+            work()
+    assert (tmp_path / "secret.py").read_bytes() == before
+    assert (folder.root / "one.py").is_file()
+
+
+def test_saving_what_nobody_else_has_changed(folder: ModelFolder) -> None:
+    file = folder.read("one.py")
+    (folder.root / "one.py").chmod(0o640)
+    saved = folder.save("one.py", "ä = 3\n", file.version)
+    assert folder.read("one.py") == saved
+    assert (folder.root / "one.py").stat().st_mode & 0o777 == 0o640
+    assert [path.name for path in folder.root.iterdir() if path.name.endswith(".tmp")] == []
+
+
+def test_a_conflict_is_told_and_nothing_is_overwritten(folder: ModelFolder) -> None:
+    file = folder.read("one.py")
+    (folder.root / "one.py").write_text("other = 1\n", encoding="utf-8")
+    with pytest.raises(ConflictError, match="has changed"):
+        folder.save("one.py", "mine = 1\n", file.version)
+    with pytest.raises(ConflictError, match="already"):
+        folder.save("one.py", "mine = 1\n", None)
+    assert folder.read("one.py").text == "other = 1\n"
+    (folder.root / "one.py").unlink()
+    with pytest.raises(ConflictError, match="no such file any more"):
+        folder.save("one.py", "mine = 1\n", file.version)
+
+
+def test_a_new_file_may_lie_in_a_new_folder(folder: ModelFolder) -> None:
+    assert folder.save("mine/first.py", "", None).text == ""
+    assert "mine/first.py" in folder.paths()
+
+
+def test_copying_and_renaming_replace_nothing(folder: ModelFolder) -> None:
+    assert folder.copy("one.py", "copy.py").text == "a = 1\n"
+    for work in (folder.copy, folder.rename):
+        with pytest.raises(ConflictError):
+            work("one.py", "tutorial/two.py")
+        with pytest.raises(NoSuchFileError):
+            work("none.py", "new.py")
+    assert folder.rename("copy.py", "tutorial/three.py").path == "tutorial/three.py"
+    assert folder.paths() == ["one.py", "tutorial/three.py", "tutorial/two.py"]
+
+
+def test_what_is_deleted_is_in_the_trash(folder: ModelFolder) -> None:
+    trash = folder.delete("tutorial/two.py")
+    assert (folder.root / trash).read_text(encoding="utf-8") == "b = 2\n"
+    assert folder.paths() == ["one.py"]
+    with pytest.raises(NoSuchFileError):
+        folder.delete("tutorial/two.py")
+
+
+def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
+    (folder.root / "bytes.py").write_bytes(b"x = '\xff'\n")
+    with pytest.raises(Exception, match="line 1 is no UTF-8"):
+        folder.read("bytes.py")
+    with pytest.raises(FileError, match="no more than"):
+        folder.save("large.py", "x" * (LARGEST + 1), None)
+    with pytest.raises(FileError, match="half characters"):
+        folder.save("half.py", "\ud800", None)
+    (folder.root / "large.py").write_bytes(b"#" * (LARGEST + 1))
+    with pytest.raises(FileError, match="larger"):
+        folder.read("large.py")
+
+
+def test_a_folder_that_is_no_file(folder: ModelFolder) -> None:
+    (folder.root / "odd.py").mkdir()
+    for work in (lambda: folder.read("odd.py"), lambda: folder.save("odd.py", "", None), lambda: folder.delete("odd.py")):
+        with pytest.raises(FileError):
+            work()
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is forbidden to root")
+def test_a_file_that_may_not_be_written(folder: ModelFolder) -> None:
+    folder.root.chmod(0o500)
+    with pytest.raises(FileError, match="cannot write"):
+        folder.save("new.py", "", None)
+    folder.root.chmod(0o700)
+
+
+def test_where_the_models_are(tmp_path: Path) -> None:
+    present, home = tmp_path / "present", tmp_path / "home"
+    present.mkdir()
+    home.mkdir()
+    at_home = models_folder(None, present, home)
+    assert at_home.parent == home
+    assert (at_home / "counting.py").read_bytes() == (shipped() / "counting.py").read_bytes()
+    (at_home / "counting.py").write_text("mine = 1\n", encoding="utf-8")
+    assert models_folder(None, present, home) == at_home
+    assert (at_home / "counting.py").read_text(encoding="utf-8") == "mine = 1\n"
+    (present / "models").mkdir()
+    assert models_folder(None, present, home) == present / "models"
+    assert models_folder(tmp_path / "named", present, home) == tmp_path / "named"
+    assert (tmp_path / "named").is_dir()

@@ -1,0 +1,349 @@
+"""The workbench as it is started: its command, its REST interface, its websockets and viser behind them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+import schemathesis
+import websockets
+from hypothesis import HealthCheck, settings
+from websockets.typing import Subprotocol
+
+from tests.server.asking import GATE
+from tests.server.serving import Served, served
+from workbench.app import make_app
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with served(tmp_path_factory.mktemp("served") / "models") as running:
+        yield running
+
+
+# -- the command
+
+
+def test_the_address_is_the_last_line_and_told_once(server: Served) -> None:
+    assert server.lines == [f"models: {server.folder}", server.address]
+    assert len(server.token) >= 32
+
+
+def test_the_token_is_in_no_list_of_processes(server: Served) -> None:
+    if sys.platform != "linux":
+        pytest.skip("there is no /proc")
+    for folder in Path("/proc").glob("[0-9]*"):
+        for name in ("cmdline", "environ"):
+            try:
+                assert server.token.encode() not in (folder / name).read_bytes(), folder
+            except OSError:
+                continue
+
+
+def test_a_browser_comes_in_with_the_address_only(server: Served) -> None:
+    assert httpx.get(server.url).status_code == 401
+    with httpx.Client() as browser:
+        answer = browser.get(server.address)
+        assert answer.status_code == 303
+        assert browser.get(server.url + answer.headers["location"]).status_code == 200
+        assert server.token not in answer.headers["location"]
+
+
+def test_others_are_let_in_only_with_a_warning(tmp_path: Path) -> None:
+    with served(tmp_path / "models", "--host", "0.0.0.0", "--name", "lab.example") as running:
+        assert running.lines[0].startswith("warning: others can reach 0.0.0.0")
+        local = f"http://127.0.0.1:{running.port}"
+        assert httpx.get(local).status_code == 401
+        for host, status in (("lab.example", 200), ("127.0.0.1", 200), ("evil.example", 421)):
+            headers = {**running.headers, "host": f"{host}:{running.port}"}
+            assert httpx.get(f"{local}/api/models", headers=headers).status_code == status
+
+
+@pytest.mark.parametrize("options", [["--port", "70000"], ["--memory", "-1"], ["--port", "x"]])
+def test_wrong_options_are_told(options: list[str]) -> None:
+    done = subprocess.run([sys.executable, "-m", "workbench", *options], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "error" in done.stderr
+
+
+def test_a_port_that_is_taken_is_told(server: Served) -> None:
+    done = subprocess.run([sys.executable, "-m", "workbench", "--port", str(server.port)], capture_output=True, text=True)
+    assert (done.returncode, "in use" in done.stderr) == (1, True)
+
+
+# -- REST
+
+
+def opened(server: Served, model: str = "doorway.py") -> str:
+    """Begins a session and returns its name, when its run waits."""
+    name: str = server.post("/api/sessions", {"model": model, "seed": 1}).json()["id"]
+    until(server, name, "paused")
+    return name
+
+
+def until(server: Served, name: str, status: str) -> dict[str, Any]:
+    end = time.monotonic() + 60
+    told: dict[str, Any] = {}
+    while time.monotonic() < end:
+        told = server.get(f"/api/sessions/{name}").json()
+        if told["state"] is not None and told["state"]["status"] == status:
+            return told
+        time.sleep(0.02)
+    raise AssertionError(told)
+
+
+def test_a_session_by_rest_alone(server: Served) -> None:
+    name = opened(server)
+    assert server.post(f"/api/sessions/{name}/say", {"say": {"type": "run"}}).json() == {"result": None, "error": None}
+    assert until(server, name, "ended")["state"]["time"] == 6.8
+    refused = server.post(f"/api/sessions/{name}/say", {"say": {"type": "run"}})
+    assert (refused.status_code, "over" in refused.json()["error"]) == (409, True)
+    told = server.post(f"/api/sessions/{name}/say", {"say": {"type": "events", "kinds": ["fire"]}}).json()["result"]
+    assert told["events"][0][3]["production"] == "look"
+    recording = server.get(f"/api/sessions/{name}").json()["session"]["recording"]
+    assert server.post(f"/api/sessions/{name}/close").status_code == 200
+    assert server.get(f"/api/sessions/{name}").status_code == 404
+    listed = {one["id"]: one for one in server.get("/api/recordings").json()["recordings"]}
+    assert (listed[recording]["ended"], listed[recording]["model"]) == ("stop", "doorway.py")
+    file = f"/api/recordings/{recording}/file"
+    assert server.get(file).content.startswith(b"SQLite format 3")
+    events = server.get(file, params={"form": "events.csv"}).text.splitlines()
+    assert events[0] == "time [s],source,kind,data"
+    assert len(events) == listed[recording]["events"] + 1
+    states = server.get(file, params={"form": "states.csv"}).text.splitlines()
+    assert len(states) == 682
+    assert states[-1].startswith("6.8,")
+    told = server.get(f"/api/recordings/{recording}/curves", params={"name": ["walker_torso_yaw", "no"], "most": 100}).json()
+    assert "walker_torso_yaw speed" in told["names"]
+    (curve,) = told["curves"].values()
+    assert 90 <= len(curve) == len(told["times"]) <= 100
+    assert max(abs(angle) for angle in curve) > 0.7  # it turns its shoulders
+    assert server.post(f"/api/recordings/{recording}/replay").json()["agrees"] is True
+
+
+def test_two_recordings_are_compared(server: Served) -> None:
+    names: list[str] = []
+    for width in (0.5, 0.9):
+        session = server.post("/api/sessions", {"model": "doorway.py", "seed": 1, "settings": {"width": width}, "run": True}).json()["id"]
+        until(server, session, "ended")
+        names.append(server.get(f"/api/sessions/{session}").json()["session"]["recording"])
+        server.post(f"/api/sessions/{session}/close")
+    told = server.post("/api/compare", {"first": names[0], "second": names[1]}).json()
+    assert told["parameters"] == {"width": [0.5, 0.9]}
+    first, second = told["difference"]["events"]
+    assert first[0] == second[0] == round(told["difference"]["time"] * 1e6)
+    assert told["difference"]["number"] == told["same_events"] > 5
+    same = server.post("/api/compare", {"first": names[0], "second": names[0]}).json()
+    assert (same["difference"], same["parameters"]) == (None, {})
+    for name in names:
+        assert server.post(f"/api/recordings/{name}/delete").status_code == 200
+        assert server.get(f"/api/recordings/{name}").status_code == 404
+
+
+@pytest.mark.parametrize("name", ["..", "../x", "%2e%2e%2fx", ".hidden", "x" * 150, "a b", "x.sqlite"])
+def test_recordings_lie_in_their_folder(server: Served, name: str) -> None:
+    assert server.get(f"/api/recordings/{name}/file").status_code in (404, 307)
+    assert server.post(f"/api/recordings/{name}/delete").status_code in (404, 405)
+
+
+schema: Any = schemathesis.openapi.from_dict(make_app(Path("/tmp"), GATE).openapi())
+
+
+@schema.parametrize()
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+def test_no_input_gives_an_error_of_the_server(case: Any, server: Served) -> None:
+    answer = case.call(base_url=server.url, headers=server.headers, timeout=60)
+    assert answer.status_code < 500, answer.text
+    assert answer.status_code != 401
+
+
+def test_the_description_names_every_command(server: Served) -> None:
+    told = server.get("/api/openapi.json").json()
+    assert {"Run", "Pause", "Step", "Cycle", "Back", "Until", "Seek", "Aperture", "Explain", "Look"} <= told["components"]["schemas"].keys()
+    assert told["components"]["schemas"]["Speed"]["properties"]["factor"]["anyOf"][0]["minimum"] == 0.05
+
+
+# -- websockets
+
+
+async def attached(server: Served, session: str, **known: int) -> Any:
+    bearer = {"authorization": f"Bearer {server.token}"}
+    socket = await websockets.connect(f"ws://127.0.0.1:{server.port}/ws", additional_headers=bearer, max_size=5_000_000)
+    await socket.send(json.dumps({"type": "attach", "session": session, **known}))
+    return socket
+
+
+async def heard(socket: Any, condition: Callable[[Any], Any]) -> Any:
+    """Returns the first message of which something is true."""
+    async with asyncio.timeout(60):
+        while True:
+            message = json.loads(await socket.recv())
+            if condition(message):
+                return message
+
+
+def tick_of(message: dict[str, Any]) -> int | None:
+    return message["state"]["tick"] if message.get("state") else None
+
+
+def test_two_pages_see_the_same_and_say_who_controls(server: Served) -> None:
+    name = opened(server)
+
+    async def talk() -> None:
+        one, other = await attached(server, name), await attached(server, name)
+        await heard(one, lambda message: len(message.get("session", {}).get("watching", ())) == 2)
+        await one.send(json.dumps({"id": 4, "say": {"type": "step", "ticks": 30}}))
+        for page in (one, other):
+            told = await heard(page, lambda message: tick_of(message) == 30)
+            assert told["state"]["status"] == "paused"
+        await other.send(json.dumps({"id": 5, "say": {"type": "explain", "production": "turn"}}))
+        told = await heard(other, lambda message: "replies" in message)
+        assert told["replies"][0]["id"] == 5
+        assert told["replies"][0]["result"][0]["productions"][0]["name"] == "turn"
+        await one.close()
+        again = await attached(server, name)
+        first = json.loads(await again.recv())
+        assert first["state"]["tick"] == 30
+        assert first["events"]["first"] == 0
+        assert first["session"]["controlled_by"].startswith("page ")
+        known = len(first["events"]["list"])
+        await again.close()
+        last = await attached(server, name, run=first["run"], epoch=first["epoch"], events=known)
+        assert "events" not in json.loads(await last.recv())
+        await last.close()
+        await other.close()
+
+    asyncio.run(talk())
+    server.post(f"/api/sessions/{name}/close")
+
+
+def test_nonsense_on_the_websocket_is_told_and_hurts_nobody(server: Served) -> None:
+    name = opened(server, "counting.py")
+
+    async def talk() -> None:
+        socket = await attached(server, name)
+        for text in ("", "{", "[]", "\0", '{"id": 1}', '{"id": 1, "say": {"type": "fly"}}', '{"id": -1, "say": {"type": "run"}}'):
+            await socket.send(text)
+            told = await heard(socket, lambda message: "replies" in message)
+            assert told["replies"][0]["error"]
+        await socket.send(json.dumps({"type": "attach", "session": "none"}))
+        assert (await heard(socket, lambda message: message["type"] == "refused"))["error"] == "there is no such session"
+        await socket.send("x" * 200_000)
+        with pytest.raises(websockets.ConnectionClosed):
+            await heard(socket, lambda _: False)
+
+    asyncio.run(talk())
+    server.post(f"/api/sessions/{name}/close")
+
+
+def test_a_frozen_browser_holds_up_nobody(server: Served) -> None:
+    (server.folder / "busy.py").write_text(
+        "from actr3d.actr import *\nclass Busy(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('n:0')\n"
+        "    def go(goal='n:?n'):\n        goal.set('n:' + str(int(n) + 1) + ' text:' + 'x' * 2000)\nBusy().run(2000)\n",
+        encoding="utf-8",
+    )
+    name = opened(server, "busy.py")
+
+    async def talk() -> None:
+        frozen = await attached(server, name)  # it reads nothing from now on
+        await frozen.send(json.dumps({"id": 1, "say": {"type": "run"}}))
+        other = await attached(server, name)
+        await heard(other, lambda message: "state" in message and message["state"]["status"] == "ended")
+        await other.close()
+        await frozen.close()
+
+    asyncio.run(talk())
+    server.post(f"/api/sessions/{name}/close")
+
+
+# -- viser
+
+
+def scene_of(server: Served) -> str:
+    name = opened(server)
+    end = time.monotonic() + 60
+    while not server.get(f"/api/sessions/{name}").json()["session"]["scene"]:
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    return name
+
+
+def viser_ports(server: Served) -> list[int]:
+    """Returns the other ports on which the server listens."""
+    listening: list[int] = []
+    inodes: set[str] = set()
+    for link in Path(f"/proc/{server.process.pid}/fd").iterdir():
+        with suppress(FileNotFoundError):  # the server closes and opens others meanwhile
+            inodes.add(link.readlink().name)
+    for line in Path(f"/proc/{server.process.pid}/net/tcp").read_text(encoding="ascii").splitlines()[1:]:
+        fields = line.split()
+        if fields[3] == "0A" and f"socket:[{fields[9]}]" in inodes:
+            assert fields[1].startswith("0100007F")  # loopback, and nothing else
+            listening.append(int(fields[1].partition(":")[2], 16))
+    return [port for port in listening if port != server.port]
+
+
+def test_viser_is_behind_the_login_and_nowhere_else(server: Served) -> None:
+    import viser
+
+    name = scene_of(server)
+    page = server.get(f"/viser/{name}/")
+    assert "connect-src 'self' data: blob:" in page.headers["content-security-policy"]
+    assert "document.hasFocus = () => true" in page.text
+    protocol = [Subprotocol(f"viser-v{viser.__version__}")]
+
+    async def talk() -> None:
+        address = f"ws://127.0.0.1:{server.port}/viser/{name}"
+        with pytest.raises(websockets.InvalidStatus):
+            await websockets.connect(address, subprotocols=protocol)
+        bearer = {"authorization": f"Bearer {server.token}"}
+        with pytest.raises(websockets.InvalidStatus):
+            await websockets.connect(address, subprotocols=protocol, additional_headers=bearer, origin="http://evil.example")  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
+        async with websockets.connect(address, subprotocols=protocol, additional_headers=bearer, max_size=None) as socket:
+            assert socket.subprotocol == protocol[0]
+            assert isinstance(await socket.recv(), bytes)
+        if sys.platform == "linux":
+            assert viser_ports(server)
+            for port in viser_ports(server):  # whoever finds viser's own port is sent away
+                with pytest.raises(websockets.ConnectionClosed):
+                    async with websockets.connect(f"ws://127.0.0.1:{port}", subprotocols=protocol, max_size=None) as socket:
+                        await socket.recv()
+
+    asyncio.run(talk())
+    assert server.get("/viser/", follow_redirects=True).status_code == 200
+    server.post(f"/api/sessions/{name}/close")
+    assert server.get(f"/viser/{name}/").status_code == 404
+
+
+def test_nobody_can_ask_viser_for_a_way_out() -> None:
+    from viser import _messages
+
+    from tests.server.desk import Desk
+    from workbench.scene_view import SceneView
+
+    desk = Desk()
+
+    class Session:
+        watchers: list[Any] = []
+
+    async def make() -> Any:
+        view = SceneView(Session())  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
+        server = view._start()
+        view._task.cancel()
+        return server
+
+    viser_server = desk.do(make())
+    handlers = viser_server._websock_server._incoming_handlers
+    assert _messages.ShareUrlRequest not in handlers
+    assert _messages.ShareUrlDisconnect not in handlers
+    viser_server.stop()
+    desk.close()

@@ -1,0 +1,164 @@
+"""What a model file says of itself, read from its text alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from actr3d.actr.limits import RunLimits
+from actr3d.errors import ConfigurationError
+from actr3d.running.building import Blueprint
+from workbench.loader import Change, listing_of
+
+MODELS = Path(__file__).parents[2] / "models"
+MODEL = '''"""Walks.
+
+More of it."""
+from dataclasses import dataclass
+from typing import Annotated, Literal, Optional
+import annotated_types as at
+from annotated_types import Gt, Le
+from actr3d.actr import *
+from actr3d.configuration import Configuration, Live
+from actr3d.simulation import Simulation
+
+raise SystemExit("this runs nothing")
+WIDEST = 3
+START = (1.0, 2.0)
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(Configuration):
+    """What may be set."""
+
+    width: Annotated[float, Gt(0), Le(WIDEST), Live("aperture")] = 0.5
+    """The free width of the doorway [m]."""
+    speed: Annotated[float | None, at.Ge(0.1), Live("parameter", "walker.speed", body=None)] = None
+    """How fast [m/s];
+    None for standing."""
+    side: Literal["left", "right"] = "left"
+    steps: "int" = 3
+    loud: bool = False
+    name: str = "x"
+    start: tuple[float, float] = START
+    made: float = 2 * 3
+    must: float
+    maybe: Optional[int] = 1
+
+class Walker(ACTR):
+    goal = Buffer()
+    def init(): ...
+    def go(goal="go"): ...
+    def helper(self): ...
+
+def build(parameters: Parameters) -> Simulation: ...
+'''
+
+
+def test_the_parameters_of_what_a_file_builds() -> None:
+    listing = listing_of(MODEL)
+    assert (listing.title, listing.kind, listing.problems) == ("Walks.", "simulation", ())
+    assert listing.text.endswith("More of it.")
+    assert listing.productions == ("Walker.go",)
+    width = listing.parameter("width")
+    assert (width.takes, width.default, width.above, width.most, width.unit) == ("number", 0.5, 0, 3, "m")
+    assert (width.help, width.line) == ("The free width of the doorway [m].", 20)
+    assert width.live == Change(word="aperture")
+    speed = listing.parameter("speed")
+    assert (speed.takes, speed.default, speed.optional, speed.least, speed.unit) == ("number", None, True, 0.1, "m/s")
+    assert speed.help == "How fast [m/s]; None for standing."
+    assert speed.live == Change(word="parameter", before=("walker.speed",))
+    assert listing.parameter("side").choices == ("left", "right")
+    takes = {parameter.name: parameter.takes for parameter in listing.parameters}
+    assert takes == {
+        "width": "number",
+        "speed": "number",
+        "side": "choice",
+        "steps": "whole number",
+        "loud": "switch",
+        "name": "text",
+        "start": "tuple[float, float]",
+        "made": "number",
+        "must": "number",
+        "maybe": "whole number",
+    }
+    assert listing.parameter("start").default == (1.0, 2.0)
+    assert (listing.parameter("made").default, listing.parameter("made").known) == ("2 * 3", False)
+    assert not listing.parameter("must").known
+    assert listing.parameter("maybe").optional
+
+
+def test_the_parameters_of_a_program_are_its_first_lines() -> None:
+    listing = listing_of((MODELS / "tutorial" / "counting.py").read_text(encoding="utf-8"))
+    assert listing.kind == "program"
+    assert {parameter.name: parameter.default for parameter in listing.parameters} == {"first": 2, "last": 6, "latency_factor": 0.05}
+    assert "Counting.count_on" in listing.productions
+
+
+def test_every_model_is_listed_without_complaint() -> None:
+    for path in sorted(MODELS.rglob("*.py")):
+        listing = listing_of(path.read_text(encoding="utf-8"), path.name)
+        assert listing.problems == ()
+        assert listing.title
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("x = 1\ny = (\n", 2, "was never closed"),
+        ("print 'so'", 1, "Python 2"),
+        ("a\0b", 1, "NUL"),
+        ("x = '\ud800'", None, "no Python source"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_line(text: str, line: int | None, message: str) -> None:
+    (problem,) = listing_of(text).problems
+    assert (problem.level, problem.line) == ("error", line)
+    assert message in problem.message
+
+
+def test_what_compiling_warns_of_is_told() -> None:
+    (problem,) = listing_of("def f():\n    return 1 is 1\n").problems
+    assert (problem.level, problem.line) == ("warning", 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("width", 0, "must be > 0"),
+        ("width", 3.1, "must be <= 3"),
+        ("width", "wide", "must be a number"),
+        ("width", True, "must be a number"),
+        ("width", None, "must be a number"),
+        ("width", float("nan"), "must be a number"),
+        ("speed", 0.01, "must be >= 0.1"),
+        ("side", "up", "one of 'left', 'right'"),
+    ],
+)
+def test_values_are_held_to_the_bounds(name: str, value: object, message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        listing_of(MODEL).parameter(name).check(value)
+
+
+def test_good_values_pass() -> None:
+    listing = listing_of(MODEL)
+    for name, value in (("width", 3), ("speed", None), ("speed", 0.1), ("side", "right")):
+        listing.parameter(name).check(value)
+    with pytest.raises(ConfigurationError, match="did you mean 'width'"):
+        listing.parameter("widht")
+
+
+@pytest.mark.parametrize("name", ["doorway.py", "aperture_passage.py"])
+def test_a_text_tells_of_parameters_what_the_loaded_model_does(name: str) -> None:
+    source = (MODELS / name).read_text(encoding="utf-8")
+    with RunLimits(seed=1):
+        fields = Blueprint(source, name, MODELS).fields
+    told = listing_of(source, name).parameters
+    assert [(one.name, one.default, one.optional, one.unit, one.help) for one in told] == [
+        (one.name, one.default, one.optional, one.unit, one.meaning) for one in fields
+    ]
+    for parameter, one in zip(told, fields, strict=True):
+        signs = ((parameter.above, ">"), (parameter.least, ">="), (parameter.below, "<"), (parameter.most, "<="))
+        assert sorted(f"{sign} {limit}" for limit, sign in signs if limit is not None) == sorted(one.bounds)
+        assert parameter.choices == one.choices
+    assert [one.name for one in told if one.live == Change(word="aperture")] == [told[0].name if name == "doorway.py" else "aperture"]

@@ -1,0 +1,196 @@
+"""Whatever a model does, the server goes on, tells what happened, and the next run begins."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.desk import Desk, RefusedError, Talk
+
+AGENT = """
+import os, signal, sys, time
+from actr3d.actr import *
+
+class Agent(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        {does}
+
+agent = Agent()
+agent.run(10)
+"""
+
+
+WIRES = "import gc, workbench.worker.link as l; links = [o for o in gc.get_objects() if type(o) is l.Link];"
+"""Finds what a model has no business with."""
+
+
+def of(does: str) -> str:
+    return AGENT.replace("{does}", does)
+
+
+def runs_again(talk: Talk, folder: Path) -> None:
+    """Mends the model and runs it."""
+    run = talk.facts["run"]
+    (folder / "model.py").write_text(of("goal.set('done')"), encoding="utf-8")
+    talk.say("restart", run=True)
+    talk.wait(lambda: talk.facts["run"] > run and talk.state["status"] == "ended")
+    assert talk.state["time"] == 10.0
+
+
+def gone(pid: int) -> bool:
+    """Tells whether there is no such process any more."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    return Path(f"/proc/{pid}/status").is_file() and "zombie" in Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "does",
+    [
+        "while True: pass",
+        "time.sleep(10000)",
+        "exec('while True:\\n try:\\n  time.sleep(1)\\n except BaseException:\\n  pass')",
+        "signal.signal(signal.SIGTERM, signal.SIG_IGN); exec('while True: pass')",
+    ],
+)
+def test_an_endless_loop_is_found_and_stopped(desk: Desk, tmp_path: Path, does: str) -> None:
+    talk = desk.begin(tmp_path, of(does), run=True, wait="running")
+    worker: Any = talk.session._worker
+    talk.wait(lambda: talk.facts["stuck"] and talk.facts["stuck"]["line"])
+    assert talk.facts["stuck"]["line"] == 10 or "exec" in does
+    begin = time.monotonic()
+    talk.say("stop")
+    assert gone(worker.pid)
+    assert time.monotonic() - begin < 10  # two seconds are promised; this machine may be busy
+    state = talk.until("ended")
+    assert state["reason"] == "stopped"
+    with pytest.raises(RefusedError, match="there is no run"):
+        talk.say("step")
+    runs_again(talk, tmp_path)
+
+
+def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("while True: pass"), run=True, wait="running")
+    talk.wait(lambda: talk.facts["stuck"])
+
+    async def both() -> tuple[Any, Any]:
+        import asyncio
+
+        from workbench import protocol as say
+
+        asking = asyncio.create_task(talk.session.carry_out(say.Explain()))
+        await asyncio.sleep(0.1)
+        return await talk.session.carry_out(say.Stop()), await asking
+
+    _, explained = desk.do(both())
+    assert explained.error == "the run has ended"
+
+
+@pytest.mark.parametrize(
+    ("does", "told"),
+    [
+        ("os._exit(3)", "the model ended its process, with exit code 3"),
+        ("sys.exit(4)", "the model ended its process (SystemExit: 4)"),
+        ("os.kill(os.getpid(), signal.SIGKILL)", "SIGKILL: the system ended it, maybe for want of memory"),
+        ("os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV: a crash in compiled code"),
+        ("import ctypes; ctypes.string_at(0)", "SIGSEGV: a crash in compiled code"),
+        ("x = [0] * 10**10", "the model used more memory"),
+        ("exec('x = []\\nwhile True: x.append(bytearray(10**7))')", "the model used more memory"),
+        (f"{WIRES} [link._wire.sendall(b'junk' * 1000) for link in links]; time.sleep(9)", "nobody understands"),
+        ("[os.close(n) for n in range(3, 64) if os.path.exists(f'/proc/self/fd/{n}')]", ""),
+        ("raise KeyboardInterrupt", "KeyboardInterrupt"),
+        ("raise BaseException('odd')", "odd"),
+        ("input()", "EOFError"),
+    ],
+)
+def test_a_worker_that_ends_is_told_of(desk: Desk, tmp_path: Path, does: str, told: str) -> None:
+    talk = desk.begin(tmp_path, of(does), run=True, wait=None)
+    talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] in ("failed", "ended"))
+    if told:
+        talk.wait_for_notice(told)
+    runs_again(talk, tmp_path)
+
+
+def test_a_crash_names_where_it_was(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("import ctypes; ctypes.string_at(0)"), run=True, wait=None)
+    assert talk.wait_for_notice("model.py")
+    assert any("line 10" in notice["text"] for notice in talk.notices)
+
+
+def test_processes_that_a_model_has_left_end_with_it(desk: Desk, tmp_path: Path) -> None:
+    mark = tmp_path / "child"
+    does = f"import subprocess; open({str(mark)!r}, 'w').write(str(subprocess.Popen(['sleep', '1000']).pid)); time.sleep(1000)"
+    talk = desk.begin(tmp_path, of(does), run=True, wait="running")
+    talk.wait(lambda: mark.is_file() and mark.read_text(encoding="utf-8"))
+    child = int(mark.read_text(encoding="utf-8"))
+    assert not gone(child)
+    talk.say("stop")
+    talk.wait(lambda: gone(child))
+
+
+def test_what_is_printed_past_print_is_told_and_bounded(desk: Desk, tmp_path: Path) -> None:
+    does = "os.write(1, b'past print\\n'); "
+    does += " os.write(2, b'\\xff\\n' + b'x' * 100000 + b'\\n'); [os.write(2, b'more\\n') for _ in range(1000)]; goal.set('done')"
+    talk = desk.begin(tmp_path, of(does), run=True, wait=None)
+    talk.wait_for_notice("past print")
+    talk.wait_for_notice("prints much more")
+    assert len(talk.notices) < 300
+
+
+def test_much_that_is_printed_does_not_hold_up_the_run(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("[print('line', n) for n in range(30000)]; goal.set('done')"), run=True, wait=None)
+    talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] == "ended")
+    talk.wait(lambda: talk.session.log.next == talk.state["events"])
+    lines = [event[3]["text"] for event in talk.events if event[2] == "output"]
+    assert lines == [f"line {n}" for n in range(30000)]
+
+
+def test_loading_can_be_stopped(desk: Desk, tmp_path: Path) -> None:
+    source = "while True: pass\ndef build() -> Simulation: ...\n"
+    talk = desk.begin(tmp_path, source, wait=None)
+    while not talk.facts["loading"]:
+        time.sleep(0.01)
+    talk.say("stop")
+    while talk.facts["loading"]:
+        time.sleep(0.01)
+    assert talk.facts["ending"] == "stopped"
+    (tmp_path / "model.py").write_text(of("goal.set('done')"), encoding="utf-8")
+    talk.say("restart", run=True)
+    talk.until("ended")
+
+
+def test_the_order_of_sets_is_that_of_the_command(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print(hash('a text'))", run=True, wait=None)
+    talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] == "ended" and talk.session.log.next == talk.state["events"])
+    import subprocess
+    import sys
+
+    environment = {**os.environ, "PYTHONHASHSEED": "0"}
+    said = subprocess.run([sys.executable, "-c", "print(hash('a text'))"], env=environment, capture_output=True, text=True, check=True)
+    assert talk.events[-1][3]["text"] == said.stdout.strip()
+
+
+def test_texts_with_half_characters_are_told(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("raise ValueError('half \\ud800 a character')"), run=True, wait=None)
+    talk.wait_for_notice("half \\ud800 a character")
+
+
+def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behind() -> None:
+    ours, theirs = socket.socketpair()
+    ours.close()
+    command = [sys.executable, "-m", "workbench.worker.zygote", str(theirs.fileno())]
+    done = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, text=True, timeout=60)
+    theirs.close()
+    assert (done.returncode, done.stderr) == (0, "")

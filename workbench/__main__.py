@@ -1,0 +1,7 @@
+"""Runs the command `workbench`."""
+
+import sys
+
+from workbench.cli import main
+
+sys.exit(main())

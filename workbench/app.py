@@ -1,0 +1,75 @@
+"""The application: everything the server answers, behind one guard."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncGenerator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.responses import JSONResponse
+from starlette.staticfiles import StaticFiles
+
+from actr3d.errors import Actr3dError
+from workbench import page, routes
+from workbench.auth import Gate, Guard
+from workbench.files import ModelFolder
+from workbench.recordings import Recordings
+from workbench.sessions import Sessions
+from workbench.shipped import static
+from workbench.viser_bridge import Bridge
+from workbench.worker.workers import Workers
+
+MEMORY = 4_000
+"""How much memory a model may take beyond what a worker has at its start [MB], unless told otherwise."""
+
+
+def make_app(models: Path, gate: Gate, *, memory: int = MEMORY) -> FastAPI:
+    """Makes the application.
+
+    Args:
+        models: The models folder.
+        gate: Whom it lets in.
+        memory: How much memory a model may take [MB]; 0 for no limit.
+    """
+    folder = ModelFolder(models)
+    workers = Workers(memory)
+    sessions = Sessions(folder, Recordings(folder.root), workers)
+
+    @asynccontextmanager
+    async def life(app: FastAPI) -> AsyncGenerator[None]:
+        loop = asyncio.get_running_loop()
+
+        def later(call: Callable[..., object], *args: Any) -> None:
+            loop.call_soon_threadsafe(call, *args)
+
+        app.state.later = later
+        workers.begin()
+        yield
+        await sessions.close_all()
+        await workers.close()
+
+    app = FastAPI(title="ACT-R 3D workbench", docs_url=None, redoc_url=None, openapi_url="/api/openapi.json", lifespan=life)
+    app.state.sessions = sessions
+    app.state.bridge = Bridge()
+    app.state.pages = 0
+    app.include_router(routes.router)
+    app.include_router(page.router)
+    app.mount("/static", StaticFiles(directory=static()), name="static")
+    app.add_exception_handler(Actr3dError, _refused)
+    app.add_exception_handler(OSError, _refused)
+    app.add_exception_handler(Exception, _unexpected)
+    app.add_middleware(Guard, gate=gate)
+    return app
+
+
+async def _refused(_: Request, error: Exception) -> JSONResponse:
+    return JSONResponse({"error": str(error)}, status_code=getattr(error, "status", 409))
+
+
+async def _unexpected(_: Request, error: Exception) -> JSONResponse:
+    logging.getLogger("workbench").error("an error of the workbench itself", exc_info=error)
+    return JSONResponse({"error": f"an error of the workbench itself: {type(error).__name__}"}, status_code=500)

@@ -1,0 +1,120 @@
+"""Attends to one worker: takes what it says and prints, asks where it is when it is silent, and tells how it ended."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import time
+from typing import Protocol
+
+import msgspec
+
+from workbench.worker.messages import FromWorker, Notice, Over, Start, Where, notice
+from workbench.worker.workers import Worker
+
+SILENT = 1.0
+"""A worker that is busy and says nothing for so long [s] is asked where it is."""
+MOST_PRINTED = 200
+"""So many lines that a worker prints past its model's `print` are told of; the rest is left out."""
+
+
+class Told(Protocol):
+    """Who is told of it."""
+
+    def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
+        """Takes what a worker says."""
+        ...
+
+    def take_end(self, worker: Worker, ending: str) -> None:
+        """Takes how a worker ended; nothing where it was in good order."""
+        ...
+
+    def tell(self, notice: Notice) -> None:
+        """Tells the user something."""
+        ...
+
+    def busy(self, worker: Worker) -> bool:
+        """Tells whether a worker is to be saying something."""
+        ...
+
+
+class Attendant:
+    """Attends to one worker, until it is gone.
+
+    Args:
+        worker: The worker.
+        start: What it is told to do.
+        told: Who is told of it.
+    """
+
+    def __init__(self, worker: Worker, start: Start, told: Told) -> None:
+        self._worker = worker
+        self._start = start
+        self._told = told
+        self._heard = time.monotonic()
+
+    async def serve(self) -> None:
+        """Lets the worker begin, takes what it says, and tells how it ended."""
+        worker = self._worker
+        worker.send(self._start)
+        printing = asyncio.create_task(self._print())
+        watching = asyncio.create_task(self._watch())
+        try:
+            over = await self._listen()
+            if not over:
+                await worker.stop()
+            status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
+            await asyncio.wait([printing], timeout=1)
+            self._told.take_end(worker, "" if over else _why(status))
+        finally:
+            printing.cancel()
+            watching.cancel()
+            worker.release()
+
+    async def _listen(self) -> bool:
+        """Takes what the worker says; tells whether it ends in good order."""
+        over = False
+        try:
+            while (message := await self._worker.receive()) is not None:
+                self._heard = time.monotonic()
+                over |= isinstance(message, Over)
+                self._told.take(self._worker, self._start, message)
+        except (ValueError, msgspec.MsgspecError) as error:
+            self._told.tell(notice("error", f"the worker said what nobody understands, and was ended ({error})"))
+        return over
+
+    async def _print(self) -> None:
+        """Tells what the worker prints past its model's `print`."""
+        count = 0
+        while True:
+            try:
+                line = await self._worker.output.readline()
+            except ValueError:  # a line that is longer than the stream takes
+                continue
+            if not line:
+                return
+            count += 1
+            text = line.decode(errors="replace").rstrip()
+            if count <= MOST_PRINTED and text:
+                self._told.tell(Notice(level="info", text=text))
+            elif count == MOST_PRINTED + 1:
+                self._told.tell(Notice(level="warning", text="the model's process prints much more; that is left out"))
+
+    async def _watch(self) -> None:
+        """Asks the worker where it is when it is busy and says nothing."""
+        since: float | None = None
+        while True:
+            await asyncio.sleep(SILENT / 4)
+            now = time.monotonic()
+            since = (since or now) if self._told.busy(self._worker) else None
+            if since is not None and now - max(since, self._heard) > SILENT:
+                self._worker.send(Where())
+
+
+def _why(status: int) -> str:
+    """Says how a process ended that nobody has asked to end."""
+    if status >= 0:
+        return f"the model ended its process, with exit code {status}"
+    name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)
+    more = {"SIGKILL": ": the system ended it, maybe for want of memory", "SIGSEGV": ": a crash in compiled code"}.get(name, "")
+    return f"the model's process was ended by {name}{more}"

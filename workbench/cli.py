@@ -1,0 +1,127 @@
+"""The command `workbench`: starts the server, and opens the browser."""
+
+from __future__ import annotations
+
+import argparse
+import html
+import logging
+import socket
+import sys
+import tempfile
+import threading
+import time
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+
+import uvicorn
+
+from workbench.app import MEMORY, make_app
+from workbench.auth import LOOPBACK, Gate, Token
+from workbench.shipped import models_folder
+
+READ_TIME = 20.0
+"""So long a browser may take to start and to read the file that leads it here [s]."""
+LARGEST_MESSAGE = 60_000_000
+"""No message on a websocket is longer [bytes]; pictures that viser's page sends are the largest."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="workbench", description="See models think, step them, go back, change them, run them again.")
+    parser.add_argument("models", nargs="?", type=Path, metavar="MODELS_FOLDER", help="the models (default: ./models, or a folder at home)")
+    parser.add_argument("--host", default="127.0.0.1", help="where to listen; anything but loopback lets others reach it")
+    parser.add_argument("--port", type=int, default=0, help="the port (default 0: any free one)")
+    parser.add_argument("--name", action="append", default=[], metavar="NAME", help="another name by which browsers may call this server")
+    parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
+    parser.add_argument(
+        "--memory", type=int, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: any)"
+    )
+    return parser
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """Returns a socket that listens.
+
+    Raises:
+        OSError: If the address cannot be had.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listening = socket.socket(family)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listening.bind((host.strip("[]"), port))
+    listening.listen(128)
+    return listening
+
+
+class _Server(uvicorn.Server):
+    """Tells when it has started."""
+
+    def __init__(self, config: uvicorn.Config, started: threading.Event) -> None:
+        super().__init__(config)
+        self._begun = started
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Starts, and tells so."""
+        await super().startup(sockets)
+        self._begun.set()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command until it is interrupted; returns its exit code."""
+    options = _parser().parse_args(arguments)
+    if not 0 <= options.port < 65536 or options.memory < 0:
+        print("error: a port is a number from 0 to 65535, and memory not below 0", file=sys.stderr)
+        return 2
+    try:
+        folder = models_folder(options.models, Path.cwd(), Path.home())
+        listening = _listen(options.host, options.port)
+    except OSError as error:
+        print(f"error: {error.strerror or error}", file=sys.stderr)
+        return 1
+    host, port = options.host if ":" not in options.host else f"[{options.host.strip('[]')}]", listening.getsockname()[1]
+    local = host in LOOPBACK
+    if not local:
+        print(f"warning: others can reach {host}; whoever has the address below can run programs as you", file=sys.stderr)
+    names: list[str] = [*options.name, host]
+    gate = Gate(token=Token(), port=port, hosts=LOOPBACK | {name.lower() for name in names})
+    app = make_app(folder, gate, memory=options.memory)
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
+    config = uvicorn.Config(
+        app,
+        log_config=None,
+        log_level="warning",
+        access_log=False,  # it would write the token down
+        server_header=False,
+        ws="websockets-sansio",
+        ws_max_size=LARGEST_MESSAGE,
+        ws_per_message_deflate=False,
+        limit_concurrency=500,
+        timeout_graceful_shutdown=2,
+    )
+    started = threading.Event()
+    address = f"http://{host}:{port}/?token={gate.token.reveal()}"
+    threading.Thread(target=_tell, args=(started, folder, address, not options.no_browser), daemon=True).start()
+    _Server(config, started).run(sockets=[listening])
+    return 0
+
+
+def _tell(started: threading.Event, folder: Path, address: str, browse: bool) -> None:
+    """Tells the address once the server has started, as the last line, and opens it."""
+    started.wait()
+    print(f"models: {folder}")
+    print(address, flush=True)
+    if browse:
+        _browse(address)
+
+
+def _browse(address: str) -> None:
+    """Opens the address in the browser, by way of a file that only its user can read: commands show in lists of processes."""
+    with tempfile.TemporaryDirectory(prefix="workbench-") as folder:
+        page = Path(folder) / "open.html"
+        page.write_text(f'<meta http-equiv="refresh" content="0; url={html.escape(address)}">', encoding="utf-8")
+        webbrowser.open(page.as_uri())
+        time.sleep(READ_TIME)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

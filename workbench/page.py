@@ -1,0 +1,165 @@
+"""What a browser loads: our page, viser's page, and the two websockets."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+from typing import Any
+
+import msgspec
+from fastapi import APIRouter, Request
+from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, RedirectResponse, Response
+from pydantic import ValidationError
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from actr3d.errors import Actr3dError
+from workbench import protocol as say
+from workbench.feed import Feed, Raw
+from workbench.sessions import Sessions
+from workbench.shipped import static
+from workbench.viser_bridge import POLICY, Bridge, page
+
+MOST_PAGES = 64
+"""So many browsers may be connected at once."""
+MOST_AT_ONCE = 32
+"""So many commands of one browser may wait for what comes of them."""
+LONGEST = 100_000
+"""Nothing longer is said on the websocket [characters]."""
+
+router = APIRouter(include_in_schema=False)
+_names = itertools.count(1)
+
+
+@router.get("/")
+def index() -> FileResponse:
+    """Gives the page."""
+    return FileResponse(static() / "index.html", media_type="text/html")
+
+
+@router.get("/viser/")
+def any_scene(request: Request) -> Response:
+    """Leads to the 3D view of the newest session that has one."""
+    sessions: Sessions = request.app.state.sessions
+    shown = [session.name for session in sessions.all() if sessions.view(session.name) is not None]
+    if not shown:
+        return PlainTextResponse("there is no 3D view yet: run a model that has a world\n", status_code=404)
+    return RedirectResponse(f"/viser/{shown[-1]}/", status_code=307)
+
+
+@router.get("/viser/{session}/")
+def scene(session: str, request: Request) -> Response:
+    """Gives viser's page for a session."""
+    sessions: Sessions = request.app.state.sessions
+    if sessions.view(session) is None:
+        return PlainTextResponse("there is no 3D view of that session\n", status_code=404)
+    return HTMLResponse(page(), headers={"content-security-policy": POLICY})
+
+
+@router.websocket("/viser/{session}")
+async def scene_socket(websocket: WebSocket, session: str) -> None:
+    """Carries viser's websocket."""
+    sessions: Sessions = websocket.app.state.sessions
+    bridge: Bridge = websocket.app.state.bridge
+    await bridge.carry(websocket, sessions.view(session))
+
+
+@router.websocket("/ws")
+async def socket(websocket: WebSocket) -> None:
+    """Shows one session, and takes what its user says."""
+    state: Any = websocket.app.state
+    if state.pages >= MOST_PAGES:
+        await websocket.close(1013)
+        return
+    state.pages += 1
+    try:
+        await websocket.accept()
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            await _Page(websocket, state.sessions).serve()
+    finally:
+        state.pages -= 1
+
+
+class _Page:
+    """One browser on the websocket.
+
+    Args:
+        websocket: Its websocket.
+        sessions: What it can show.
+    """
+
+    def __init__(self, websocket: WebSocket, sessions: Sessions) -> None:
+        self._websocket = websocket
+        self._sessions = sessions
+        self._name = f"page {next(_names)}"
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def serve(self) -> None:
+        """Serves it until it is gone. The first that it says is an `Attach`; another one later shows another session."""
+        sending: asyncio.Task[None] | None = None
+        feed: Feed | None = None
+        session: Any = None  # of that feed
+        try:
+            while True:
+                text = await self._websocket.receive_text()
+                if len(text) > LONGEST:
+                    await self._websocket.close(1009)
+                    return
+                attach, request, problem = _read(text)
+                if attach is not None:
+                    if feed is not None:
+                        session.part(feed)
+                        feed = None
+                    if sending is not None:
+                        sending.cancel()
+                        await asyncio.gather(sending, return_exceptions=True)
+                    try:
+                        session = self._sessions.get(attach.session)
+                    except Actr3dError as error:
+                        await self._refuse(str(error))
+                        continue
+                    joined: Feed = session.join(self._name)
+                    joined.resume(attach.run, attach.epoch, attach.events)
+                    feed, sending = joined, asyncio.create_task(self._send(joined))
+                elif feed is None:
+                    await self._refuse(problem or "say first which session is shown: attach")
+                elif request is not None and len(self._tasks) < MOST_AT_ONCE:
+                    task = asyncio.create_task(self._carry_out(session, feed, request))
+                    self._tasks.add(task)
+                    task.add_done_callback(self._tasks.discard)
+                else:
+                    number = None if request is None else request.id
+                    feed.reply(_reply(number, error=problem or "too much waits already for what comes of it"))
+        finally:
+            if feed is not None:
+                session.part(feed)
+            for task in (*self._tasks, *([sending] if sending is not None else ())):
+                task.cancel()
+
+    async def _send(self, feed: Feed) -> None:
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            while True:
+                await self._websocket.send_text((await feed.next()).decode())
+
+    async def _carry_out(self, session: Any, feed: Feed, request: say.Request) -> None:
+        reply = await session.carry_out(request.say, self._name)
+        feed.reply(_reply(request.id, reply.result, reply.error))
+
+    async def _refuse(self, problem: str) -> None:
+        await self._websocket.send_text(msgspec.json.encode({"type": "refused", "error": problem}).decode())
+
+
+def _reply(number: int | None, result: bytes = b"null", error: str | None = None) -> bytes:
+    return msgspec.json.encode({"id": number, "result": Raw(result), "error": error})
+
+
+def _read(text: str) -> tuple[say.Attach | None, say.Request | None, str]:
+    """Reads what a page says: an `Attach`, a `Request`, or why it is neither."""
+    try:
+        if '"attach"' in text[:200]:
+            return say.Attach.model_validate_json(text), None, ""
+        return None, say.Request.model_validate_json(text), ""
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        return None, None, f"{place}: {first['msg']}" if place else first["msg"]

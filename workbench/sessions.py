@@ -1,0 +1,160 @@
+"""All sessions of a server, and the jobs that need a worker for a moment only."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from actr3d.errors import Actr3dError
+from actr3d.recording import Recorded
+from workbench.files import ModelFolder
+from workbench.recordings import Recordings
+from workbench.scene_view import SceneView
+from workbench.session import Session
+from workbench.worker.messages import Notice, Over, Reply, Start
+from workbench.worker.workers import Workers
+
+MOST = 8
+"""So many sessions there may be at once; each has a worker."""
+CHECK_TIME = 10.0
+"""So long a model may take to be loaded for a check [s]."""
+
+
+class SessionError(Actr3dError):
+    """A session cannot be begun, or is not there."""
+
+    status = 409
+
+
+class NoSuchSessionError(SessionError):
+    """There is no session of that name."""
+
+    status = 404
+
+
+class Sessions:
+    """Begins and ends sessions.
+
+    Args:
+        folder: The models.
+        recordings: Where runs are recorded.
+        workers: Who runs them.
+    """
+
+    def __init__(self, folder: ModelFolder, recordings: Recordings, workers: Workers) -> None:
+        self.folder = folder
+        self.recordings = recordings
+        self.workers = workers
+        self._sessions: dict[str, Session] = {}
+        self._views: dict[str, SceneView] = {}
+        self._count = 0
+
+    def all(self) -> list[Session]:
+        """Returns all sessions, the oldest first."""
+        return list(self._sessions.values())
+
+    def get(self, name: str) -> Session:
+        """Returns a session.
+
+        Raises:
+            NoSuchSessionError: If there is none of that name.
+        """
+        if name not in self._sessions:
+            raise NoSuchSessionError("there is no such session")
+        return self._sessions[name]
+
+    def view(self, name: str) -> SceneView | None:
+        """Returns the 3D view of a session, once there is something to see."""
+        view = self._views.get(name)
+        return view if view is not None and view.ready.is_set() else None
+
+    async def open(self, model: str, settings: dict[str, Any], *, seed: int | None, record: bool, run: bool) -> Session:
+        """Begins a session with a model file.
+
+        Raises:
+            Actr3dError: If there is no such file, or there are too many sessions.
+            OSError: If no worker can be started.
+        """
+        where = self.folder.locate(model)
+        self.folder.read(model)
+        session = self._new(where, model)
+        await session.begin(settings, seed=seed, record=record, run=run)
+        return session
+
+    async def reopen(self, recording: str) -> Session:
+        """Begins a session that lives through a recorded run again, with everything that users did.
+
+        Raises:
+            Actr3dError: If there is no such recording, or there are too many sessions.
+            OSError: If no worker can be started.
+        """
+        with Recorded(self.recordings.path(recording)) as recorded:
+            facts = recorded.facts
+            commands = [(command.tick, command.data) for command in recorded.commands()]
+        file = facts.get("file")
+        if file is None or file not in facts.get("sources", {}):
+            raise SessionError("the recording does not say which model file made it")
+        path = Path(file)
+        inside = path.resolve().is_relative_to(self.folder.root)
+        session = self._new(path, path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name)
+        seed = facts.get("program_seed", facts["seed"])
+        settings = facts.get("parameters", {})
+        helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
+        await session.begin(settings, seed=seed, record=False, source=facts["sources"][file], commands=commands, helpers=helpers)
+        return session
+
+    def _new(self, path: Path, model: str) -> Session:
+        if len(self._sessions) >= MOST:
+            raise SessionError(f"there are {MOST} sessions already; close one")
+        self._count += 1
+        name = f"s{self._count}"
+        session = Session(name, path, self.workers, self.recordings.new, model)
+        self._sessions[name] = session
+        self._views[name] = SceneView(session)
+        return session
+
+    async def close(self, name: str) -> None:
+        """Ends a session.
+
+        Raises:
+            NoSuchSessionError: If there is none of that name.
+        """
+        session = self.get(name)
+        del self._sessions[name], self._views[name]
+        await session.close()
+
+    async def close_all(self) -> None:
+        """Ends all sessions."""
+        await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
+
+    def saved(self, path: Path) -> None:
+        """Takes note that a model file has another text now."""
+        for session in self.all():
+            if session.path == path:
+                session.file_changed()
+
+    async def check(self, path: Path, text: str) -> list[dict[str, Any]]:
+        """Loads a model in a worker, and builds what it describes, without running it; returns what is complained of.
+
+        Raises:
+            OSError: If no worker can be started.
+        """
+        worker = await self.workers.launch()
+        told: list[dict[str, Any]] = []
+        worker.send(Start(job="check", path=str(path), source=text, folder=str(path.parent)))
+        try:
+            async with asyncio.timeout(CHECK_TIME):
+                while (message := await worker.receive()) is not None and not isinstance(message, (Reply, Over)):
+                    if isinstance(message, Notice):
+                        own = message.file in (None, str(path))
+                        told.append({"level": message.level, "message": message.text, "line": message.line if own else None})
+        except TimeoutError:
+            told.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
+        except (ValueError, msgspec.MsgspecError) as error:
+            told.append({"level": "error", "message": f"the worker said what nobody understands ({error})", "line": None})
+        await worker.stop()
+        worker.release()
+        return told

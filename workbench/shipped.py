@@ -1,0 +1,44 @@
+"""Where the models are: the folder that was named, `models` in the present one, or one at home with copies of the shipped ones."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import actr3d
+
+HOME = "actr3d-models"
+"""The name of the folder in the user's home."""
+
+
+def shipped() -> Path:
+    """Returns the folder of the models that come with the library."""
+    package = Path(actr3d.__file__).parent
+    inside = package / "models"
+    return inside if inside.is_dir() else package.parent / "models"
+
+
+def models_folder(named: Path | None, present: Path, home: Path) -> Path:
+    """Returns the folder to work in, which is made, and filled, where there is none.
+
+    Args:
+        named: What the user named, if anything.
+        present: The present folder.
+        home: The user's.
+    """
+    if named is not None:
+        named.mkdir(parents=True, exist_ok=True)
+        return named
+    if (present / "models").is_dir():
+        return present / "models"
+    folder = home / HOME
+    if not folder.exists():
+        shutil.copytree(shipped(), folder, ignore=shutil.ignore_patterns("__pycache__", ".*"))
+    return folder
+
+
+def static() -> Path:
+    """Returns the folder of the page: inside the package where it is installed, beside it in a copy of the repository."""
+    package = Path(__file__).parent
+    inside = package / "static"
+    return inside if inside.is_dir() else package.parent / "static"

@@ -1,0 +1,96 @@
+"""The bridge to viser: its page and its websocket, on our port and behind our login."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from workbench.scene_view import SceneView
+
+POLICY = (
+    "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' 'wasm-unsafe-eval' blob:; worker-src 'self' blob:; "
+    "connect-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
+    "frame-ancestors 'self'"
+)
+"""What viser's page may load: without it a foreign address in its own address line would make it obey a foreign server."""
+MOST_VIEWS = 32
+"""So many 3D views may be open at once."""
+
+
+@cache
+def page() -> str:
+    """Returns viser's page; it goes on connecting again when it is not in front, too."""
+    spec = find_spec("viser")
+    assert spec is not None
+    assert spec.origin is not None
+    text = (Path(spec.origin).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
+    return text.replace("<head>", "<head><script>document.hasFocus = () => true;</script>", 1)
+
+
+class Bridge:
+    """Carries websockets of browsers to viser's own server and back."""
+
+    def __init__(self) -> None:
+        self._open = 0
+
+    async def carry(self, browser: WebSocket, view: SceneView | None) -> None:
+        """Carries one websocket, until one side is gone.
+
+        Args:
+            browser: The browser's, not yet accepted.
+            view: What it wants to see; None where there is nothing.
+        """
+        if view is None or view.over or self._open >= MOST_VIEWS:
+            await browser.close(1008)
+            return
+        self._open += 1
+        try:
+            await self._carry(browser, view)
+        finally:
+            self._open -= 1
+
+    async def _carry(self, browser: WebSocket, view: SceneView) -> None:
+        import websockets
+        from websockets.typing import Subprotocol
+
+        port, headers = view.address()
+        offered = [Subprotocol(name) for name in browser.scope.get("subprotocols", [])]
+        try:
+            # Only what is named here goes on: neither our cookie nor our token does.
+            upstream = await websockets.connect(
+                f"ws://127.0.0.1:{port}", subprotocols=offered, additional_headers=headers, max_size=None, compression=None, proxy=None
+            )
+        except (OSError, websockets.WebSocketException):
+            await browser.close(1011)
+            return
+        async with upstream:
+            await browser.accept(subprotocol=upstream.subprotocol)
+            ways = [asyncio.create_task(_up(browser, upstream)), asyncio.create_task(_down(browser, upstream))]
+            try:
+                await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                for way in ways:
+                    way.cancel()
+                await asyncio.gather(*ways, return_exceptions=True)
+        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+            await browser.close()
+
+
+async def _up(browser: WebSocket, upstream: Any) -> None:
+    while True:
+        message = await browser.receive()
+        if message["type"] == "websocket.disconnect":
+            return
+        data = message.get("bytes")
+        await upstream.send(message.get("text") if data is None else data)
+
+
+async def _down(browser: WebSocket, upstream: Any) -> None:
+    async for data in upstream:
+        await (browser.send_text(data) if isinstance(data, str) else browser.send_bytes(data))

@@ -1,0 +1,291 @@
+"""A run of what a model file builds: minds and bodies in a world, which can go back and another way."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from actr3d.actr.helper_texts import HelperTexts
+from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.picture import picture_of
+from actr3d.actr.shared_random import shared_random
+from actr3d.clock import MICROSECONDS, microseconds, seconds
+from actr3d.errors import SimulationError
+from actr3d.recording import Recording
+from actr3d.running.building import build
+from actr3d.running.printed import BuiltOutput
+from actr3d.simulation import Command, Simulation
+from actr3d.trace import Trace
+from actr3d.values import to_json
+from actr3d.world import Aperture, Floor, Mannequin
+from actr3d.world.sensors.touch import present
+from workbench import protocol as say
+from workbench.loader import Listing
+from workbench.worker.answers import answer
+from workbench.worker.conductor import Conductor
+from workbench.worker.messages import Facts
+from workbench.worker.trouble import notice_of, told_of
+from workbench.worker.watch import Touches
+
+BLOCK = 0.004
+"""For about so long [s] the run goes on before it looks whether a user has said something."""
+MOST_TICKS = 64
+"""And for no more ticks than these."""
+ENDINGS = {"stop": "a mind said stop", "done": "no mind has anything left to do"}
+
+
+class BuiltRun:
+    """Runs a simulation as a conductor says.
+
+    Args:
+        conductor: Says when it goes on.
+        listing: What the model's text says of itself.
+    """
+
+    def __init__(self, conductor: Conductor, listing: Listing) -> None:
+        self._conductor = conductor
+        self._listing = listing
+        self._start = conductor.link.start
+        self._recording: Recording | None = None
+        self._tick_time = 0.0
+        self._end: tuple[int, str] | None = None
+        """At which tick the run is over, and why, once that is known."""
+        self._simulation: Simulation
+
+    def play(self) -> None:
+        """Builds and runs it, until the worker is to leave.
+
+        Raises:
+            Exception: What the model raises in being built.
+        """
+        start = self._start
+        limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
+        with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
+            helpers = HelperTexts(start.helpers)
+            simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder), helpers)
+            output.lead_to(simulation)
+            self._simulation = simulation
+            self._prepare(limits, parameters, helpers)
+            try:
+                self._conductor.run = self
+                self._conductor.link.post(self._facts(limits, parameters))
+                self._conductor.show()
+                self._conductor.link.flush()  # whatever the model does next, that it was built is known
+                while True:
+                    self._conductor.attend()
+                    self._go_on()
+            finally:
+                if self._recording is not None:
+                    self._recording.close()
+
+    def _prepare(self, limits: RunLimits, parameters: dict[str, Any], helpers: HelperTexts) -> None:
+        simulation, start = self._simulation, self._start
+        simulation.traced()
+        if start.record is not None:
+            facts: dict[str, Any] = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
+            facts.update(helpers=helpers.loaded, program_seed=limits.program_seed, columns=columns_of(simulation.world.mj_model))
+            self._recording = simulation.record(start.record, **facts)
+            helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
+        if start.commands:
+            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
+
+    def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
+        model = self._simulation.world.mj_model
+        saved = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+        mujoco.mj_saveModel(model, None, saved)
+        return Facts(
+            kind="simulation",
+            seed=limits.program_seed,
+            period=self._simulation.period,
+            parameters=to_json(parameters).encode(),
+            world=to_json(self._world_facts()).encode(),
+            mj_model=saved.tobytes(),
+        )
+
+    def _world_facts(self) -> dict[str, Any]:
+        world = self._simulation.world
+        people = {part.name: part.shoulder_width for part in world.scene.parts if isinstance(part, Mannequin)}
+        bodies = {
+            name: {
+                "shoulders": people.get(name),
+                "eye": body.eye,
+                "root": body.root,
+                "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
+            }
+            for name, body in world.bodies.items()
+        }
+        return {"bodies": bodies, "apertures": [part.name for part in world.scene.parts if isinstance(part, Aperture)]}
+
+    def _go_on(self) -> None:
+        """Goes on by a few ticks."""
+        conductor, simulation = self._conductor, self._simulation
+        ticks = self._allowance()
+        begin = perf_counter()
+        try:
+            report = simulation.run(ticks * simulation.period)
+            over = "stop" if report.ended_by == "stop" else "done" if simulation.done else None
+            if over is not None:
+                self._conclude()
+        except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
+            conductor.link.post(notice_of(error))
+            conductor.end("failed", told_of(error))
+            return
+        self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
+        conductor.passed()
+        if over is None:
+            conductor.pace(self.clock)
+            return
+        self._end = simulation.ticks, over
+        if self._recording is not None:
+            self._recording.fact("ended", {"by": over})
+        conductor.end("ended", ENDINGS[over])
+
+    def _conclude(self) -> None:
+        """Tells the result, and what was printed last; in the order of a replay."""
+        self._simulation.conclude()
+        self._simulation._journal.voice.finish()
+
+    def _allowance(self) -> int:
+        """Returns how many ticks to go before looking again what users want."""
+        conductor = self._conductor
+        if conductor.watch.fine:
+            return 1
+        most = min(MOST_TICKS, int(BLOCK / self._tick_time)) if self._tick_time > 0 else 1
+        if conductor.factor is not None:
+            most = min(most, int(conductor.factor * BLOCK * MICROSECONDS / self.period))
+        if conductor.watch.goal is not None:
+            most = min(most, -(-(conductor.watch.goal - self.clock) // self.period))
+        return max(1, most)
+
+    # -- what the conductor asks
+
+    @property
+    def clock(self) -> int:
+        """How much time has passed since its start [us]."""
+        return self._simulation.ticks * self.period
+
+    @property
+    def furthest(self) -> int:
+        """How far it has come [us]."""
+        return microseconds(self._simulation.furthest)
+
+    @property
+    def period(self) -> int:
+        """A tick [us]."""
+        return microseconds(self._simulation.period)
+
+    @property
+    def trace(self) -> Trace | None:
+        """The trace up to now."""
+        return self._simulation.trace
+
+    def do(self, command: Any) -> None:
+        """Does what a user wants of the simulation.
+
+        Raises:
+            SimulationError: If it cannot be done.
+            Exception: What the world, a body or a mind raises.
+        """
+        match command:
+            case say.Back():
+                self._seek(max(0, self._simulation.ticks - command.ticks))
+            case say.Seek():
+                self._seek(round(command.time * MICROSECONDS / self.period))
+            case say.Aperture():
+                self._command("aperture", (command.width,), {"name": command.name}, None)
+            case say.Say():
+                self._command(command.word, command.values, command.named, command.body)
+            case say.Set():
+                parameter = self._listing.parameter(command.name)
+                if parameter.live is None:
+                    raise SimulationError(f"'{command.name}' cannot change while a run goes on; begin again with the new value")
+                parameter.check(command.value)
+                live = parameter.live
+                self._command(live.word, (*live.before, command.value), {}, live.body)
+            case _:
+                raise SimulationError(f"'{command.type}' is nothing that is said to a run")
+
+    def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None) -> None:
+        if self._conductor.status == "ended":
+            raise SimulationError("the run is over: go back to an earlier time, or begin again")
+        trace = self._simulation.trace
+        before = 0 if trace is None else len(trace)
+        self._simulation.command(word, *values, body=body, **named)
+        if self._end is not None:
+            self._end = None
+            if self._recording is not None:
+                self._recording.fact("ended", None)
+        self._conductor.goes_another_way(before)
+
+    def _seek(self, tick: int) -> None:
+        self._simulation.seek(seconds(tick * self.period))
+        if self._end is None or tick != self._end[0]:
+            self._conductor.went_back()
+            return
+        self._conclude()
+        self._conductor.end("ended", ENDINGS[self._end[1]])
+
+    def answer(self, question: Any) -> Any:
+        """Returns what is asked.
+
+        Raises:
+            Exception: Says why it cannot be told.
+        """
+        return answer(question, self.trace, list(self._simulation.minds.values()), self._simulation.world)
+
+    def scene(self) -> tuple[bytes | None, dict[str, float]]:
+        """Returns the physics' state, and how wide apertures are."""
+        world = self._simulation.world
+        names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
+        return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+
+    def result(self) -> dict[str, Any] | None:
+        """Returns what was measured of the run, if anything was."""
+        result = self._simulation.result()
+        return None if result is None else asdict(result)
+
+    def parts(self) -> dict[str, dict[str, Any]]:
+        """Returns what all parts of all minds are like."""
+        told: dict[str, dict[str, Any]] = {}
+        for mind in self._simulation.minds.values():
+            told |= picture_of(mind)
+        return told
+
+    def touches(self) -> Touches:
+        """Returns what touches a body now, the ground left out."""
+        world = self._simulation.world
+        ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
+        return frozenset(
+            (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
+        )
+
+
+def columns_of(mj_model: mujoco.MjModel) -> dict[str, int]:
+    """Returns where in MuJoCo's integration state the positions and speeds of joints are, by their names."""
+    columns: dict[str, int] = {}
+    for number in range(mj_model.njnt):
+        joint: Any = mj_model.joint(number)
+        if joint.name and int(joint.type[0]) in (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE)):
+            columns[joint.name] = 1 + int(joint.qposadr[0])  # the first number is the time
+            columns[f"{joint.name} speed"] = 1 + mj_model.nq + int(joint.dofadr[0])
+    return columns
+
+
+def _finite(limit: float) -> float | None:
+    return None if limit in (float("inf"), float("-inf")) else limit
+
+
+def check(source: str, filename: str, folder: Path) -> dict[str, Any]:
+    """Loads a model and builds what it describes with its defaults; runs nothing. Returns the values of its parameters."""
+    limits = RunLimits(seed=0)
+    with limits, BuiltOutput():
+        _, parameters = build(source, filename, {}, folder)
+    return json.loads(to_json(parameters))

@@ -1,0 +1,315 @@
+"""Conducts a run: on, hold, a step, a speed; and shows the server how it goes."""
+
+from __future__ import annotations
+
+from collections import deque
+from time import perf_counter
+from typing import Any, Protocol
+
+from actr3d.actr.limits import EndOfRun
+from actr3d.clock import MICROSECONDS, seconds
+from actr3d.errors import Actr3dError
+from actr3d.trace import Trace
+from actr3d.values import to_json
+from workbench import protocol as say
+from workbench.worker.link import Link
+from workbench.worker.messages import Cut, Do, Leave, Reply, State, Status, whole
+from workbench.worker.trouble import told_of
+from workbench.worker.watch import Touches, Watch
+
+SHOWN = 1 / 30
+"""How often a run that goes on is shown [s]; ours, as often as a page can be drawn with ease."""
+WINDOW = 1.0
+"""Over how long the speed is measured [s]."""
+LATE = 0.25
+"""Who is later than this [s] does not catch up."""
+
+
+class Leaving(EndOfRun):
+    """Ends a run because the worker is to leave; no model catches it by `except Exception`."""
+
+
+class Conducted(Protocol):
+    """What is conducted."""
+
+    @property
+    def clock(self) -> int:
+        """How much time has passed since its start [us]."""
+        ...
+
+    @property
+    def furthest(self) -> int:
+        """How far it has come [us]."""
+        ...
+
+    @property
+    def period(self) -> int:
+        """A tick [us]."""
+        ...
+
+    @property
+    def trace(self) -> Trace | None:
+        """The trace up to now."""
+        ...
+
+    def do(self, command: Any) -> None:
+        """Does what a user wants of the run itself.
+
+        Raises:
+            Exception: Says why it cannot be done.
+        """
+        ...
+
+    def answer(self, question: Any) -> Any:
+        """Returns what is asked, as plain values.
+
+        Raises:
+            Exception: Says why it cannot be told.
+        """
+        ...
+
+    def scene(self) -> tuple[bytes | None, dict[str, float]]:
+        """Returns the physics' state, and how wide apertures are."""
+        ...
+
+    def result(self) -> dict[str, Any] | None:
+        """Returns what was measured of the run, if anything was."""
+        ...
+
+    def parts(self) -> dict[str, dict[str, Any]]:
+        """Returns what all parts are like."""
+        ...
+
+    def touches(self) -> Touches:
+        """Returns what touches a body now, the ground left out."""
+        ...
+
+
+class Conductor:
+    """Says when a run goes on and when it waits, does what users say meanwhile, and shows its state and events.
+
+    Args:
+        link: The wire to the server.
+    """
+
+    def __init__(self, link: Link) -> None:
+        start = link.start
+        self.link = link
+        self.status: Status = "running" if start.run else "paused"
+        self.reason = "" if start.run else "at its start"
+        self.watch = Watch(breakpoints=frozenset(start.breakpoints))
+        self.factor = start.factor
+        self.leaving = False
+        """Whether the worker is to leave."""
+        self.run: Conducted
+        self._sent = 0
+        """How many events the server has been given."""
+        self._seen = 0
+        """How many events have been looked at for what is watched."""
+        self._shown = 0.0
+        self._anchor: tuple[float, int] | None = None
+        self._marks: deque[tuple[float, int]] = deque()
+
+    # -- what the run asks
+
+    def attend(self) -> None:
+        """Does what users have said meanwhile; while the run is held, waits for more. Returns when it may go on.
+
+        Raises:
+            Leaving: If the worker is to leave.
+        """
+        self._check_events()
+        if self.watch.goal is not None and self.run.clock >= self.watch.goal and self.status == "running":
+            self.pause(self.watch.goal_reason)
+        while True:
+            held = self.status != "running"
+            message = self.link.receive(None if held else 0)
+            if message is None:
+                return
+            self._hear(message)
+            if self.status == "running":
+                return
+
+    def pace(self, clock: int) -> bool:
+        """Waits until it is time for a moment of the run [us]; tells whether nothing has been said meanwhile."""
+        if self.factor is None:
+            return True
+        now = perf_counter()
+        if self._anchor is None:
+            self._anchor = now, self.run.clock
+        begin, at = self._anchor
+        early = begin + (clock - at) / MICROSECONDS / self.factor - now
+        if early < -LATE:
+            self._anchor = now, clock
+        while early > 0:
+            self.show_if_due()
+            message = self.link.receive(min(early, SHOWN))
+            if message is not None:
+                self._hear(message)
+                return False
+            early = begin + (clock - at) / MICROSECONDS / self.factor - perf_counter()
+        return True
+
+    def passed(self) -> None:
+        """Takes note that ticks have passed."""
+        self._check_events()
+        if self.watch.contact is not None and self.status == "running":
+            found = self.watch.touched(self.run.touches())
+            if found is not None:
+                self.pause(found)
+        self.show_if_due()
+
+    def pause(self, reason: str) -> None:
+        """Holds the run."""
+        self.status, self.reason = "paused", whole(reason)
+        self._halt()
+
+    def end(self, status: Status, reason: str) -> None:
+        """Takes note that the run is over."""
+        self.status, self.reason = status, reason
+        self._halt()
+
+    def went_back(self) -> None:
+        """Takes note that the run stands at another time, whose events were all known."""
+        trace = self.run.trace
+        self._seen = 0 if trace is None else len(trace)
+        self.status, self.reason = "paused", "went to this time"
+        self._halt()
+
+    def goes_another_way(self, events: int) -> None:
+        """Takes note that from an event on all will be different from what was known."""
+        if events < self._sent:
+            self._sent = events
+            self.link.cut(Cut(events=events), events)
+
+    # -- what users say
+
+    def _hear(self, message: Do | Leave) -> None:
+        if isinstance(message, Leave):
+            self.leaving = True
+            raise Leaving
+        try:
+            result = self._do(say.ANYTHING.validate_json(message.say))
+        except EndOfRun:
+            self.link.post(Reply(id=message.id))
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever it is, who has said it is told
+            self.link.post(Reply(id=message.id, error=told_of(error)))
+            return
+        self.link.post(Reply(id=message.id, result=to_json(result).encode()))
+
+    def _do(self, said: Any) -> Any:
+        match said:
+            case say.Run():
+                self._go()
+            case say.Pause():
+                if self.status == "running":
+                    self.pause("by the user")
+            case say.Step():
+                # Steps that come faster than they are made add up.
+                under_way = self.status == "running" and self.watch.goal is not None
+                begin = (self.watch.goal or 0) if under_way else self.run.clock
+                self._go(goal=(begin // self.run.period + said.ticks) * self.run.period, goal_reason="after a step")
+            case say.Cycle():
+                self._go(cycle=True, system=said.system)
+            case say.Until():
+                self._until(said)
+            case say.Breakpoints():
+                self.watch.breakpoints = frozenset(said.productions)
+            case say.Speed():
+                self.factor, self._anchor = said.factor, None
+                self.show()
+            case say.Explain() | say.Rows() | say.Look() | say.Body() | say.Events():
+                return self.run.answer(said)
+            case _:
+                self.run.do(said)
+                self.show()
+        return None
+
+    def _until(self, said: say.Until) -> None:
+        wanted = said.model_dump(exclude={"type"}, exclude_none=True)
+        if not wanted.keys() - {"pattern"}:
+            raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
+        goal = None if said.time is None else round(said.time * MICROSECONDS)
+        if goal is not None and goal <= self.run.clock:
+            raise Actr3dError(f"it is {seconds(self.run.clock):g} s already; seek goes back")
+        touching = self.run.touches() if said.contact is not None else frozenset[tuple[str, str, str]]()
+        self._go(
+            goal=goal,
+            goal_reason=f"at {said.time} s",
+            production=said.production,
+            buffer=said.buffer,
+            pattern=said.pattern or "",
+            contact=said.contact,
+            touching=touching,
+        )
+
+    def _go(self, **wanted: Any) -> None:
+        if self.status in ("ended", "failed"):
+            raise Actr3dError("the run is over: go back to an earlier time, or begin again")
+        self.watch.begin(**wanted)
+        trace = self.run.trace
+        self._seen = 0 if trace is None else len(trace)
+        self.status, self.reason = "running", ""
+        self._anchor = None
+        self._marks.clear()
+        if "goal" not in wanted:
+            self.show()
+
+    def _check_events(self) -> None:
+        """Pauses where an event says so that has not been looked at yet."""
+        trace = self.run.trace
+        if trace is not None and self.status == "running" and self.watch.of_events and len(trace) > self._seen:
+            found = self.watch.found(trace.since(self._seen))
+            self._seen = len(trace)
+            if found is not None:
+                self.pause(found)
+
+    # -- what is shown
+
+    def show_if_due(self) -> None:
+        """Shows the run now and then while it goes on."""
+        now = perf_counter()
+        if now - self._shown >= SHOWN and self.status == "running" and self.link.idle:
+            self.show()
+
+    def show(self) -> None:
+        """Shows the run as it is now, and all that has happened."""
+        run, now = self.run, perf_counter()
+        self._shown = now
+        trace = run.trace
+        count = 0 if trace is None else len(trace)
+        news = [] if trace is None or count <= self._sent else trace.since(self._sent)
+        physics, apertures = run.scene()
+        state = State(
+            status=self.status,
+            reason=self.reason,
+            tick=run.clock // run.period,
+            time=seconds(run.clock),
+            furthest=seconds(max(run.clock, run.furthest)),
+            wanted=self.factor,
+            measured=self._measure(now),
+            events=count,
+            parts=to_json(run.parts()).encode(),
+            apertures=apertures,
+            result=to_json(run.result() if self.status == "ended" else None).encode(),
+            physics=physics,
+        )
+        self.link.show(state, self._sent, [to_json([e.time_us, e.source, e.kind, e.data]).encode() for e in news])
+        self._sent = max(self._sent, count)
+
+    def _halt(self) -> None:
+        self._anchor = None
+        self._marks.clear()
+        self.watch.begin()
+        self.show()
+
+    def _measure(self, now: float) -> float | None:
+        """Returns how many times as fast as real time the run has gone lately."""
+        if self.status != "running":
+            return None
+        self._marks.append((now, self.run.clock))
+        while now - self._marks[0][0] > WINDOW:
+            self._marks.popleft()
+        begin, at = self._marks[0]
+        return (self.run.clock - at) / MICROSECONDS / (now - begin) if now - begin > SHOWN / 2 else None

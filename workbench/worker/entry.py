@@ -1,0 +1,120 @@
+"""Where a worker process begins: its limits, its output, its one run, and what is told when that fails."""
+
+from __future__ import annotations
+
+import faulthandler
+import io
+import os
+import signal
+import socket
+import sys
+import warnings
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.limits import EndOfRun
+from actr3d.actr.reading import compile_source
+from actr3d.values import to_json
+from workbench.loader import listing_of
+from workbench.worker.conductor import Conductor
+from workbench.worker.link import Link
+from workbench.worker.messages import Over, Reply, notice
+from workbench.worker.trouble import notice_of
+
+MEGABYTE = 1 << 20
+
+
+def main(wire: socket.socket, output: int, memory: int) -> None:
+    """Serves one run.
+
+    Args:
+        wire: The socket to the server.
+        output: The file descriptor to which everything goes that the process prints without the model's `print`.
+        memory: How much memory the model may take beyond what the worker has [MB]; 0 for no limit.
+    """
+    _settle(output)
+    _limit_memory(memory)
+    link = Link(wire)
+    conductor = Conductor(link)
+    warnings.simplefilter("default")
+    warnings.showwarning = _told_to(link)
+    try:
+        _run(link, conductor)
+    except EndOfRun:
+        pass
+    except BaseException as error:  # noqa: BLE001 - SystemExit, too, is how a model ended
+        link.post(notice_of(error))
+    link.post(Over())
+    link.flush()
+    with suppress(OSError):
+        wire.shutdown(socket.SHUT_WR)
+    sys.stderr.flush()
+    os._exit(0)  # threads that the model has left do not keep the process
+
+
+def _run(link: Link, conductor: Conductor) -> None:
+    start = link.start
+    compile_source(start.source, start.path)  # what is wrong with the text is told before anything else
+    listing = listing_of(start.source, start.path)
+    if start.job == "check":
+        from workbench.worker.built import check
+
+        result = check(start.source, start.path, Path(start.folder)) if listing.kind == "simulation" else {}
+        link.post(Reply(id=0, result=to_json(result).encode()))
+    elif listing.kind == "simulation":
+        from workbench.worker.built import BuiltRun
+
+        BuiltRun(conductor, listing).play()
+    else:
+        from workbench.worker.program import ProgramRun
+
+        ProgramRun(conductor, listing).play()
+
+
+def _settle(output: int) -> None:
+    """Makes the process its own: no terminal, no keyboard, its own group of processes."""
+    with suppress(OSError):
+        os.setsid()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    nothing = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nothing, 0)
+    os.dup2(output, 1)
+    os.dup2(output, 2)
+    os.close(nothing)
+    if output > 2:
+        os.close(output)
+    sys.stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - it stays
+    # What the model prints is told as events of its run; this is for what is written past them.
+    sys.stdout = sys.__stdout__ = io.TextIOWrapper(_Nothing(), encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
+    sys.stderr = sys.__stderr__ = io.TextIOWrapper(io.FileIO(2, "w", closefd=False), encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
+    faulthandler.enable(file=2)
+
+
+class _Nothing(io.RawIOBase):
+    """Takes bytes, and forgets them."""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any, /) -> int:
+        return len(data)
+
+
+def _limit_memory(megabytes: int) -> None:
+    if not megabytes or sys.platform != "linux":
+        return
+    import resource
+
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    most = pages * resource.getpagesize() + megabytes * MEGABYTE
+    resource.setrlimit(resource.RLIMIT_AS, (most, most))
+
+
+def _told_to(link: Link) -> Any:
+    """Returns what takes the place of `warnings.showwarning`."""
+
+    def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:
+        link.post(notice("warning", str(message), filename, lineno))
+
+    return show

@@ -1,0 +1,172 @@
+"""What the server and a worker say to each other: frozen types in MessagePack, each with its length before it."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import msgspec
+
+Status = Literal["loading", "paused", "running", "ended", "failed"]
+
+
+class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_field="type"):
+    """The base of all messages."""
+
+
+def whole(text: str) -> str:
+    """Returns a text that can be sent: half characters, which no encoding has, are written as escapes."""
+    return str(text).encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+# -- to the worker
+
+
+class Start(Message, frozen=True, kw_only=True):
+    """Begins a run; the first message."""
+
+    job: Literal["run", "check"] = "run"
+    """`check` loads the model, builds what it describes and runs nothing."""
+    path: str
+    source: str
+    folder: str
+    settings: dict[str, Any] = {}
+    seed: int | None = None
+    record: str | None = None
+    commands: list[tuple[int, dict[str, Any]]] = []
+    """What users did in an earlier run, to be done again: after which tick, and what (`Command.to_data`)."""
+    helpers: dict[str, tuple[str, str]] = {}
+    """The file and text of each helper module of an earlier run, by name; others are read from the folder."""
+    factor: float | None = None
+    breakpoints: tuple[str, ...] = ()
+    run: bool = False
+
+
+class Do(Message, frozen=True, kw_only=True):
+    """A command or question of a page."""
+
+    id: int
+    say: bytes
+    """As JSON; see `protocol`."""
+
+
+class Leave(Message, frozen=True, kw_only=True):
+    """Asks the worker to end in good order."""
+
+
+class Where(Message, frozen=True, kw_only=True):
+    """Asks at which line of the model the worker is."""
+
+
+# -- from the worker
+
+
+class Facts(Message, frozen=True, kw_only=True):
+    """What is known of a run once it is built."""
+
+    kind: Literal["simulation", "program"]
+    seed: int | str
+    period: float
+    """A tick [s]."""
+    parameters: bytes
+    """JSON: their values by name."""
+    world: bytes
+    """JSON: bodies and apertures; null without a world."""
+    mj_model: bytes | None
+    """The compiled scene, as MuJoCo saves it."""
+
+
+class State(Message, frozen=True, kw_only=True):
+    """What the run is like at a moment; a newer one replaces it."""
+
+    status: Status
+    reason: str
+    """Why it is paused, has ended or failed."""
+    tick: int
+    time: float
+    """[s]"""
+    furthest: float
+    """How far it has come [s]."""
+    wanted: float | None
+    measured: float | None
+    """How many times as fast as real time; None where it stands."""
+    events: int
+    """How many events there are up to this moment."""
+    parts: bytes
+    """JSON: see `actr3d.actr.picture`."""
+    apertures: dict[str, float]
+    """Free widths by name [m]."""
+    result: bytes
+    """JSON: what was measured of a run that has ended; null where nothing was, or it goes on."""
+    physics: bytes | None
+    """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
+
+
+class News(Message, frozen=True, kw_only=True):
+    """Events, in order."""
+
+    first: int
+    """The number of the first, counted from 0; more than one after the last before where some were left out."""
+    events: list[bytes]
+    """JSON of each: time [us], source, kind, data."""
+
+
+class Cut(Message, frozen=True, kw_only=True):
+    """The run goes another way: events from a number on are no more."""
+
+    events: int
+
+
+class Notice(Message, frozen=True, kw_only=True):
+    """Something to tell the user."""
+
+    level: Literal["info", "warning", "error"]
+    text: str
+    file: str | None = None
+    line: int | None = None
+    detail: str = ""
+
+
+def notice(
+    level: Literal["info", "warning", "error"], text: str, file: str | None = None, line: int | None = None, detail: str = ""
+) -> Notice:
+    """Returns a notice of any texts, such as models make."""
+    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail))
+
+
+class Reply(Message, frozen=True, kw_only=True):
+    """What came of a `Do`."""
+
+    id: int
+    result: bytes = b"null"
+    """JSON."""
+    error: str | None = None
+
+
+class At(Message, frozen=True, kw_only=True):
+    """Where the worker is: the innermost line that is the modeller's."""
+
+    file: str | None
+    line: int | None
+    function: str = ""
+
+
+class Over(Message, frozen=True, kw_only=True):
+    """The worker ends in good order."""
+
+
+ToWorker = Start | Do | Leave | Where
+FromWorker = Facts | State | News | Cut | Notice | Reply | At | Over
+
+_ENCODER = msgspec.msgpack.Encoder()
+TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)
+FROM_WORKER: msgspec.msgpack.Decoder[FromWorker] = msgspec.msgpack.Decoder(FromWorker)
+LENGTH = 4
+"""How many bytes tell a message's length."""
+LONGEST = 200_000_000
+"""No message is longer [bytes]; a compiled scene with large meshes is the largest."""
+
+
+def framed(message: Message) -> bytes:
+    """Returns a message as it goes over the wire."""
+    data = _ENCODER.encode(message)
+    return len(data).to_bytes(LENGTH, "big") + data

@@ -1,0 +1,27 @@
+"""What is told of an error in a worker."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from actr3d.errors import Actr3dError
+from actr3d.running.complaint import complaint
+from workbench.worker.messages import Notice, notice, whole
+
+_HERE = str(Path(__file__).parents[1])
+
+
+def told_of(error: BaseException) -> str:
+    """Returns an error in a few words."""
+    if isinstance(error, MemoryError):
+        return "the model used more memory than it may"
+    if isinstance(error, SystemExit):
+        return f"the model ended its process (SystemExit: {error.code})"
+    text = str(error) if isinstance(error, Actr3dError) else complaint(error, _HERE).message
+    return whole(text) or type(error).__name__
+
+
+def notice_of(error: BaseException) -> Notice:
+    """Returns what the user is told of an error, with the line of the model where it was."""
+    told = complaint(error, _HERE)
+    return notice("error", told_of(error), told.file, told.line, told.text)

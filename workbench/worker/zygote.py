@@ -1,0 +1,107 @@
+"""The process from which workers are forked: it has everything loaded, so that a run begins within milliseconds.
+
+It is told by its own socket: each message has two file descriptors, the wire and the output of a new worker, and how much
+memory that may take. It answers with the worker's process number, and later with how that ended. When the server is gone
+it ends all workers, and itself.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import select
+import signal
+import socket
+import struct
+import sys
+from contextlib import suppress
+
+ANSWER = struct.Struct("!Bqi")
+"""What is told (BORN or DEAD), the process number, and for a dead one its status as `os.waitstatus_to_exitcode` gives it."""
+BORN, DEAD, READY = 1, 2, 3
+ASK = struct.Struct("!i")
+"""How much memory a new worker may take [MB]."""
+
+
+def main(number: int) -> None:
+    """Serves until the server is gone.
+
+    Args:
+        number: The file descriptor of the socket to the server.
+    """
+    import workbench.worker.preload  # pyright: ignore[reportUnusedImport] # noqa: F401
+
+    control = socket.socket(fileno=number)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    woken, wake = os.pipe()
+    os.set_blocking(wake, False)
+    os.set_blocking(woken, False)
+    signal.signal(signal.SIGCHLD, _woken)
+    signal.set_wakeup_fd(wake)
+    gc.collect()
+    gc.freeze()
+    _answer(control, READY, os.getpid(), 0)
+    children: set[int] = set()
+    while True:
+        ready, _, _ = select.select([control, woken], [], [])
+        if woken in ready:
+            with suppress(BlockingIOError):
+                os.read(woken, 4096)
+            _bury(control, children)
+        if control not in ready:
+            continue
+        try:
+            data, descriptors, _, _ = socket.recv_fds(control, ASK.size, 2)
+        except ConnectionError:
+            break
+        if not data:
+            break
+        pid = _born(control, (woken, wake), descriptors, ASK.unpack(data)[0])
+        children.add(pid)
+        _answer(control, BORN, pid, 0)
+    for pid in children:
+        with suppress(OSError):
+            os.killpg(pid, signal.SIGKILL)
+
+
+def _answer(control: socket.socket, *what: int) -> None:
+    """Tells the server something; that it is gone is found out where it is heard next."""
+    with suppress(OSError):
+        control.sendall(ANSWER.pack(*what))
+
+
+def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int], memory: int) -> int:
+    """Forks a worker, and returns its process number; in the worker it does not return."""
+    from workbench.worker.entry import main as work
+
+    pid = os.fork()
+    if pid == 0:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        for descriptor in pipe:
+            os.close(descriptor)
+        control.close()
+        wire, output = descriptors
+        work(socket.socket(fileno=wire), output, memory)
+        os._exit(0)
+    for descriptor in descriptors:
+        os.close(descriptor)
+    return pid
+
+
+def _woken(_: int, __: object) -> None:
+    """Does nothing: that a signal came is read from the pipe."""
+
+
+def _bury(control: socket.socket, children: set[int]) -> None:
+    """Tells the server of the children that have died."""
+    for pid in list(children):
+        with suppress(ChildProcessError):
+            done, status = os.waitpid(pid, os.WNOHANG)
+            if done:
+                children.discard(pid)
+                _answer(control, DEAD, pid, os.waitstatus_to_exitcode(status))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))
