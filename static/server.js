@@ -1,6 +1,6 @@
 // Speaks to the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
-import { changed, forget, store, take } from "./store.js";
+import { complain, connected, events, forget, known, take } from "./store.js";
 
 const AGAIN = 1000; // how long it waits before connecting again [ms]
 
@@ -11,14 +11,16 @@ const waiting = new Map();
 
 /** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. */
 export async function call(method, path, body) {
-  const headers = body === undefined ? {} : { "content-type": "application/json", "x-workbench": "1" };
-  if (method !== "GET" && body === undefined) {
-    headers["content-type"] = "application/json";
-    headers["x-workbench"] = "1";
+  // Whatever changes something is sent as JSON with a header of ours, which no form of another site can do.
+  const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
+  let response;
+  try {
+    response = await fetch(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body) });
+  } catch {
+    throw Object.assign(new Error("the workbench does not answer; is it still running?"), { status: 0, told: null });
   }
-  const response = await fetch(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body) });
   const text = await response.text();
-  let told = null;
+  let told;
   try {
     told = JSON.parse(text);
   } catch {
@@ -39,21 +41,28 @@ export function show(session) {
   else connect();
 }
 
+/** Shows a model: the session with it that there is, or a new one. */
+export async function showModel(model) {
+  const { sessions } = await call("GET", "/api/sessions");
+  const there = sessions.filter((session) => session.model === model).at(-1);
+  show((there ?? (await call("POST", "/api/sessions", { model }))).id);
+}
+
 function attach() {
-  const known = store.firstEvent + store.events.length;
-  socket.send(JSON.stringify({ type: "attach", session: shown, run: store.run, epoch: store.epoch, events: known }));
+  const { first, list } = events.value;
+  socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length }));
 }
 
 function connect() {
   if (socket && socket.readyState <= WebSocket.OPEN) return;
   socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`);
   socket.onopen = () => {
-    store.connected = true;
-    changed("connected");
+    connected.value = true;
     if (shown) attach();
   };
   socket.onmessage = ({ data }) => {
     const message = JSON.parse(data);
+    if (message.type === "refused") complain(message.error);
     if (message.type !== "update") return;
     take(message);
     for (const reply of message.replies ?? []) {
@@ -62,19 +71,18 @@ function connect() {
     }
   };
   socket.onclose = () => {
-    store.connected = false;
-    changed("connected");
+    connected.value = false;
     for (const done of waiting.values()) done({ result: null, error: "the connection was lost" });
     waiting.clear();
     setTimeout(connect, AGAIN);
   };
 }
 
-/** Says a command or asks a question; returns what comes of it. What goes wrong is among the messages. */
+/** Says a command or asks a question; returns what comes of it, or throws an Error that says why not. */
 export function say(what) {
   return new Promise((resolve, reject) => {
     if (socket?.readyState !== WebSocket.OPEN) {
-      reject(new Error("there is no connection"));
+      reject(new Error("there is no connection to the workbench"));
       return;
     }
     number += 1;
@@ -86,12 +94,4 @@ export function say(what) {
 /** Does a command whose result does not matter; an error is shown among the messages. */
 export function order(what) {
   return say(what).catch((error) => complain(error.message));
-}
-
-let ownNotices = 0;
-
-export function complain(text) {
-  ownNotices -= 1;
-  store.notices.push({ number: ownNotices, level: "error", text, file: null, line: null, detail: "" });
-  changed("notices");
 }

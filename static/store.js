@@ -1,91 +1,82 @@
-// What the page knows, fed by the websocket. Panels look at it and are told when a part of it has changed.
+// What the page knows, as signals, fed by the websocket. A panel that reads one is drawn again when it has changed.
 
-const MOST_EVENTS = 100000;
+import { batch, computed, signal } from "./vendor/preact.js";
 
-export const store = {
-  session: null, // what is known of the session and its run: see Session.facts_json
-  state: null, // the newest state: status, time, speed, apertures, parts
-  events: [], // [time in us, source, kind, data]
-  firstEvent: 0, // the number of the first of them
-  missing: 0, // how many events were left out before them
-  notices: [],
-  connected: false,
-  run: 0,
-  epoch: 0,
-};
+const MOST_EVENTS = 200_000;
+const MOST_NOTICES = 500;
 
-const listeners = new Map();
-const waiting = new Set();
-let asked = false;
+/** What is known of the session and its run (`Telling.facts_json`); null before there is one. */
+export const session = signal(null);
+/** The newest state: status, time, speed, apertures, parts (`Telling.state_json`); null before the first. */
+export const state = signal(null);
+/** The events of the run in order, each [time in us, source, kind, data]; also those after the present moment of a run that went
+ * back. `first` is the number of the first, `missing` how many were left out before it. The list grows in place. */
+export const events = signal({ list: [], first: 0, missing: 0 });
+/** What the user is told: {number, level, text, file, line, detail}. */
+export const notices = signal([]);
+/** Whether the websocket is open; null before it was for the first time. */
+export const connected = signal(null);
 
-/** Calls `listener` after one of the named parts ("session", "state", "events", "notices", "connected") has changed. */
-export function watch(names, listener) {
-  for (const name of names) {
-    if (!listeners.has(name)) listeners.set(name, new Set());
-    listeners.get(name).add(listener);
-  }
-}
+export const running = computed(() => state.value?.status === "running");
+/** Whether there is a run that can be asked. */
+export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null);
+/** The moment that is shown, as a text that differs between moments. */
+export const moment = computed(() => `${session.value?.id} ${session.value?.run} ${state.value?.tick} ${state.value?.events}`);
 
-export function changed(...names) {
-  names.forEach((name) => waiting.add(name));
-  if (asked) return;
-  asked = true;
-  // Not with the next picture: the 3D view may take long for one, and a page in the background draws none.
-  setTimeout(() => {
-    asked = false;
-    const due = new Set([...waiting].flatMap((name) => [...(listeners.get(name) ?? [])]));
-    waiting.clear();
-    due.forEach((listener) => listener());
-  });
-}
+/** Which events of which run are known, for a connection that is made again. */
+export const known = { run: 0, epoch: 0 };
 
 /** Takes in one message of the server. */
 export function take(message) {
-  const parts = [];
-  if (message.session) {
-    store.session = message.session;
-    parts.push("session");
-  }
-  if (message.run !== store.run) {
-    Object.assign(store, { events: [], firstEvent: 0, missing: 0 });
-    parts.push("events");
-  }
-  store.run = message.run;
-  store.epoch = message.epoch;
-  if ("state" in message) {
-    store.state = message.state;
-    parts.push("state");
-  }
-  if (message.events) {
-    takeEvents(message.events);
-    parts.push("events");
-  }
-  if (message.notices) {
-    const known = new Set(store.notices.map((notice) => notice.number));
-    store.notices.push(...message.notices.filter((notice) => !known.has(notice.number)));
-    store.notices = store.notices.slice(-500);
-    parts.push("notices");
-  }
-  changed(...parts);
+  batch(() => {
+    if (message.session) session.value = message.session;
+    if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0 };
+    Object.assign(known, { run: message.run, epoch: message.epoch });
+    if ("state" in message) state.value = message.state;
+    if (message.events) events.value = withEvents(events.value, message.events);
+    if (message.notices) {
+      const numbers = new Set(notices.value.map((notice) => notice.number));
+      tell(message.notices.filter((notice) => !numbers.has(notice.number)));
+    }
+  });
 }
 
-function takeEvents({ first, list, cut, missing }) {
-  if (cut !== undefined) store.events.length = Math.max(0, Math.min(store.events.length, cut - store.firstEvent));
-  if (missing || store.events.length === 0) {
-    store.events = [];
-    store.firstEvent = first;
-    store.missing = first;
+function withEvents({ list, first, missing }, news) {
+  if (news.cut !== undefined) list.length = Math.max(0, Math.min(list.length, news.cut - first));
+  if (news.missing || list.length === 0) {
+    list = [];
+    first = news.first;
+    missing = news.first;
   }
-  store.events.push(...list);
-  if (store.events.length > MOST_EVENTS) {
-    const drop = store.events.length - MOST_EVENTS;
-    store.events.splice(0, drop);
-    store.firstEvent += drop;
+  for (const event of news.list) list.push(event);
+  if (list.length > MOST_EVENTS) {
+    // A tenth more than needed, so that this is seldom.
+    const drop = list.length - 0.9 * MOST_EVENTS;
+    list.splice(0, drop);
+    first += drop;
   }
+  return { list, first, missing };
+}
+
+function tell(told) {
+  notices.value = [...notices.value, ...told].slice(-MOST_NOTICES);
+}
+
+let ownNotices = 0;
+
+/** Tells the user something that the page itself has found. */
+export function complain(text, level = "error") {
+  ownNotices -= 1;
+  tell([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
 }
 
 /** Forgets what is known of a session, for another one is shown. */
 export function forget() {
-  Object.assign(store, { session: null, state: null, events: [], firstEvent: 0, missing: 0, notices: [], run: 0, epoch: 0 });
-  changed("session", "state", "events", "notices");
+  batch(() => {
+    session.value = null;
+    state.value = null;
+    events.value = { list: [], first: 0, missing: 0 };
+    notices.value = [];
+    Object.assign(known, { run: 0, epoch: 0 });
+  });
 }

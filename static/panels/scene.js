@@ -1,27 +1,17 @@
 // The 3D view: viser's page in a frame that never moves, for moving it would load it again.
 
-import { el } from "../dom.js";
-import { store, watch } from "../store.js";
+import { html, useRef } from "../vendor/preact.js";
+import { session } from "../store.js";
+import { dark } from "../theme.js";
 
-export function scene(root) {
-  const nothing = el("p", {});
-  let frame = null;
-  let of = null;
-  root.append(nothing);
-
-  watch(["session"], () => {
-    const { session } = store;
-    const shown = Boolean(session?.world && session.scene);
-    nothing.hidden = shown;
-    nothing.textContent = session?.world ? "The 3D view is being made …" : session ? "This model has no world to show." : "";
-    if (shown && !frame) {
-      frame = el("iframe", { title: "3D view" });
-      root.append(frame);
-    }
-    if (frame) frame.hidden = !shown;
-    if (shown && of !== session.id) {
-      of = session.id;
-      frame.src = `/viser/${session.id}/`;
-    }
-  });
+export function Scene() {
+  const told = session.value;
+  const shown = Boolean(told?.world && told.scene);
+  const address = useRef("about:blank");
+  if (shown) address.current = `/viser/${told.id}/${dark.value ? "?darkMode" : ""}`;
+  const text = !told ? "" : told.world ? "The 3D view is being made …" : told.loading ? "The model is being loaded …" : told.kind ? "This model has no world to show." : "";
+  return html`<section id="scene" class="scene" aria-label="3D view">
+    <iframe title="3D view" src=${address.current} hidden=${!shown}></iframe>
+    ${shown ? null : html`<p class="empty">${text}</p>`}
+  </section>`;
 }

@@ -1,0 +1,23 @@
+// The bar above: which model, its aperture, and the controls of the run.
+
+import { html } from "../vendor/preact.js";
+import { Icon } from "../parts/icon.js";
+import { chosen, nextTheme } from "../theme.js";
+import { Aperture } from "./aperture.js";
+import { Clock } from "./clock.js";
+import { showKeys } from "./help.js";
+import { ModelChoice } from "./models.js";
+import { Transport } from "./transport.js";
+
+export function Bar() {
+  return html`<header class="bar">
+    <h1>ACT-R 3D</h1>
+    <${ModelChoice} />
+    <${Transport} />
+    <${Clock} />
+    <${Aperture} />
+    <span class="stretch"></span>
+    <button class="bare" title="Theme: ${chosen}" aria-label="Theme: ${chosen}" onClick=${nextTheme}><${Icon} name="theme" /></button>
+    <button class="bare" title="Keys (?)" aria-label="Keys" onClick=${showKeys}><${Icon} name="help" /></button>
+  </header>`;
+}

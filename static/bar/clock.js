@@ -1,0 +1,12 @@
+// What time it is in the run, and how fast it goes.
+
+import { html } from "../vendor/preact.js";
+import { state } from "../store.js";
+
+export function Clock() {
+  const { time, measured } = state.value ?? {};
+  return html`<div class="clock">
+    <output id="time" aria-label="Time of the run">${time === undefined ? "–" : `t = ${time.toFixed(2)} s`}</output>
+    <output id="measured" aria-label="Measured speed">${measured ? `${measured.toFixed(1)} x` : ""}</output>
+  </div>`;
+}

@@ -1,0 +1,62 @@
+// Which model is shown: choosing one shows the session with it, or begins one.
+
+import { html, signal, useEffect } from "../vendor/preact.js";
+import { call, showModel } from "../server.js";
+import { complain, session } from "../store.js";
+
+/** The model files of the folder: {path, title, kind}. */
+export const models = signal([]);
+/** The model that is shown. */
+export const model = signal(null);
+
+const FIRST = ["aperture_passage.py", "doorway.py"];
+
+/** Reads anew which models there are. */
+export async function listModels() {
+  models.value = (await call("GET", "/api/models")).models;
+}
+
+/** Shows a model. */
+export async function choose(path) {
+  model.value = path;
+  try {
+    sessionStorage.setItem("model", path);
+    history.replaceState(null, "", `?model=${encodeURIComponent(path)}`);
+    await showModel(path);
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
+async function begin() {
+  try {
+    await listModels();
+  } catch (error) {
+    complain(error.message);
+    return;
+  }
+  const paths = models.value.map(({ path }) => path);
+  if (paths.length === 0) {
+    complain("There is no model in the folder yet: make one in the tab Editor, or put a Python file there.", "info");
+    return;
+  }
+  const wanted = [new URLSearchParams(location.search).get("model"), sessionStorage.getItem("model"), ...FIRST];
+  await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
+}
+
+export function ModelChoice() {
+  useEffect(() => void begin(), []);
+  const shown = session.value?.model ?? model.value ?? "";
+  const folders = Map.groupBy(models.value, ({ path }) => path.split("/").slice(0, -1).join("/"));
+  const option = ({ path, title }) => html`<option key=${path} value=${path} title=${title}>${path.split("/").at(-1)}</option>`;
+  return html`<select
+    class="model"
+    aria-label="Model"
+    title=${models.value.find(({ path }) => path === shown)?.title ?? ""}
+    value=${shown}
+    onChange=${(event) => choose(event.currentTarget.value)}
+  >
+    ${models.value.length === 0 ? html`<option value="">no models</option>` : null}
+    ${[...folders].map(([folder, list]) => (folder ? html`<optgroup key=${folder} label=${folder}>${list.map(option)}</optgroup>` : list.map(option)))}
+  </select>`;
+}

@@ -1,0 +1,54 @@
+// Questions to a run, asked again whenever it stands at another moment.
+
+import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
+import { say } from "../server.js";
+import { alive, moment, running } from "../store.js";
+
+/** How long it waits between two questions while the run goes on [ms]: to answer costs the run time. */
+const WHILE_RUNNING = 100;
+
+/**
+ * Asks a question of `protocol.py` now and whenever the run stands at another moment; one question at a time.
+ *
+ * @param question What is asked; null for nothing.
+ * @param live Whether it is also asked while the run goes on.
+ * @returns {answer, error, waiting}: the newest answer (kept until the next one is there), or why there is none.
+ */
+export function useAnswer(question, { live = false } = {}) {
+  const [told, setTold] = useState({ answer: null, error: null, waiting: false });
+  const key = JSON.stringify(question);
+  const newest = useRef(key);
+  newest.current = key;
+  useEffect(() => {
+    if (question === null) return undefined;
+    let asked = "";
+    let busy = false;
+    let over = false;
+    let timer = 0;
+    async function ask() {
+      if (busy || over || !alive.peek() || (running.peek() && !live) || asked === moment.peek()) return;
+      asked = moment.peek();
+      busy = true;
+      setTold((before) => ({ ...before, waiting: true }));
+      try {
+        const answer = await say(question);
+        if (!over && newest.current === key) setTold({ answer, error: null, waiting: false });
+      } catch (error) {
+        if (!over && newest.current === key) setTold({ answer: null, error: error.message, waiting: false });
+      }
+      busy = false;
+      timer = setTimeout(ask, running.peek() ? WHILE_RUNNING : 0);
+    }
+    const end = effect(() => {
+      moment.value;
+      running.value;
+      if (alive.value) ask();
+    });
+    return () => {
+      over = true;
+      clearTimeout(timer);
+      end();
+    };
+  }, [key, live]);
+  return told;
+}

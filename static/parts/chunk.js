@@ -1,0 +1,30 @@
+// Chunks and values as one reads them.
+
+import { html } from "../vendor/preact.js";
+
+/** Returns the slots of a chunk as [name, text]; those that are known by place have an empty name. */
+export function slotsOf(chunk) {
+  return Object.entries(chunk ?? {}).map(([slot, value]) => [/^\d+$/.test(slot) ? "" : slot, valueText(value)]);
+}
+
+/** Says a value: numbers with at most four digits after the point, texts as they are. */
+export function valueText(value) {
+  if (typeof value === "number") return Number.isInteger(value) ? String(value) : String(Number(value.toFixed(4)));
+  if (value === null || value === undefined) return "none";
+  return typeof value === "object" ? JSON.stringify(value) : String(value);
+}
+
+/** Says a chunk in one line: places first, then slots. */
+export function chunkText(chunk) {
+  if (!chunk) return "";
+  return slotsOf(chunk)
+    .map(([slot, text]) => (slot ? `${slot}:${text}` : text))
+    .join(" ");
+}
+
+export function Chunk({ chunk }) {
+  if (!chunk) return html`<span class="empty">empty</span>`;
+  return html`<span class="chunk">
+    ${slotsOf(chunk).map(([slot, text], n) => html`<span class="slot" key=${n}>${slot ? html`<b>${slot}</b>` : null}${text}</span>`)}
+  </span>`;
+}

@@ -1,0 +1,56 @@
+// Dialogs, as the browser makes them: they hold the focus, and Escape closes them.
+
+import { html, signal, useEffect, useRef } from "../vendor/preact.js";
+
+const open = signal(null);
+
+/** Shows a dialog: `title`, `body` (what `html` makes) and `actions` [{text, kind, value}]. Returns the value of the one that is
+ * chosen; null where it is closed. With `ask` there is a line to write in, and what was written is returned. */
+export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined }) {
+  return new Promise((resolve) => (open.value = { title, body, actions, ask, resolve }));
+}
+
+/** Asks whether something is to be done; returns whether. */
+export function confirmed(title, text, action) {
+  const actions = [{ text: "Cancel", value: false }, { text: action, value: true, kind: "danger" }];
+  return dialog({ title, body: html`<p>${text}</p>`, actions }).then(Boolean);
+}
+
+/** Asks for a text; returns it, or null. */
+export function asked(title, label, value, action) {
+  return dialog({ title, ask: { label, value }, actions: [{ text: "Cancel", value: null }, { text: action, value: true, kind: "primary" }] });
+}
+
+/** The place of the dialogs. */
+export function Dialogs() {
+  const box = useRef(null);
+  const line = useRef(null);
+  const shown = open.value;
+  useEffect(() => {
+    if (!shown) return;
+    box.current.showModal();
+    line.current?.select();
+  }, [shown]);
+  if (!shown) return null;
+
+  function done(value) {
+    const result = shown.ask && value ? line.current.value.trim() : value;
+    open.value = null;
+    shown.resolve(result);
+  }
+
+  function press(event) {
+    if (event.key !== "Enter" || event.target !== line.current) return;
+    event.preventDefault();
+    done(true);
+  }
+
+  return html`<dialog ref=${box} aria-labelledby="dialog-title" onClose=${() => open.value === shown && done(null)} onKeyDown=${press}>
+    <h2 id="dialog-title">${shown.title}</h2>
+    ${shown.body}
+    ${shown.ask ? html`<label class="field">${shown.ask.label}<input ref=${line} value=${shown.ask.value} spellcheck="false" /></label>` : null}
+    <footer>
+      ${shown.actions.map(({ text, value, kind }) => html`<button class=${kind ?? ""} onClick=${() => done(value)}>${text}</button>`)}
+    </footer>
+  </dialog>`;
+}

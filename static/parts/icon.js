@@ -1,0 +1,31 @@
+// Small pictures for buttons, drawn in a square of 16; they take the colour of the text.
+
+import { html } from "../vendor/preact.js";
+
+const PATHS = {
+  run: "M4 2.5v11l9-5.5z",
+  pause: "M4 2.5h3v11H4zM9 2.5h3v11H9z",
+  step: "M3 2.5v11l7-5.5zM11 2.5h2v11h-2z",
+  back: "M13 2.5v11L6 8zM3 2.5h2v11H3z",
+  cycle: "M2 2.5v11L8 8zM8 2.5v11L14 8z",
+  restart: "M8 2a6 6 0 1 0 6 6h-2a4 4 0 1 1-4-4v3l5-4-5-4z",
+  seed: "M2 2h12v12H2zM4 4v8h8V4zM5.5 5.5h2v2h-2zM8.5 8.5h2v2h-2z",
+  stop: "M3 3h10v10H3z",
+  until: "M2 7h7V3.5L13.5 8 9 12.5V9H2zM13.5 2.5H15v11h-1.5z",
+  theme: "M8 1a7 7 0 1 0 0 14A7 7 0 0 0 8 1zm0 2v10A5 5 0 0 1 8 3z",
+  close: "M3.5 2.5 8 7l4.5-4.5 1 1L9 8l4.5 4.5-1 1L8 9l-4.5 4.5-1-1L7 8 2.5 3.5z",
+  more: "M2 7h2.5v2H2zM6.75 7h2.5v2h-2.5zM11.5 7H14v2h-2.5z",
+  search: "M7 2a5 5 0 1 0 3 9l3.3 3.3 1-1L11 10A5 5 0 0 0 7 2zm0 1.5a3.5 3.5 0 1 1 0 7 3.5 3.5 0 0 1 0-7z",
+  download: "M7 1.5h2v7l2.5-2.5 1.2 1.2L8 12 3.3 7.2 4.5 6 7 8.5zM2 13h12v1.7H2z",
+  copy: "M5 1.5h9v10h-3v3H2v-10h3zm1.5 1.5v1.5H11V10h1.5V3zM3.5 6v7h6V6z",
+  trash: "M6 1.5h4l.5 1H14V4H2V2.5h3.5zM3 5h10l-.8 9.5H3.8z",
+  help: "M8 1a7 7 0 1 0 0 14A7 7 0 0 0 8 1zm.9 10.8H7.1V10h1.8zm1.6-5c-.7.8-1.6 1.1-1.6 2.3H7.2c0-1.7 1-2.1 1.6-2.7.6-.7.3-1.7-.8-1.7-.8 0-1.3.5-1.4 1.4L5 5.9C5.1 4 6.3 3.2 8 3.2c2.6 0 3.600 1.900 2.500 3.600z",
+  down: "M3 5.500 8 10.500l5-5z",
+  right: "M5.500 3 10.500 8l-5 5z",
+};
+
+export function Icon({ name }) {
+  return html`<svg class="icon" viewBox="0 0 16 16" width="14" height="14" aria-hidden="true" focusable="false">
+    <path fill="currentColor" fill-rule="evenodd" d=${PATHS[name]} />
+  </svg>`;
+}

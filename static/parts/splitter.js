@@ -1,0 +1,54 @@
+// A bar between two panels that moves the border between them, by pointer or by arrow keys.
+
+import { html } from "../vendor/preact.js";
+
+const STEP = 24; // one press of an arrow key [px]
+
+/**
+ * @param size A signal with the size that it sets [px].
+ * @param along "columns" for a bar between left and right, "rows" for one between above and below.
+ * @param label What its size is the size of.
+ * @param least The smallest size [px].
+ * @param most Returns the largest size [px].
+ *
+ * The panel whose size it is stands after the bar: right of it, or below.
+ */
+export function Splitter({ size, along, label, least, most }) {
+  const clamp = (value) => Math.round(Math.max(least, Math.min(most(), value)));
+  const place = (event) => (along === "columns" ? event.clientX : event.clientY);
+
+  function begin(event) {
+    const bar = event.currentTarget;
+    const from = place(event);
+    const before = size.value;
+    bar.setPointerCapture(event.pointerId);
+    document.body.dataset.dragging = along; // frames take no pointer events meanwhile
+    bar.onpointermove = (moved) => (size.value = clamp(before + from - place(moved)));
+    bar.onpointerup = bar.onpointercancel = () => {
+      bar.onpointermove = bar.onpointerup = bar.onpointercancel = null;
+      delete document.body.dataset.dragging;
+    };
+    event.preventDefault();
+  }
+
+  function press(event) {
+    const [larger, smaller] = along === "columns" ? ["ArrowLeft", "ArrowRight"] : ["ArrowUp", "ArrowDown"];
+    const to = { [larger]: size.value + STEP, [smaller]: size.value - STEP, Home: least, End: most() }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    size.value = clamp(to);
+  }
+
+  return html`<div
+    class="splitter ${along}"
+    role="separator"
+    tabindex="0"
+    aria-label=${label}
+    aria-orientation=${along === "columns" ? "vertical" : "horizontal"}
+    aria-valuenow=${size.value}
+    aria-valuemin=${least}
+    aria-valuemax=${most()}
+    onPointerDown=${begin}
+    onKeyDown=${press}
+  ></div>`;
+}

@@ -1,0 +1,43 @@
+// Tabs: one panel shown of several, chosen by pointer or by arrow keys.
+
+import { html } from "../vendor/preact.js";
+
+/**
+ * @param label What the tabs are.
+ * @param tabs [{id, title, View, badge?}]; `badge` returns a short text beside the title, or nothing.
+ * @param shown A signal with the id of the one that is shown.
+ */
+export function Tabs({ label, tabs, shown }) {
+  const open = tabs.find(({ id }) => id === shown.value) ?? tabs[0];
+
+  function press(event) {
+    const at = tabs.indexOf(open);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    shown.value = tabs[(to + tabs.length) % tabs.length].id;
+    event.currentTarget.children[(to + tabs.length) % tabs.length].focus();
+  }
+
+  return html`
+    <div class="tabs" role="tablist" aria-label=${label} onKeyDown=${press}>
+      ${tabs.map(({ id, title, badge }) => {
+        const more = badge?.();
+        return html`<button
+          key=${id}
+          id="tab-${id}"
+          role="tab"
+          aria-selected=${open.id === id}
+          aria-controls="panel-${id}"
+          tabindex=${open.id === id ? 0 : -1}
+          onClick=${() => (shown.value = id)}
+        >
+          ${title}${more ? html`<span class="badge ${more.level ?? ""}">${more.text}</span>` : null}
+        </button>`;
+      })}
+    </div>
+    <div class="tab-panel" role="tabpanel" id="panel-${open.id}" aria-labelledby="tab-${open.id}" key=${open.id}>
+      <${open.View} />
+    </div>
+  `;
+}

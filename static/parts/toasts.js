@@ -1,0 +1,41 @@
+// What has just gone wrong, shown for a while over the page; all of it stays in the tab Messages.
+
+import { html, signal, useEffect, useRef } from "../vendor/preact.js";
+import { notices } from "../store.js";
+import { openTab } from "../tabs.js";
+
+const SHOWN = 8000; // [ms]
+const toast = signal(null);
+
+export function Toasts() {
+  const seen = useRef(new Set());
+  const list = notices.value;
+  useEffect(() => {
+    const fresh = list.filter(({ number, level }) => level === "error" && !seen.current.has(number));
+    seen.current = new Set(list.map(({ number }) => number));
+    if (fresh.length === 0 || openTab.peek() === "messages") return undefined;
+    toast.value = fresh.at(-1);
+    return undefined;
+  }, [list]);
+  const shown = toast.value;
+  useEffect(() => {
+    if (!shown) return undefined;
+    const timer = setTimeout(() => (toast.value = null), SHOWN);
+    return () => clearTimeout(timer);
+  }, [shown]);
+
+  function read() {
+    toast.value = null;
+    openTab.value = "messages";
+  }
+
+  return html`<div class="toasts" aria-live="assertive">
+    ${shown
+      ? html`<div class="toast">
+          <span>${shown.file ? `${shown.file}:${shown.line}: ` : ""}${shown.text}</span>
+          <button class="bare" onClick=${read}>Show</button>
+          <button class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕</button>
+        </div>`
+      : null}
+  </div>`;
+}

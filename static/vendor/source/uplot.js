@@ -1,0 +1,2 @@
+// Plots of curves over time.
+export { default as uPlot } from "uplot";

@@ -1,0 +1,38 @@
+// The layout: a bar above, the 3D view beside the tabs, the timeline below, and a line that says how things stand.
+
+import { html } from "./vendor/preact.js";
+import { Bar } from "./bar/bar.js";
+import { StatusLine } from "./bar/status.js";
+import { Dialogs } from "./parts/dialog.js";
+import { Splitter } from "./parts/splitter.js";
+import { Tabs } from "./parts/tabs.js";
+import { Toasts } from "./parts/toasts.js";
+import { Scene } from "./panels/scene.js";
+import { Timeline } from "./panels/timeline.js";
+import { remembered } from "./remembered.js";
+import { openTab, TABS } from "./tabs.js";
+
+const LEAST_SCENE = 320; // [px]
+const side = remembered("side width", 480);
+const below = remembered("timeline height", 200);
+
+export function Workbench() {
+  const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };
+  return html`
+    <div class="workbench" style=${sizes}>
+      <${Bar} />
+      <main class="work">
+        <${Scene} />
+        <${Splitter} size=${side} along="columns" label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
+        <section class="side" aria-label="Panels">
+          <${Tabs} label="Panels" tabs=${TABS} shown=${openTab} />
+        </section>
+      </main>
+      <${Splitter} size=${below} along="rows" label="Height of the timeline" least=${80} most=${() => innerHeight - 300} />
+      <section class="below" aria-label="Timeline"><${Timeline} /></section>
+      <${StatusLine} />
+    </div>
+    <${Dialogs} />
+    <${Toasts} />
+  `;
+}

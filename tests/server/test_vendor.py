@@ -1,0 +1,44 @@
+"""What the page uses of other people's work is what its manifest says, and the page loads nothing from anywhere else."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from workbench.shipped import static
+
+VENDOR = static() / "vendor"
+MANIFEST = json.loads((VENDOR / "manifest.json").read_text(encoding="utf-8"))
+OWN = sorted(path for path in static().rglob("*") if path.suffix in (".html", ".css", ".js", ".svg") and VENDOR not in path.parents)
+ELSEWHERE = re.compile(r"""(?:https?:|wss?:)?//(?!www\.w3\.org/)[\w-]+(?:\.[\w-]+)+""")
+
+
+@pytest.mark.parametrize("file", MANIFEST["files"], ids=lambda file: file["name"])
+def test_a_bundle_is_the_one_in_the_manifest(file: dict[str, str]) -> None:
+    assert hashlib.sha256((VENDOR / file["name"]).read_bytes()).hexdigest() == file["sha256"]
+
+
+def test_the_manifest_names_every_bundle_and_every_package_has_its_licence() -> None:
+    there = {path.name for path in VENDOR.iterdir() if path.is_file()} - {"manifest.json", "README.md"}
+    assert there == {file["name"] for file in MANIFEST["files"]}
+    licences = (VENDOR / "LICENSES.txt").read_text(encoding="utf-8")
+    for package in MANIFEST["packages"]:
+        assert f"{package['name']} {package['version']}\n" in licences
+        assert package["license"] == "MIT"
+
+
+@pytest.mark.parametrize("path", OWN, ids=lambda path: path.name)
+def test_a_file_of_the_page_loads_nothing_from_elsewhere(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert not ELSEWHERE.search(text)
+
+
+@pytest.mark.parametrize("path", [path for path in OWN if path.suffix == ".js"], ids=lambda path: path.name)
+def test_what_a_module_imports_is_there(path: Path) -> None:
+    for name in re.findall(r"""(?:import|from)\s*\(?\s*["']([^"']+)["']""", path.read_text(encoding="utf-8")):
+        assert name.startswith("."), name
+        assert (path.parent / name).is_file(), name
