@@ -107,10 +107,11 @@ export class Lanes {
     const before = this.clocks.get(run) ?? 0;
     if (time > before) {
       this.clocks.set(run, time);
-      this.now += (time - before) / 1e6;
+      this.now += time - before;
     }
-    this.begin ??= this.now;
-    TAKERS[kind]?.(this, this.now, source, data);
+    const now = this.now / 1e6;
+    this.begin ??= now;
+    TAKERS[kind]?.(this, now, source, data);
   }
 
   /** Forgets what was over before a time [s]. */

@@ -73,7 +73,7 @@ function attend(stage) {
   watch.observe(stage.parentElement.parentElement);
   stage.addEventListener("wheel", turn, { passive: false });
   const ends = [
-    effect(() => settle(present.value, furthest.value)),
+    effect(() => settle(present.value, furthest.value, running.value)),
     effect(() => place(stage)),
     effect(() => {
       for (const one of [dark, span, size, scroll, filter, hidden, column, plots, names]) one.value;

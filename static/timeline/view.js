@@ -22,13 +22,13 @@ function show(from, to) {
   if (from !== span.peek().from || to !== span.peek().to) span.value = { from, to };
 }
 
-/** Brings the view to where the run is. */
-export function settle(present, furthest) {
+/** Brings the view to where the run is; while it goes on it does not wait until that is at the edge. */
+export function settle(present, furthest, running) {
   const { from, to } = span.peek();
-  if (mode.peek() === "fit") show(0, fitEnd(furthest));
-  else if (mode.peek() === "follow") {
+  if (mode.value === "fit") show(0, fitEnd(furthest));
+  else if (mode.value === "follow") {
     const width = to - from;
-    if (present > to - AHEAD * width) show(present - (1 - AHEAD) * width, present + AHEAD * width);
+    if (present > to - (running ? AHEAD * width : 0)) show(present - (1 - AHEAD) * width, present + AHEAD * width);
     else if (present < from) show(Math.max(0, present - AHEAD * width), Math.max(0, present - AHEAD * width) + width);
   }
 }
