@@ -83,7 +83,7 @@ export function drawCurves(surface, box, { series, times, span, range }) {
   for (const value of ticks(least, most, step)) {
     const y = Math.round(yOf(value)) + 0.5;
     surface.line([box.x, y, box.x + box.width, y], "line");
-    if (y > box.y + 4 && y < box.y + box.height - 3) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
+    if (y > box.y + 4) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
   }
   surface.within(box.x, box.y, box.width, box.height, () => {
     series.forEach(({ values, times: own, colour, dash }, n) => {

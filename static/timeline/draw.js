@@ -1,7 +1,8 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
 import { drawCurves, drawTimes, seriesColour } from "../parts/curve.js";
-import { cut, widthOf } from "../parts/surface.js";
+import { cut } from "../parts/surface.js";
+import { session } from "../store.js";
 import { bandText } from "./lanes.js";
 import { firstWhere } from "./search.js";
 import { AXIS } from "./rows.js";
@@ -112,10 +113,11 @@ function drawPlotRow(surface, plot, y, height, scene) {
   drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span });
 }
 
-/** The name of a curve without what the plot's title says already. */
+/** The name of a curve without what goes without saying: the only body's name, and the plot's title. */
 function shortName(name, { title, series }) {
-  const rest = name.replace(` ${title}`, "").trim();
-  if (series.length < 2 || widthOf(rest) === 0) return rest || name;
-  const start = rest.slice(0, rest.indexOf(" ") + 1);
-  return start && series.every((one) => one.name.startsWith(start)) ? rest.slice(start.length) : rest;
+  const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
+  const body = bodies.length === 1 && /^[_ ]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
+  const rest = name.slice(body ? body.length + 1 : 0);
+  const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest;
+  return short || (series.length === 1 && body) || rest;
 }
