@@ -17,9 +17,19 @@ effect(() => {
   document.documentElement.dataset.theme = dark.value ? "dark" : "light";
 });
 
-/** Returns the value of one of the colours of style.css, for a canvas. */
+const probe = document.createElement("span");
+probe.hidden = true;
+document.documentElement.append(probe);
+const resolved = new Map();
+
+/** Returns one of the colours of style.css as it is now, for a canvas. */
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const key = `${name} ${dark.peek()}`;
+  if (!resolved.has(key)) {
+    probe.style.color = `var(--${name})`;
+    resolved.set(key, getComputedStyle(probe).color);
+  }
+  return resolved.get(key);
 }
 
 export function nextTheme() {

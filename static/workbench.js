@@ -13,7 +13,7 @@ import { remembered } from "./remembered.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
-const side = remembered("side width", 480);
+const side = remembered("side width", 560);
 const below = remembered("timeline height", 200);
 
 export function Workbench() {

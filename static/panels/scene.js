@@ -1,6 +1,7 @@
 // The 3D view: viser's page in a frame that never moves, for moving it would load it again.
 
 import { html, useRef } from "../vendor/preact.js";
+import { RetinaInset } from "../eye/inset.js";
 import { session } from "../store.js";
 import { dark } from "../theme.js";
 
@@ -13,5 +14,6 @@ export function Scene() {
   return html`<section id="scene" class="scene" aria-label="3D view">
     <iframe title="3D view" src=${address.current} hidden=${!shown}></iframe>
     ${shown ? null : html`<p class="empty">${text}</p>`}
+    <${RetinaInset} />
   </section>`;
 }
