@@ -43,7 +43,7 @@ function bufferPaths() {
 function Line({ id, text, children }) {
   return html`<div class="until ${kind.value === id ? "on" : ""}">
     <label><input type="radio" name="until" checked=${kind.value === id} onChange=${() => (kind.value = id)} /> ${text}</label>
-    <span onFocusIn=${() => (kind.value = id)}>${children}</span>
+    <span onInput=${() => (kind.value = id)}>${children}</span>
   </div>`;
 }
 
