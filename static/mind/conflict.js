@@ -1,12 +1,12 @@
 // The conflict set: what matched in the last cycle, with utilities, and which was chosen.
 
 import { html, useMemo } from "../vendor/preact.js";
-import { valueText } from "../parts/chunk.js";
 import { useAnswer } from "../parts/answer.js";
 import { running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, production, shownReasons } from "./asked.js";
 import { pairs, timeText } from "./event_text.js";
+import { fixed } from "./part_names.js";
 import { eventAt, useSifted } from "./sifted.js";
 
 const isChoice = ([, , kind, data]) => kind === "select" || kind === "fire" || kind === "changed" || (kind === "conflict" && Object.keys(data.utilities).length > 0);
@@ -68,16 +68,16 @@ function Cycle({ cycle, agents }) {
             (row) => html`<tr key=${row.name} class=${row.chosen ? "selected" : ""}>
               <td class="sign">${row.chosen ? html`<span role="img" aria-label="chosen">▸</span>` : ""}</td>
               <td><button class="link mono" onClick=${() => ((production.value = { system: source, name: row.name }), (shownReasons.value = "why"))}>${row.name}</button></td>
-              <td class="number">${valueText(row.utility)}</td>
-              ${names.length && !own ? html`<td class="number">${valueText(row.base)}</td>` : null}
-              ${names.map((name) => html`<td key=${name} class="number">${row.parts[name] === undefined ? "" : valueText(row.parts[name])}</td>`)}
+              <td class="number">${fixed(row.utility)}</td>
+              ${names.length && !own ? html`<td class="number">${fixed(row.base)}</td>` : null}
+              ${names.map((name) => html`<td key=${name} class="number">${row.parts[name] === undefined ? "" : fixed(row.parts[name])}</td>`)}
               <td class="mono">${bound(row.name)}</td>
             </tr>`,
           )}
         </tbody>
       </table>
     </div>
-    ${conflict.threshold === undefined ? null : html`<p class="quiet">Production threshold ${valueText(conflict.threshold)}</p>`}
+    ${conflict.threshold === undefined ? null : html`<p class="quiet">Production threshold ${fixed(conflict.threshold)}</p>`}
   </section>`;
 }
 

@@ -2,24 +2,8 @@
 
 import { html, useEffect, useMemo, useState } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
+import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
-import { Part } from "./why.js";
-
-/** What modules of the library add to an activation, as people call it. */
-const NAMES = {
-  DMBaseLevel: "base level",
-  DMFixed: "fixed",
-  DMSpreading: "spreading",
-  DMSalience: "salience",
-  DMAssociate: "association",
-  DMInhibition: "inhibition",
-  DMNoise: "noise",
-  partial: "partial match",
-};
-const nameOf = (part) => {
-  const [, name, number] = /^(.*?)( \d+)?$/.exec(part);
-  return (NAMES[name] ?? name) + (number ?? "");
-};
 
 /** Returns rows in order; what is not known comes last. */
 export function sorted(rows, { by, down }) {
@@ -39,12 +23,12 @@ function Head({ text, title, by, sort, onSort }) {
 }
 
 function Chosen({ row, names, threshold }) {
-  const sum = row.activation === null ? "not known before a retrieval" : valueText(row.activation);
+  const sum = row.activation === null ? "not known before a retrieval" : fixed(row.activation);
   return html`<section class="one-chunk" aria-label="The chosen chunk">
     <p class="mono">${Object.entries(row.slots).map(([slot, value]) => html`<span key=${slot} class="slot">${/^\d+$/.test(slot) ? null : html`<b>${slot}</b>`}${valueText(value)}</span>`)}</p>
     <p>
       Activation <b class="number">${sum}</b>
-      ${names.length ? html`<span class="quiet"> = ${names.map((name, n) => html`${n ? " + " : ""}${nameOf(name)} <${Part} value=${row.parts[name]} />`)}</span>` : null}
+      ${names.length ? html`<span class="quiet"> = ${names.map((name, n) => html`${n ? " + " : ""}${partName(name)} <${Part} value=${row.parts[name]} />`)}</span>` : null}
       ${threshold !== null ? html`, threshold ${valueText(threshold)}` : null}
     </p>
   </section>`;
@@ -64,7 +48,7 @@ export function MemoryTable({ answer, words }) {
 
   const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${all[n].chunk} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
     <td class="mono">${all[n].chunk}</td>
-    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="One of its parts is known at a retrieval only">?</span>` : valueText(all[n].activation)}</td>
+    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="One of its parts is known at a retrieval only">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
     ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${all[n].parts[name]} /></td>`)}
   </tr>`;
   return html`<${Rows}
@@ -72,9 +56,9 @@ export function MemoryTable({ answer, words }) {
       label="Chunks of ${memory}"
       count=${all.length}
       row=${row}
-      columns=${["auto", "84px", ...names.map(() => "92px")]}
+      columns=${["auto", "98px", ...names.map(() => "100px")]}
       head=${html`<${Head} text="Chunk" by="chunk" sort=${sort} onSort=${setSort} /><${Head} text="Activation" by="activation" sort=${sort} onSort=${setSort} />
-        ${names.map((name) => html`<${Head} key=${name} text=${nameOf(name)} title=${name} by=${name} sort=${sort} onSort=${setSort} />`)}`}
+        ${names.map((name) => html`<${Head} key=${name} text=${partName(name)} title=${name} by=${name} sort=${sort} onSort=${setSort} />`)}`}
       chosen=${at < 0 ? null : at}
       onChoose=${(n) => setChosen(all[n].chunk)}
       empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is empty so far."}</p>`}

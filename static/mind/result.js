@@ -29,17 +29,15 @@ export function Result({ result }) {
   const { outcome, ...rest } = result;
   return html`<section class="result" aria-label="Result">
     <h3>Result${outcome === undefined ? "" : ": "}<b class="outcome ${outcome}">${outcome ?? ""}</b></h3>
-    <table>
-      <tbody>
-        ${Object.entries(rest).map(([name, value]) => {
-          const [label, text, unit] = measured(name, value);
-          return html`<tr key=${name} title=${name}>
-            <th scope="row">${label}</th>
-            <td class="number ${value === null ? "quiet" : ""}">${text}</td>
-            <td class="unit quiet">${unit}</td>
-          </tr>`;
-        })}
-      </tbody>
-    </table>
+    <dl>
+      ${Object.entries(rest).map(([name, value]) => {
+        const [label, text, unit] = measured(name, value);
+        return html`<div key=${name} title=${name}>
+          <dt>${label}</dt>
+          <dd class="number ${value === null ? "quiet" : ""}">${text}</dd>
+          <dd class="unit quiet">${unit}</dd>
+        </div>`;
+      })}
+    </dl>
   </section>`;
 }

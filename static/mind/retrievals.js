@@ -2,7 +2,7 @@
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
-import { Part } from "./why.js";
+import { fixed, Part, partName } from "./part_names.js";
 
 const MOST = 200; // so many candidates are listed
 
@@ -21,15 +21,15 @@ function Candidates({ reason }) {
   return html`<div class="wide">
     <table class="candidates" aria-label="Candidates of ${reason.memory}">
       <thead>
-        <tr><th>Chunk</th><th class="number">Activation</th>${names.map((name) => html`<th key=${name} class="number">${name}</th>`)}<th>Outcome</th></tr>
+        <tr><th>Chunk</th><th>Outcome</th><th class="number">Activation</th>${names.map((name) => html`<th key=${name} class="number" title=${name}>${partName(name)}</th>`)}</tr>
       </thead>
       <tbody>
         ${candidates.slice(0, MOST).map(
           (one, n) => html`<tr key=${n} class="${one.verdict.startsWith("won") ? "selected" : ""} ${n === below ? "threshold" : ""}">
-            <td class="mono">${one.chunk}</td>
-            <td class="number">${valueText(one.activation)}</td>
-            ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${one.parts[name]} /></td>`)}
+            <td class="mono long">${one.chunk}</td>
             <td>${one.verdict}</td>
+            <td class="number">${fixed(one.activation)}</td>
+            ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${one.parts[name]} /></td>`)}
           </tr>`,
         )}
       </tbody>
@@ -38,18 +38,25 @@ function Candidates({ reason }) {
   </div>`;
 }
 
+function Lately({ title, chunks, open = false }) {
+  if (chunks.length === 0) return null;
+  return html`<details class="lately" open=${open}>
+    <summary class="quiet">${title}: ${chunks.length}</summary>
+    <ul class="mono">${chunks.map((chunk, n) => html`<li key=${n}>${chunk}</li>`)}</ul>
+  </details>`;
+}
+
 function Retrieval({ reason }) {
   const { memory, request, asked, time, threshold, require_new: fresh, finsts, excluded, candidates, outcome } = reason;
   return html`<section aria-label="Retrieval from ${memory}">
-    <h3 class=${outcome === "failed" ? "no" : ""}><span class="mono">${memory}</span>: ${outcomeText(reason)}</h3>
-    <dl class="facts">
-      <dt>Asked for</dt><dd class="mono">${asked}${asked === request ? "" : html` <span class="quiet">(${request})</span>`}</dd>
-      <dt>At</dt><dd>${time.toFixed(3)} s${fresh ? ", for one that was not retrieved lately" : ""}</dd>
-      <dt>Threshold</dt><dd>${threshold === null ? "none" : valueText(threshold)}</dd>
-      ${finsts.length ? html`<dt>Retrieved lately</dt><dd class="mono">${finsts.join("; ")}</dd>` : null}
-      ${excluded.length ? html`<dt>Left out for that</dt><dd class="mono">${excluded.join("; ")}</dd>` : null}
-    </dl>
+    <h3 class=${outcome === "failed" ? "failed" : ""}><span class="mono">${memory}</span>: ${outcomeText(reason)}</h3>
+    <p>
+      <span class="quiet">Asked for</span> <span class="mono">${asked}</span>${asked === request ? null : html` <span class="quiet mono">(${request})</span>`}
+      <span class="quiet"> at ${time.toFixed(3)} s, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved lately" : ""}</span>
+    </p>
     ${candidates.length ? html`<${Candidates} reason=${reason} />` : null}
+    <${Lately} title="Left out, for they were retrieved lately" chunks=${excluded} open=${excluded.length < 4} />
+    <${Lately} title="Retrieved lately" chunks=${finsts} />
   </section>`;
 }
 
@@ -57,7 +64,7 @@ function Retrieval({ reason }) {
 export function Search({ reason }) {
   const { module, asked, time, bottom_up: up, outcome, why, features } = reason;
   return html`<section aria-label="Search of ${module}">
-    <h3 class=${outcome === "failed" ? "no" : ""}>
+    <h3 class=${outcome === "failed" ? "failed" : ""}>
       <span class="mono">${module}</span>: ${up ? "noticing" : "search"} at ${time.toFixed(3)} s for <span class="mono">${asked}</span>: ${outcome}${why ? `, ${why}` : ""}
     </h3>
     ${features.length === 0
@@ -65,12 +72,12 @@ export function Search({ reason }) {
       : html`<div class="wide">
           <table aria-label="Features of ${module}">
             <thead>
-              <tr><th>Feature</th><th class="number">Salience</th><th>Outcome</th></tr>
+              <tr><th>Outcome</th><th class="number">Salience</th><th>Feature</th></tr>
             </thead>
             <tbody>
               ${features.map(
                 (one, n) => html`<tr key=${n} class=${one.verdict === "chosen" ? "selected" : ""}>
-                  <td class="mono">${one.feature}</td><td class="number">${one.salience === null ? "" : valueText(one.salience)}</td><td>${one.verdict}</td>
+                  <td>${one.verdict}</td><td class="number">${one.salience === null ? "" : valueText(one.salience)}</td><td class="mono long">${one.feature}</td>
                 </tr>`,
               )}
             </tbody>

@@ -62,7 +62,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
   >
     <td class="number time">${timeText(time)}</td>
     ${several ? html`<td class="source">${source}</td>` : null}
-    <td class="what"><b>${what}</b> <span>${more}</span></td>
+    <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
       ${kind === "fire" || chosen
         ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${timeText(time)} s" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`

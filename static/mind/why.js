@@ -3,6 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { standing } from "./list.js";
+import { Part } from "./part_names.js";
 
 const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "cannot be told"] };
 
@@ -32,11 +33,6 @@ function Conditions({ reason }) {
       ${reason.conditions.map((one, n) => html`<${ConditionRow} key=${n} one=${one} first=${n === failing} />`)}
     </tbody>
   </table>`;
-}
-
-/** Says a part of a utility or an activation; what is drawn by lot only when it is needed is not known before. */
-export function Part({ value }) {
-  return value === null || value === undefined ? html`<span class="quiet" title="Drawn only when it is needed, or known only to the model's own code">not drawn</span>` : valueText(value);
 }
 
 function Utility({ reason }) {

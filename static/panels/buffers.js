@@ -22,6 +22,10 @@ function Buffer({ path, name, chunk }) {
   </tr>`;
 }
 
+function Others({ agent = null, paths, parts }) {
+  return html`<div class="others">${paths.map((path) => html`<${Plain} key=${path} path=${path} name=${nameIn(agent, path)} part=${parts[path]} />`)}</div>`;
+}
+
 function Agent({ agent, paths, parts, requests, several }) {
   const of = (...kinds) => paths.filter((path) => kinds.includes(parts[path].is));
   const buffers = of("buffer");
@@ -40,10 +44,11 @@ function Agent({ agent, paths, parts, requests, several }) {
       : agent ? html`<p class="empty">This agent has no buffers.</p>` : null}
     ${modules.length ? html`<h3>Modules</h3>` : null}
     ${modules.map((path) => html`<${Module} key=${path} path=${path} name=${path === agent ? "productions" : nameIn(agent, path)} part=${parts[path]} request=${requests.get(path)} />`)}
-    ${rest.length
-      ? html`<details class="plain" open=${modules.length + buffers.length === 0}>
+    ${rest.length && agent === null ? html`<${Others} paths=${rest} parts=${parts} />` : null}
+    ${rest.length && agent !== null
+      ? html`<details class="plain">
           <summary><h3>Other parts <span class="quiet">${rest.length}</span></h3></summary>
-          ${rest.map((path) => html`<${Plain} key=${path} path=${path} name=${nameIn(agent, path)} part=${parts[path]} />`)}
+          <${Others} agent=${agent} paths=${rest} parts=${parts} />
         </details>`
       : null}
   </section>`;

@@ -6,6 +6,7 @@ import { Search } from "../mind/retrievals.js";
 import { postures, SchemaTable } from "../mind/schema_table.js";
 import { Waiting } from "../mind/waiting.js";
 import { useAnswer } from "../parts/answer.js";
+import { valueText } from "../parts/chunk.js";
 import { remembered } from "../remembered.js";
 import { running, session, state } from "../store.js";
 
@@ -28,10 +29,10 @@ function Seen() {
 
 function Note({ told, schema }) {
   if (!told.answer) return null;
-  const { rows, size } = told.answer;
+  const { rows, size, threshold } = told.answer;
   const found = rows.length === size ? `${size} chunks` : `${rows.length} of ${size} chunks`;
   const cut = rows.length === MOST ? "; search for fewer" : "";
-  return html`<span class="quiet">${schema ? `${schema.length} postures` : found + cut}</span>`;
+  return html`<span class="quiet">${schema ? `${schema.length} postures` : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
 }
 
 function Chunks({ memory, schema }) {

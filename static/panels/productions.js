@@ -49,7 +49,7 @@ function Reasons() {
   );
   const chosen = explained(all);
   const time = explanations[0]?.time;
-  const old = running.value && at.value === null && told.answer;
+  const old = running.value && at.value === null && time !== undefined;
   const choose = (event, id) => {
     const n = VIEWS.findIndex((view) => view.id === id) + ({ ArrowRight: 1, ArrowLeft: -1 }[event.key] ?? 0);
     shownReasons.value = VIEWS[(n + VIEWS.length) % VIEWS.length].id;
