@@ -55,6 +55,7 @@ class Telling:
             "stale": start is not None and self._text_differs(start),
             "gone": not self.path.is_file(),
             "attempt": self._attempt,
+            "shown_attempt": start.attempt if start is not None else None,
             "version": start.version if start is not None else None,
             "recording": Path(start.record).stem if start is not None and start.record is not None else None,
         }
