@@ -276,11 +276,10 @@ class Session(Telling):
     # -- what is told of it
 
     def tell(self, notice: Notice, start: Start | None = None) -> None:
-        """Tells all who watch something; with the attempt that it is about, and the version of the text whose line it names."""
+        """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
         told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
-        told |= {"attempt": self._attempt if start is None else start.attempt}
-        told |= {"version": start.version if start is not None and notice.file == start.path else None}
+        told |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
         self.notices.append((self._notice_number, msgspec.json.encode(told)))
         self._notice_number += 1
         self._changed()

@@ -1,6 +1,7 @@
 // What is wrong with a text: checked while one types, which runs nothing; loaded on the user's word; and what a run has said of it.
 
 import { effect, untracked } from "../vendor/preact.js";
+import { folder } from "../bar/models.js";
 import { call } from "../server.js";
 import { complain, notices, session } from "../store.js";
 import { documents, LARGEST, watching } from "./documents.js";
@@ -75,7 +76,7 @@ export const ending = effect(() => {
 
 function take(document, told, attempt) {
   const after = taken.get(document) ?? -1;
-  const fresh = told.filter(({ number, file, ...notice }) => file === document.path && notice.attempt === attempt && number > after);
+  const fresh = told.filter((notice) => notice.attempt === attempt && notice.number > after);
   if (fresh.length === 0) return;
   taken.set(document, fresh.at(-1).number);
   const marks = document.state.field(marking).filter(({ origin }) => origin === "run");
@@ -83,12 +84,22 @@ function take(document, told, attempt) {
     const found = markOf(document, notice);
     if (found && !marks.some((other) => other.from === found.from && other.message === found.message)) marks.push(found);
   }
-  document.change(withMarks(document.state, "run", marks));
+  if (marks.length > 0) document.change(withMarks(document.state, "run", marks));
+}
+
+/** Returns the line of a file that a notice is about, or from which that was called; null where it has nothing to do with it. */
+function lineIn(path, { file, line, detail }) {
+  if (file === path) return line;
+  const start = `File "${folder.peek()}/${path}", line `;
+  const at = detail.lastIndexOf(start);
+  return at < 0 ? null : Number.parseInt(detail.slice(at + start.length), 10);
 }
 
 /** Returns the mark of a notice at its line as it is now; null where it is about another text, or that line was changed. */
-function markOf(document, { level, text, detail, line, version }) {
-  if (document.base === null || (version !== null && version !== document.version)) return null;
+function markOf(document, { level, text, detail, version, ...place }) {
+  const line = lineIn(document.path, { ...place, detail });
+  const other = document.path === session.peek().model && version !== document.version;
+  if (line === null || document.base === null || other) return null;
   const mark = markAt(document.base, "run", { level, message: text, detail, line });
   if (mark.from === null) return mark;
   if (document.since.touchesRange(mark.from, mark.to)) return null;

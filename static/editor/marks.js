@@ -47,10 +47,18 @@ function start(line) {
 
 export const marking = marksField;
 
+/** Whether there is more to tell than the message. */
+export const hasMore = ({ message, detail }) => detail.trim().includes("\n") && detail.trim() !== message.trim();
+
+/** Returns marks without those that say again what another one says at that line; a run tells more than a check. */
+function distinct(marks) {
+  const last = new Map(marks.toSorted((one, other) => (one.origin < other.origin ? -1 : 1)).map((mark) => [`${mark.from} ${mark.message}`, mark]));
+  return [...last.values()];
+}
+
 /** Returns the marks of a state, with their line numbers, first those that come first in the text. */
 export function marksOf(state) {
-  return state
-    .field(marksField)
+  return distinct(state.field(marksField))
     .map((mark) => ({ ...mark, line: mark.from === null ? null : state.doc.lineAt(mark.from).number }))
     .sort((one, other) => (one.line ?? 0) - (other.line ?? 0));
 }
@@ -66,30 +74,37 @@ export function markAt(doc, origin, { level, message, detail = "", line }) {
 export function withMarks(state, origin, marks) {
   const list = origin === "run" ? marks.slice(-MOST_RUN) : marks;
   const all = [...state.field(marksField).filter((mark) => mark.origin !== origin), ...list];
-  const shown = setDiagnostics(state, all.filter(({ from }) => from !== null).map(diagnostic));
+  const shown = setDiagnostics(state, diagnostics(all));
   return { ...shown, effects: [shown.effects ?? [], putMarks.of({ origin, marks: list })].flat() };
 }
 
 /** Returns the transaction that shows the marks that are left, after others have gone. */
 export function sameMarks(state) {
-  return setDiagnostics(state, state.field(marksField).filter(({ from }) => from !== null).map(diagnostic));
+  return setDiagnostics(state, diagnostics(state.field(marksField)));
 }
 
-function diagnostic({ origin, level, message, detail, from, to }) {
-  const source = origin === "run" ? "the run" : undefined;
-  return { from, to, severity: level === "info" ? "info" : level, message, source, renderMessage: () => written(message, detail) };
+function diagnostics(marks) {
+  return distinct(marks)
+    .filter(({ from }) => from !== null)
+    .map(diagnostic)
+    .sort((one, other) => one.from - other.from);
+}
+
+function diagnostic(mark) {
+  const { origin, level, message, from, to } = mark;
+  return { from, to, severity: level, message, source: origin === "run" ? "the run" : undefined, renderMessage: () => written(mark) };
 }
 
 /** Writes a message and its traceback, as text. */
-function written(message, detail) {
+function written(mark) {
   const box = document.createElement("div");
   const text = document.createElement("div");
   text.className = "told";
-  text.textContent = message;
+  text.textContent = mark.message;
   box.append(text);
-  if (detail.trim() && detail.trim() !== message.trim()) {
+  if (hasMore(mark)) {
     const trace = document.createElement("pre");
-    trace.textContent = detail.trimEnd();
+    trace.textContent = mark.detail.trimEnd();
     box.append(trace);
   }
   return box;

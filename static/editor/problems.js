@@ -4,19 +4,20 @@ import { html } from "../vendor/preact.js";
 import { Traceback } from "../parts/place.js";
 import { remembered } from "../remembered.js";
 import { goTo } from "./code.js";
+import { hasMore } from "./marks.js";
 
 const folded = remembered("problems folded", false);
-const SIGNS = { error: "✕", warning: "▲", info: "●" };
+const SIGNS = { error: "✕", warning: "▲", info: "●" }; // the worst first
 
 export function Problems({ document }) {
   const marks = document.marks.value;
-  const count = (level) => marks.filter((mark) => mark.level === level).length;
-  const [errors, warnings] = [count("error"), count("warning")];
-  const text = marks.length === 0 ? "No problems" : `${errors} ${errors === 1 ? "error" : "errors"}, ${warnings} ${warnings === 1 ? "warning" : "warnings"}`;
+  const counts = Object.keys(SIGNS).map((level) => [level, marks.filter((mark) => mark.level === level).length]);
+  const said = counts.filter(([, count]) => count > 0).map(([level, count]) => `${count} ${level}${count === 1 ? "" : "s"}`);
+  const worst = marks.length === 0 ? "quiet" : { error: "bad", warning: "warning", info: "" }[counts.find(([, count]) => count > 0)[0]];
   return html`<section class="problems" aria-label="Problems">
     <div class="head">
       <button class="bare" aria-expanded=${!folded.value} disabled=${marks.length === 0} onClick=${() => (folded.value = !folded.value)}>
-        <span class=${errors ? "bad" : warnings ? "warning" : "quiet"}>${text}</span>
+        <span class=${worst}>${said.join(", ") || "No problems"}</span>
       </button>
       <span class="stretch"></span>
       <span class="quiet hint">Esc then Tab leaves the text</span>
@@ -29,8 +30,8 @@ export function Problems({ document }) {
   </section>`;
 }
 
-function Problem({ mark: { level, message, detail, line, origin } }) {
-  const trace = detail.trim() && detail.trim() !== message.trim();
+function Problem({ mark }) {
+  const { level, message, detail, line, origin } = mark;
   return html`<li class=${level}>
     <button class="bare" disabled=${line === null} onClick=${() => goTo(line)}>
       <span class=${level === "error" ? "bad" : level} role="img" aria-label=${level}>${SIGNS[level]}</span>
@@ -38,6 +39,6 @@ function Problem({ mark: { level, message, detail, line, origin } }) {
       <span class="text">${message}</span>
       ${origin === "run" ? html`<span class="quiet">the run</span>` : null}
     </button>
-    ${trace ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
+    ${hasMore(mark) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
   </li>`;
 }

@@ -123,7 +123,7 @@ function Editor() {
     ${compares ? html`<${Conflict} document=${document} choose=${(which) => choose(document, which)} />` : null}
     <div class="code" ref=${place} hidden=${!document || compares}></div>
     ${document
-      ? html`<${Strip} document=${document} compare=${() => (comparing.value = document)} /><${Problems} document=${document} />`
+      ? html`${compares ? null : html`<${Strip} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
       : html`<div class="empty">
           <p class=${error ? "bad" : ""}>${error ?? "No file is open. Choose one above, or make a new model."}</p>
           <button onClick=${makeNew}>New model</button>

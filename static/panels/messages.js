@@ -1,6 +1,7 @@
 // What the user is told: errors with their lines, warnings, what the model's process prints.
 
 import { computed, html, signal, useEffect } from "../vendor/preact.js";
+import { hasMore } from "../editor/marks.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../remembered.js";
 import { notices, session } from "../store.js";
@@ -49,7 +50,7 @@ function Message({ notice: { level, text, file, line, detail } }) {
   return html`<li class=${level}>
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
-    ${detail && detail.trim() !== text ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
+    ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
   </li>`;
 }
 
