@@ -2,79 +2,22 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Page, expect, sync_playwright
+from playwright.sync_api import Page, expect
 
-from tests.server.serving import Served, served
-
-PATIENCE = 60_000
-"""[ms]"""
+from tests.browser.looking import PATIENCE, choose, open_tab, shows
+from tests.server.serving import Served
 
 
-def browser_path() -> str | None:
-    """Returns where a Chromium is; None where there is none."""
-    names = ("chromium", "chromium-browser", "google-chrome", "chrome")
-    return next((path for name in names if (path := shutil.which(name)) is not None), None)
-
-
-@pytest.fixture(scope="session")
-def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("browser") / "models") as running:
-        yield running
-
-
-@pytest.fixture
-def page(workbench: Served) -> Iterator[Page]:
-    """A browser's page that is let in; whatever its console complains of fails the test."""
-    path = browser_path()
-    if path is None:
-        if os.environ.get("CI"):
-            pytest.fail("there is no Chromium, and CI is to have one")
-        pytest.skip("there is no Chromium on this machine")
-    complaints: list[str] = []
-
-    def note(message: Any) -> None:
-        if message.type == "error":
-            complaints.append(message.text)
-
-    with sync_playwright() as playwright:
-        options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = playwright.chromium.launch(executable_path=path, args=options)
-        page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
-        page.set_default_timeout(PATIENCE)
-        page.on("console", note)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.goto(workbench.address)
-        assert "token" not in page.url
-        yield page
-        browser.close()
-    assert complaints == []
-
-
-def shows(page: Page, where: str, text: str) -> None:
-    expect(page.locator(where)).to_have_text(re.compile(text), timeout=PATIENCE)
-
-
-def choose(page: Page, model: str) -> None:
-    page.get_by_label("Model", exact=True).select_option(model)
-
-
-def test_run_step_and_the_aperture(page: Page, workbench: Served, tmp_path: Path) -> None:
-    choose(page, "doorway.py")
+def test_run_step_and_the_aperture(page: Page) -> None:
     shows(page, "#time", "0.00 s")
     page.click("#step")
     shows(page, "#time", "0.01 s")
-    shows(page, "#why-text", "look: matches")
     page.click("#cycle")
     shows(page, "#time", "0.05 s")
-    shows(page, "#events", "look")
     page.click("#back")
     shows(page, "#time", "0.04 s")
     page.locator("#aperture").fill("90")
@@ -82,6 +25,7 @@ def test_run_step_and_the_aperture(page: Page, workbench: Served, tmp_path: Path
     scene = page.frame_locator("iframe[title='3D view']")
     expect(scene.get_by_text("t = 0.04 s")).to_be_visible(timeout=PATIENCE)
     expect(scene.locator("canvas").first).to_be_visible(timeout=PATIENCE)
+    open_tab(page, "Productions")
     page.click("#run")
     shows(page, "#status", "ended")
     expect(page.locator("#events")).not_to_contain_text("turn")  # it is wide enough
@@ -94,13 +38,15 @@ def test_run_step_and_the_aperture(page: Page, workbench: Served, tmp_path: Path
     assert len(set(picture)) > 100  # and a person has looked at it
 
 
-def test_a_second_tab_and_a_reload_show_the_same(page: Page, workbench: Served) -> None:
-    choose(page, "counting.py")
+def test_a_second_tab_and_a_reload_show_the_same(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py")
+    open_tab(page, "Productions")
     shows(page, "#time", "0.00 s")
     page.click("#cycle")
     shows(page, "#events", "start_counting")
     other = page.context.new_page()
     other.goto(f"{workbench.url}/?model=counting.py")
+    open_tab(other, "Productions")
     expect(other.locator("#events")).to_have_text(re.compile("start_counting"), timeout=PATIENCE)
     other.click("#cycle")
     shows(page, "#events", "count_on")
@@ -115,12 +61,14 @@ def test_an_error_is_shown_as_text_and_mended(page: Page, workbench: Served) -> 
     choose(page, "bad.py")
     page.on("dialog", lambda dialog: pytest.fail("it was run as HTML"))
     page.click("#run")
+    open_tab(page, "Messages")
     shows(page, "#log", re.escape("ValueError: <img src=x onerror=alert(1)>"))
     shows(page, "#log", "bad.py:1")
     (workbench.folder / "bad.py").write_text("print('mended')\n", encoding="utf-8")
     page.click("#restart")
     shows(page, "#status", "at its start")
     page.click("#run")
+    open_tab(page, "Productions")
     shows(page, "#events", "mended")
 
 
