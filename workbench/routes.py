@@ -114,7 +114,18 @@ def _listed(path: Path) -> dict[str, Any]:
 @router.get("/model")
 def model(request: Request, path: InFolder) -> dict[str, Any]:
     """Gives a model file's text, and what it says of itself."""
-    return _told(_sessions(request).folder.read(path))
+    sessions = _sessions(request)
+    file = sessions.folder.read(path)
+    request.app.state.later(sessions.saved, sessions.folder.locate(path))  # who reads it anew may have seen that it has changed
+    return _told(file)
+
+
+@router.get("/model/version")
+def version(request: Request, path: InFolder) -> dict[str, Any]:
+    """Tells which text a model file has now, without the text; null where there is no such file."""
+    folder = _sessions(request).folder
+    where = folder.locate(path)
+    return {"path": path, "version": folder.version(where) if where.is_file() else None}
 
 
 @router.put("/model")
@@ -135,13 +146,20 @@ def duplicate(request: Request, body: Rename) -> dict[str, Any]:
 @router.post("/model/rename")
 def rename(request: Request, body: Rename) -> dict[str, Any]:
     """Gives a model file another name."""
-    return _told(_sessions(request).folder.rename(body.path, body.to))
+    sessions = _sessions(request)
+    before = sessions.folder.locate(body.path)
+    file = sessions.folder.rename(body.path, body.to)
+    request.app.state.later(sessions.renamed, before, sessions.folder.locate(file.path), file.path)
+    return _told(file)
 
 
 @router.post("/model/delete")
 def delete(request: Request, body: Delete) -> dict[str, Any]:
     """Puts a model file into the trash folder."""
-    return {"trash": _sessions(request).folder.delete(body.path)}
+    sessions = _sessions(request)
+    trash = sessions.folder.delete(body.path)
+    request.app.state.later(sessions.saved, sessions.folder.locate(body.path))
+    return {"trash": trash}
 
 
 @router.post("/check")

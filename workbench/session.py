@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,7 @@ from actr3d.errors import Actr3dError, SimulationError
 from workbench import protocol as say
 from workbench.attendant import Attendant
 from workbench.feed import MOST_NOTICES, EventLog, Feed
+from workbench.files import ModelFolder
 from workbench.telling import Telling
 from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
@@ -60,7 +62,7 @@ class Session(Telling):
         self._worker: Worker | None = None
         self._tasks: set[asyncio.Task[Any]] = set()
         self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
-        self._number = self._notice_number = 0
+        self._number = self._notice_number = self._attempt = 0
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
@@ -97,7 +99,9 @@ class Session(Telling):
             OSError: If no worker can be started.
         """
         text = read_source(self.path) if source is None else source
+        version = ModelFolder.version(self.path) if source is None else hashlib.sha256(text.encode()).hexdigest()
         before = self.start.settings if self.start is not None else {}
+        self._attempt += 1
         start = Start(
             path=str(self.path),
             source=text,
@@ -110,6 +114,8 @@ class Session(Telling):
             factor=self.speed,
             breakpoints=self.breakpoints,
             run=run,
+            attempt=self._attempt,
+            version=version,
         )
         worker = await self._workers.launch()
         if self._loading is not None:
@@ -146,9 +152,9 @@ class Session(Telling):
                 for feed in self.feeds:
                     feed.cut(message.events)
             case Notice():
-                self.tell(message)
+                self.tell(message, start)
             case At():
-                self._stuck = {"file": message.file, "line": message.line, "function": message.function}
+                self._stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
                 self._changed(facts=True)
             case _:
                 pass
@@ -269,10 +275,12 @@ class Session(Telling):
 
     # -- what is told of it
 
-    def tell(self, notice: Notice) -> None:
-        """Tells all who watch something."""
-        told = {"level": notice.level, "text": notice.text, "file": self._shown_file(notice.file), "line": notice.line}
-        self.notices.append((self._notice_number, msgspec.json.encode({"number": self._notice_number, **told, "detail": notice.detail})))
+    def tell(self, notice: Notice, start: Start | None = None) -> None:
+        """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
+        told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
+        told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
+        told |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
+        self.notices.append((self._notice_number, msgspec.json.encode(told)))
         self._notice_number += 1
         self._changed()
 
@@ -283,6 +291,11 @@ class Session(Telling):
 
     def file_changed(self) -> None:
         """Takes note that the model's file has been saved: the run may be stale now."""
+        self._changed(facts=True)
+
+    def renamed(self, path: Path, model: str) -> None:
+        """Takes note that the model's file has another name now."""
+        self.path, self.model = path, model
         self._changed(facts=True)
 
     # -- who watches

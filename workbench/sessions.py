@@ -136,6 +136,12 @@ class Sessions:
             if session.path == path:
                 session.file_changed()
 
+    def renamed(self, before: Path, path: Path, model: str) -> None:
+        """Takes note that a model file has another name now: its sessions go on with it."""
+        for session in self.all():
+            if session.path == before:
+                session.renamed(path, model)
+
     async def check(self, path: Path, text: str) -> list[dict[str, Any]]:
         """Loads a model in a worker, and builds what it describes, without running it; returns what is complained of.
 

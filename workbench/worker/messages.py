@@ -39,6 +39,10 @@ class Start(Message, frozen=True, kw_only=True):
     factor: float | None = None
     breakpoints: tuple[str, ...] = ()
     run: bool = False
+    attempt: int = 0
+    """Which of its session's attempts to begin a run this is, from 1."""
+    version: str = ""
+    """Tells the model's text from others; see `ModelFile.version`."""
 
 
 class Do(Message, frozen=True, kw_only=True):

@@ -24,4 +24,5 @@ def told_of(error: BaseException) -> str:
 def notice_of(error: BaseException) -> Notice:
     """Returns what the user is told of an error, with the line of the model where it was."""
     told = complaint(error, _HERE)
-    return notice("error", told_of(error), told.file, told.line, told.text)
+    text = told_of(error).removeprefix(f"{told.file}:{told.line}: ")  # where it is, is told beside it
+    return notice("error", text, told.file, told.line, told.text)
