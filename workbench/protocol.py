@@ -15,6 +15,12 @@ Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
 Plain = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
 """A value that can be recorded."""
 
+OverlayName = Literal["frustum", "edges", "features", "path", "posture", "contacts"]
+"""What can be drawn over the 3D view: what the eye can see, the edges that it sees, what vision has found last with its width, the
+path walked, the posture that the body is commanded to, where it touches something."""
+CameraView = Literal["free", "follow", "eye", "top"]
+"""From where the 3D view is seen: from where each user likes, with the body, through its eye, from above."""
+
 
 class Said(BaseModel):
     """The base of all that is said."""
@@ -136,6 +142,21 @@ class Restart(Said):
     """Whether it runs at once; otherwise it waits at its start."""
 
 
+class Overlay(Said):
+    """Shows or hides something over the 3D view, for all who watch the session."""
+
+    type: Literal["overlay"] = "overlay"
+    name: OverlayName
+    shown: bool
+
+
+class Camera(Said):
+    """Chooses from where the 3D view is seen, for all who watch the session."""
+
+    type: Literal["camera"] = "camera"
+    view: CameraView
+
+
 class Stop(Said):
     """Ends the worker in which the run is, whatever it does."""
 
@@ -186,11 +207,30 @@ class Events(Said):
     kinds: tuple[Name, ...] | None = Field(default=None, max_length=50)
 
 
+class Curves(Said):
+    """How the run went up to the furthest that it has come, as curves over time, for plots.
+
+    Answered by `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`: `names` are all that there are, in
+    degrees where something turns; `curves` those that are asked for, one value for each time, null where there is none, as of the
+    clearance of who is not in the doorway. Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
+    values are of the ends of ticks: the contact force of that moment. A run that has gone back still tells what lies ahead, until
+    it goes another way. The same comes from `/api/recordings/{recording}/curves`.
+    """
+
+    type: Literal["curves"] = "curves"
+    names: tuple[Name, ...] | None = Field(default=None, max_length=500)
+    """Which; None for all."""
+    first: Seconds = 0.0
+    """From when on [s]: what a page knows already it need not ask for again."""
+    most: int = Field(default=1_000, ge=2, le=5_000)
+    """How many times at most, evenly spread; the last that is known is among them."""
+
+
 Command = Annotated[
-    Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Restart | Stop,
+    Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Overlay | Camera | Restart | Stop,
     Field(discriminator="type"),
 ]
-Question = Annotated[Explain | Rows | Look | Body | Events, Field(discriminator="type")]
+Question = Annotated[Explain | Rows | Look | Body | Events | Curves, Field(discriminator="type")]
 Anything = Annotated[
     Run
     | Pause
@@ -204,16 +244,23 @@ Anything = Annotated[
     | Aperture
     | Set
     | Say
+    | Overlay
+    | Camera
     | Restart
     | Stop
     | Explain
     | Rows
     | Look
     | Body
-    | Events,
+    | Events
+    | Curves,
     Field(discriminator="type"),
 ]
 
+LOOKS = (Overlay, Camera)
+"""What changes the view only, and nothing of the run."""
+QUESTIONS = (Explain, Rows, Look, Body, Events, Curves)
+"""What only asks."""
 ANYTHING: TypeAdapter[Any] = TypeAdapter(Anything)
 """Reads a command or question."""
 

@@ -18,14 +18,15 @@ from workbench import protocol as say
 from workbench.attendant import Attendant
 from workbench.feed import MOST_NOTICES, EventLog, Feed
 from workbench.files import ModelFolder
+from workbench.look import Look
 from workbench.telling import Telling
-from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Reply, Start, State
+from workbench.worker.messages import At, Cut, Do, Draw, Facts, FromWorker, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 
 MOST_WAITING = 200
 """So many commands and questions of one session may wait for their answers."""
 
-Watcher = Callable[["Session", Facts | State | None], None]
+Watcher = Callable[["Session", Facts | State | Look | None], None]
 
 
 class Session(Telling):
@@ -45,7 +46,8 @@ class Session(Telling):
         self.model = shown_path
         self.feeds: list[Feed] = []
         self.watchers: list[Watcher] = []
-        """Are told of the facts of each new run, of each state, and by None of the end."""
+        """Are told of the facts of each new run, of each state, of another look, and by None of the end."""
+        self.look = Look()
         self.run = self.epoch = self.state_version = self.facts_version = 0
         self.log = EventLog()
         self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
@@ -63,6 +65,7 @@ class Session(Telling):
         self._tasks: set[asyncio.Task[Any]] = set()
         self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
         self._number = self._notice_number = self._attempt = 0
+        self._drawn: tuple[str, ...] = ()
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
@@ -169,6 +172,8 @@ class Session(Telling):
         self.epoch += 1
         self.log = EventLog()
         self.start, self.facts, self.state, self._stuck = start, facts, None, None
+        if self._drawn:
+            worker.send(Draw(kinds=self._drawn))
         self._tell_watchers(facts)
         self._changed(facts=True)
 
@@ -235,7 +240,7 @@ class Session(Telling):
             said: One of `protocol.Anything`.
             who: Who says it, as others are told.
         """
-        if not isinstance(said, (say.Explain, say.Rows, say.Look, say.Body, say.Events)) and who and who != self._controlled_by:
+        if not isinstance(said, (*say.QUESTIONS, *say.LOOKS)) and who and who != self._controlled_by:
             self._controlled_by = who
             self._changed(facts=True)
         try:
@@ -245,6 +250,10 @@ class Session(Telling):
                 case say.Restart():
                     seed = said.seed if said.seed is not None or said.new_seed or self.start is None else self.start.seed
                     await self.begin(said.settings, seed=seed, record=said.record, run=said.run)
+                case say.Overlay() | say.Camera():
+                    self.look = self.look.after(said)
+                    self._tell_watchers(self.look)
+                    self._changed(facts=True)
                 case _:
                     self._note(said)
                     return await self._ask(said)
@@ -272,6 +281,13 @@ class Session(Telling):
         self._waiting[number] = worker, waiting
         worker.send(Do(id=number, say=said.model_dump_json().encode()))
         return await waiting
+
+    def draw(self, kinds: tuple[str, ...]) -> None:
+        """Lets the states of this run and later ones tell what overlays of these kinds show."""
+        if kinds != self._drawn:
+            self._drawn = kinds
+            if self._worker is not None:
+                self._worker.send(Draw(kinds=kinds))
 
     # -- what is told of it
 
@@ -317,7 +333,7 @@ class Session(Telling):
         for feed in self.feeds:
             feed.wake()
 
-    def _tell_watchers(self, what: Facts | State) -> None:
+    def _tell_watchers(self, what: Facts | State | Look) -> None:
         for watcher in self.watchers:
             watcher(self, what)
 
