@@ -287,9 +287,11 @@ async def replay(request: Request, recording: Id) -> dict[str, Any]:
         async with asyncio.timeout(REPLAY_TIME):
             output, _ = await process.communicate()
     except TimeoutError:
-        process.kill()
-        await process.wait()
         return {"agrees": None, "text": f"it takes longer than {REPLAY_TIME:g} s"}
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await asyncio.shield(process.wait())
     return {"agrees": {0: True, 1: False}.get(process.returncode or 0), "text": output.decode(errors="replace").strip()}
 
 

@@ -12,6 +12,7 @@ from actr3d.errors import Actr3dError
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
+from workbench.worker.bounds import bounded_json
 from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.trouble import told_of
@@ -300,13 +301,13 @@ class Conductor:
             wanted=self.factor,
             measured=self._measure(now),
             events=count,
-            parts=to_json(run.parts()).encode(),
+            parts=bounded_json(run.parts()),
             apertures=apertures,
-            result=to_json(run.result() if self.status == "ended" else None).encode(),
+            result=bounded_json(run.result() if self.status == "ended" else None),
             physics=physics,
             drawn=run.drawn(self._drawn) if self._drawn else {},
         )
-        self.link.show(state, self._sent, [to_json([e.time_us, e.source, e.kind, e.data]).encode() for e in news])
+        self.link.show(state, self._sent, [bounded_json([e.time_us, e.source, e.kind, e.data]) for e in news])
         self._sent = max(self._sent, count)
 
     def _halt(self) -> None:

@@ -13,9 +13,12 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_fiel
     """The base of all messages."""
 
 
-def whole(text: str) -> str:
-    """Returns a text that can be sent: half characters, which no encoding has, are written as escapes."""
-    return str(text).encode("utf-8", "backslashreplace").decode("utf-8")
+def whole(text: str, most: int = 10_000) -> str:
+    """Returns a text that can be sent: half characters, which no encoding has, as escapes, and a long one without its middle."""
+    told = str(text)
+    if len(told) > most:
+        told = f"{told[: most // 2]}\n… ({len(told) - most:,} more characters) …\n{told[-(most // 2) :]}"
+    return told.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 # -- to the worker
@@ -142,7 +145,7 @@ def notice(
     level: Literal["info", "warning", "error"], text: str, file: str | None = None, line: int | None = None, detail: str = ""
 ) -> Notice:
     """Returns a notice of any texts, such as models make."""
-    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail))
+    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail, 100_000))
 
 
 class Reply(Message, frozen=True, kw_only=True):
@@ -176,6 +179,8 @@ LENGTH = 4
 """How many bytes tell a message's length."""
 LONGEST = 200_000_000
 """No message is longer [bytes]; a compiled scene with large meshes is the largest."""
+LONGEST_ANSWER = 20_000_000
+"""No answer to a question is longer [bytes]."""
 
 
 def framed(message: Message) -> bytes:
