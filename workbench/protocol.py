@@ -186,11 +186,30 @@ class Events(Said):
     kinds: tuple[Name, ...] | None = Field(default=None, max_length=50)
 
 
+class Curves(Said):
+    """How the run went up to the furthest that it has come, as curves over time, for plots.
+
+    Answered by `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`: `names` are all that there are, in
+    degrees where something turns; `curves` those that are asked for, one value for each time, null where there is none, as of the
+    clearance of who is not in the doorway. Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
+    values are of the ends of ticks: the contact force of that moment. A run that has gone back still tells what lies ahead, until
+    it goes another way. The same comes from `/api/recordings/{recording}/curves`.
+    """
+
+    type: Literal["curves"] = "curves"
+    names: tuple[Name, ...] | None = Field(default=None, max_length=500)
+    """Which; None for all."""
+    first: Seconds = 0.0
+    """From when on [s]: what a page knows already it need not ask for again."""
+    most: int = Field(default=1_000, ge=2, le=5_000)
+    """How many times at most, evenly spread; the last that is known is among them."""
+
+
 Command = Annotated[
     Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Restart | Stop,
     Field(discriminator="type"),
 ]
-Question = Annotated[Explain | Rows | Look | Body | Events, Field(discriminator="type")]
+Question = Annotated[Explain | Rows | Look | Body | Events | Curves, Field(discriminator="type")]
 Anything = Annotated[
     Run
     | Pause
@@ -210,10 +229,13 @@ Anything = Annotated[
     | Rows
     | Look
     | Body
-    | Events,
+    | Events
+    | Curves,
     Field(discriminator="type"),
 ]
 
+QUESTIONS = (Explain, Rows, Look, Body, Events, Curves)
+"""What only asks."""
 ANYTHING: TypeAdapter[Any] = TypeAdapter(Anything)
 """Reads a command or question."""
 

@@ -17,10 +17,12 @@ from typing import Any
 
 import msgspec
 
-from actr3d.clock import seconds
+from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
+from workbench.compiled import from_text, loaded
+from workbench.curves import NOTHING, Curves, stride
 from workbench.files import OWN
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
@@ -177,30 +179,27 @@ def states_csv(path: Path) -> Iterator[str]:
                 yield _csv_line((run, tick, *numbers))
 
 
-def curves(path: Path, names: Sequence[str], most: int) -> dict[str, Any]:
-    """Returns how joints moved in a recorded run: the times, and the values of each curve that is asked for.
+def curves(path: Path, names: Sequence[str] | None, first: float, most: int) -> dict[str, Any]:
+    """Returns how a recorded run went as curves over time, also one that goes on; see `protocol.Curves`.
 
     Args:
         path: The recording.
-        names: Which curves: names of joints for their positions [rad] [m], and with ` speed` for their speeds.
-        most: How many times at most; of more every second, third and so on is left out.
+        names: Which curves; None for all.
+        first: From when on [s].
+        most: How many times at most, evenly spread; the last is among them.
 
     Raises:
         RecordingError: If it cannot be read.
     """
     with Recorded(path) as recorded:
-        columns: dict[str, int] = recorded.facts.get("columns", {})
-        wanted = {name: columns[name] for name in names if name in columns}
-        every = max(1, -(-(recorded.ticks + 1) // most))
-        times: list[float] = []
-        values: dict[str, list[float]] = {name: [] for name in wanted}
-        for _, tick, state, _ in recorded.states() if wanted else ():
-            if tick % every == 0:
-                numbers = array("d", state)
-                times.append(seconds(tick * recorded.facts["period_us"]))
-                for name, column in wanted.items():
-                    values[name].append(numbers[column])
-        return {"names": list(columns), "times": times, "curves": values}
+        facts = recorded.facts
+        if "compiled" not in facts:
+            return NOTHING
+        period, begin, ticks = facts["period_us"], first * MICROSECONDS / facts["period_us"], recorded.ticks
+        every = stride(ticks + 1 - max(0, int(begin)), most - 1)
+        states = ((tick, state) for _, tick, state, _ in recorded.states() if begin <= tick <= ticks)
+        moments = ((seconds(tick * period), state) for tick, state in states if tick % every == 0 or tick == ticks)
+        return Curves(loaded(from_text(facts["compiled"])), facts["world"]).told(moments, names)
 
 
 def _csv_line(values: tuple[Any, ...]) -> str:

@@ -239,11 +239,15 @@ def download(request: Request, recording: Id, form: Literal["sqlite", "events.cs
 def recorded_curves(
     request: Request,
     recording: Id,
-    name: Annotated[list[say.Name] | None, Query(max_length=100)] = None,
-    most: Annotated[int, Query(ge=10, le=20_000)] = 2_000,
+    name: Annotated[list[say.Name] | None, Query(max_length=500)] = None,
+    first: Annotated[float, Query(ge=0, lt=1e9, allow_inf_nan=False)] = 0.0,
+    most: Annotated[int, Query(ge=2, le=20_000)] = 2_000,
 ) -> dict[str, Any]:
-    """Gives how joints moved in a recorded run, also one that goes on: their names, and the curves that are named."""
-    return curves(_sessions(request).recordings.path(recording), name or [], most)
+    """Gives how a recorded run went, also one that goes on, as curves over time, for plots: those that are named, or all.
+
+    `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`, as the question `curves` of a session does.
+    """
+    return curves(_sessions(request).recordings.path(recording), name, first, most)
 
 
 @router.post("/recordings/{recording}/open", status_code=201)

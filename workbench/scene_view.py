@@ -15,6 +15,8 @@ import numpy as np
 from mujoco import MjData, MjModel
 
 from workbench import protocol as say
+from workbench.compiled import loaded
+from workbench.curves import INTEGRATION
 from workbench.overlays import Overlay, make_overlays
 from workbench.worker.messages import Facts, State
 
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
 BRIDGE_HEADER = "x-workbench-bridge"
 """With it the bridge says that it is the bridge: any page of the user's browser could find a port on loopback."""
 VIEWS = ("free", "follow", "eye", "top")
-_INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
 class SceneView:
@@ -116,13 +117,13 @@ class SceneView:
             import msgspec
             from mjviser import ViserMujocoScene
 
-            model = self._model = _loaded(facts.mj_model)
+            model = self._model = loaded(facts.mj_model)
             self._data = MjData(model)
             world = msgspec.json.decode(facts.world)
             with self._server.atomic():
                 self._server.scene.reset()
                 # It scales what the model says of looks: it gets a copy of its own.
-                self._scene = ViserMujocoScene(self._server, _loaded(facts.mj_model), 1)
+                self._scene = ViserMujocoScene(self._server, loaded(facts.mj_model), 1)
                 self._scene.camera_tracking_enabled = False  # it would shift the world
                 self._scene.show_contact_points = True
                 self._scene.set_refresh_handler(lambda: None)  # its own threads read no data
@@ -171,9 +172,9 @@ class SceneView:
             if model is None or data is None or self._scene is None or state.physics is None:
                 return
             numbers = np.frombuffer(state.physics)
-            if numbers.size != mujoco.mj_stateSize(model, _INTEGRATION):
+            if numbers.size != mujoco.mj_stateSize(model, INTEGRATION):
                 return
-            mujoco.mj_setState(model, data, numbers, _INTEGRATION)
+            mujoco.mj_setState(model, data, numbers, INTEGRATION)
             mujoco.mj_forward(model, data)
             with self._server.atomic():
                 self._scene.update_from_mjdata(data)
@@ -278,9 +279,3 @@ class SceneView:
 def _switch(overlay: Overlay, box: Any, _: Any) -> None:
     """Shows or hides an overlay, as its box says."""
     overlay.show(box.value)
-
-
-def _loaded(saved: bytes) -> MjModel:
-    """Returns a compiled scene that MuJoCo has saved."""
-    kind: Any = MjModel
-    return kind.from_binary_path("scene.mjb", {"scene.mjb": saved})

@@ -229,7 +229,7 @@ class Session(Telling):
             said: One of `protocol.Anything`.
             who: Who says it, as others are told.
         """
-        if not isinstance(said, (say.Explain, say.Rows, say.Look, say.Body, say.Events)) and who and who != self._controlled_by:
+        if not isinstance(said, say.QUESTIONS) and who and who != self._controlled_by:
             self._controlled_by = who
             self._changed(facts=True)
         try:

@@ -45,6 +45,8 @@ class Journal:
         """Whether the past is being gone through again on the way to another time, which no listener is to hear."""
         self.trace: Trace | None = None
         """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
+        self.keeper: Callable[[int, World], object] | None = None
+        """Called at the start of the run and at the end of each tick, also of those that are gone through again; changes nothing."""
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
         self._preface: list[str] = []
@@ -190,6 +192,8 @@ class Journal:
 
     def state(self, tick: int, world: World) -> None:
         """Takes the end of a tick."""
+        if self.keeper is not None:
+            self.keeper(tick, world)
         if self._recording is not None and tick == self._recording.states:
             self._recording.state(1, tick, world.state_bytes())
         if self._program is not None and not self.silent:

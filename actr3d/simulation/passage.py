@@ -7,10 +7,8 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-import mujoco
-import numpy as np
-
 from actr3d.errors import WorldError, did_you_mean
+from actr3d.simulation.clearance import Clearance, Wall
 from actr3d.world import World
 from actr3d.world.parts import Aperture
 from actr3d.world.sensors.touch import last_felt
@@ -120,7 +118,9 @@ class Passage:
         if not geoms.keys() >= {*joints}:
             raise WorldError(f"body '{body}' has no shoulders to measure")
         self._shoulders = [geoms[name] for name in joints]
-        self._segments = [int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right")]
+        left, right = (int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right"))
+        gap = Wall(wall.position, wall.heading, wall.thickness, (left, right))
+        self._clearance = Clearance(model, world.mj_data, self._body.geoms, gap)
         hinges = (("torso_yaw", 1.0), ("left_shoulder_yaw", 0.5), ("right_shoulder_yaw", 0.5))
         self._hinges = [(self._body.joints[name].q, self._body.joints[name].v, share) for name, share in hinges]
         x, y, _ = world.mj_data.xpos[self._body.root].tolist()
@@ -157,40 +157,11 @@ class Passage:
         touches = last_felt(self._body)
         force = max((touch.force for touch in touches), default=0.0)
         pairs = frozenset((touch.part, touch.other) for touch in touches)
-        room = self._room() if abs(before) < self._reach else None
+        room = self._clearance.rooms(self._held()) if abs(before) < self._reach else None
         return _Sample(time, before, angle, logged, room, pairs, force)
 
-    def _room(self) -> tuple[float, float] | None:
-        """Returns the smallest distances of the body to the segments [m]; None where nothing of it is between their faces."""
-        model, data, body = self._world.mj_model, self._world.mj_data, self._body
-        geoms = np.array([*body.geoms.tolist(), *(geom for hand in body.hands.values() for geom in hand.geoms)], dtype=np.intp)
-        half = self._wall.thickness / 2
-        (x, y), (forward, left) = self._wall.position, self._ahead
-        past = (data.geom_xpos[geoms, 0] - x) * forward + (data.geom_xpos[geoms, 1] - y) * left
-        if (past - model.geom_rbound[geoms] > half).all() or (past + model.geom_rbound[geoms] < -half).all():
-            return None
-        lower, upper = self._along()
-        if upper < -half or lower > half:
-            return None
-        rooms: list[float] = []
-        for segment in self._segments:
-            turned = (data.geom_xpos[geoms] - data.geom_xpos[segment]) @ data.geom_xmat[segment].reshape(3, 3)
-            least = np.linalg.norm(np.maximum(np.abs(turned) - model.geom_size[segment], 0), axis=1) - model.geom_rbound[geoms]
-            nearest = math.inf
-            for number in np.argsort(least, kind="stable").tolist():
-                if least[number] >= nearest:
-                    break
-                nearest = min(nearest, mujoco.mj_geomDistance(model, data, int(geoms[number]), segment, 10.0, None))
-            rooms.append(nearest)
-        return rooms[0], rooms[1]
-
-    def _along(self) -> tuple[float, float]:
-        """Returns how far the body reaches along the way through, from the wall's middle [m]."""
-        x, y = self._wall.position
-        c, s = self._ahead
-        held = [geom for hand in self._body.hands.values() for geom in hand.geoms]
-        box = self._body.extent.box(np.array([x, y, 0.0]), np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), held)
-        return box.lower[0], box.upper[0]
+    def _held(self) -> list[int]:
+        return [geom for hand in self._body.hands.values() for geom in hand.geoms]
 
     def result(self, *, over: bool) -> PassageResult:
         """Returns what has been measured up to now."""

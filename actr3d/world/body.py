@@ -111,7 +111,7 @@ class Body:
         """What the skin has felt in the last tick; None before anyone asks."""
         self._senses: dict[Any, Sense] = {}
         self.noise = Noise(world.seed, self.name)
-        self.extent = Extent(world, self.geoms)
+        self.extent = Extent(world.mj_model, world.mj_data, self.geoms)
         self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
         self.sensors: tuple[str, ...] = tuple(name for name, word in SENSORS.items() if word.fits(self))
         self._noise: Mapping[str, float] = dict(self.anatomy.noise)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from mujoco import MjModel, mjtGeom
+from mujoco import MjData, MjModel, mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
-
-if TYPE_CHECKING:
-    from actr3d.world.world import World
 
 Point = tuple[float, float, float]
 
@@ -51,19 +48,20 @@ class BoundingBox:
 
 
 class Extent:
-    """Computes bounding boxes of some geoms of a world.
+    """Computes bounding boxes of some geoms.
 
     A shape reaches from its centre along a unit vector u, given in its own frame, as far as its support function says:
     sphere r; capsule r + h|uz|; ellipsoid |S u|; cylinder r sqrt(ux^2 + uy^2) + h|uz|; box sx|ux| + sy|uy| + sz|uz|.
     One formula covers them: round + |E u| + B.|u|. Meshes and height fields reach as far as their farthest vertex.
 
     Args:
-        world: Where they are.
+        model: The compiled scene.
+        data: Its state, whose geometry is up to date whenever it is asked.
         geoms: Which.
     """
 
-    def __init__(self, world: World, geoms: NDArray[np.intp]) -> None:
-        self._model, self._data = world.mj_model, world.mj_data
+    def __init__(self, model: MjModel, data: MjData, geoms: NDArray[np.intp]) -> None:
+        self._model, self._data = model, data
         self._geoms = _Shapes(self._model, geoms)
 
     def box(self, origin: NDArray[np.float64], axes: NDArray[np.float64], also: Sequence[int] = ()) -> BoundingBox:

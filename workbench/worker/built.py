@@ -5,13 +5,10 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
-
-import mujoco
-import numpy as np
 
 from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
@@ -25,13 +22,17 @@ from actr3d.running.printed import BuiltOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
-from actr3d.world import Aperture, Floor, Mannequin
+from actr3d.world import Aperture, Floor
 from actr3d.world.sensors.touch import present
 from workbench import protocol as say
+from workbench.compiled import loaded, saved, to_text
+from workbench.curves import Curves
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor
 from workbench.worker.messages import Facts
+from workbench.worker.past import Past
+from workbench.worker.surroundings import surroundings
 from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
@@ -58,6 +59,7 @@ class BuiltRun:
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
+        self._past = Past()
         self._simulation: Simulation
 
     def play(self) -> None:
@@ -89,40 +91,25 @@ class BuiltRun:
     def _prepare(self, limits: RunLimits, parameters: dict[str, Any], helpers: HelperTexts) -> None:
         simulation, start = self._simulation, self._start
         simulation.traced()
+        simulation._journal.keeper = self._past.keep
         if start.record is not None:
             facts: dict[str, Any] = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
-            facts.update(helpers=helpers.loaded, program_seed=limits.program_seed, columns=columns_of(simulation.world.mj_model))
+            facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
+            facts.update(compiled=to_text(saved(simulation.world.mj_model)), world=surroundings(self._simulation.world))
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
         if start.commands:
             simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
 
     def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
-        model = self._simulation.world.mj_model
-        saved = np.empty(mujoco.mj_sizeModel(model), np.uint8)
-        mujoco.mj_saveModel(model, None, saved)
         return Facts(
             kind="simulation",
             seed=limits.program_seed,
             period=self._simulation.period,
             parameters=to_json(parameters).encode(),
-            world=to_json(self._world_facts()).encode(),
-            mj_model=saved.tobytes(),
+            world=to_json(surroundings(self._simulation.world)).encode(),
+            mj_model=saved(self._simulation.world.mj_model),
         )
-
-    def _world_facts(self) -> dict[str, Any]:
-        world = self._simulation.world
-        people = {part.name: part.shoulder_width for part in world.scene.parts if isinstance(part, Mannequin)}
-        bodies = {
-            name: {
-                "shoulders": people.get(name),
-                "eye": body.eye,
-                "root": body.root,
-                "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
-            }
-            for name, body in world.bodies.items()
-        }
-        return {"bodies": bodies, "apertures": [part.name for part in world.scene.parts if isinstance(part, Aperture)]}
 
     def _go_on(self) -> None:
         """Goes on by a few ticks."""
@@ -164,6 +151,12 @@ class BuiltRun:
         if conductor.watch.goal is not None:
             most = min(most, -(-(conductor.watch.goal - self.clock) // self.period))
         return max(1, most)
+
+    @cached_property
+    def _curves(self) -> Curves:
+        """What makes curves of its past, once somebody asks; from a copy of the scene."""
+        model = loaded(saved(self._simulation.world.mj_model))
+        return Curves(model, surroundings(self._simulation.world))
 
     # -- what the conductor asks
 
@@ -219,6 +212,7 @@ class BuiltRun:
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
         self._simulation.command(word, *values, body=body, **named)
+        self._past.cut(self._simulation.ticks)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
@@ -239,7 +233,14 @@ class BuiltRun:
         Raises:
             Exception: Says why it cannot be told.
         """
+        if isinstance(question, say.Curves):
+            return self._told_curves(question)
         return answer(question, self.trace, list(self._simulation.minds.values()), self._simulation.world)
+
+    def _told_curves(self, question: say.Curves) -> dict[str, Any]:
+        first = -(-microseconds(question.first) // self.period)
+        moments = ((seconds(tick * self.period), state) for tick, state in self._past.since(first, question.most))
+        return self._curves.told(moments, question.names)
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns the physics' state, and how wide apertures are."""
@@ -266,21 +267,6 @@ class BuiltRun:
         return frozenset(
             (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
         )
-
-
-def columns_of(mj_model: mujoco.MjModel) -> dict[str, int]:
-    """Returns where in MuJoCo's integration state the positions and speeds of joints are, by their names."""
-    columns: dict[str, int] = {}
-    for number in range(mj_model.njnt):
-        joint: Any = mj_model.joint(number)
-        if joint.name and int(joint.type[0]) in (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE)):
-            columns[joint.name] = 1 + int(joint.qposadr[0])  # the first number is the time
-            columns[f"{joint.name} speed"] = 1 + mj_model.nq + int(joint.dofadr[0])
-    return columns
-
-
-def _finite(limit: float) -> float | None:
-    return None if limit in (float("inf"), float("-inf")) else limit
 
 
 def check(source: str, filename: str, folder: Path) -> dict[str, Any]:

@@ -219,7 +219,7 @@ class Conductor:
             case say.Speed():
                 self.factor, self._anchor = said.factor, None
                 self.show()
-            case say.Explain() | say.Rows() | say.Look() | say.Body() | say.Events():
+            case say.Explain() | say.Rows() | say.Look() | say.Body() | say.Events() | say.Curves():
                 return self.run.answer(said)
             case _:
                 self.run.do(said)

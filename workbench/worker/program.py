@@ -19,6 +19,7 @@ from actr3d.running.printed import ProgramOutput
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
+from workbench.curves import NOTHING
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor, Leaving
@@ -217,6 +218,8 @@ class ProgramRun:
         Raises:
             Exception: Says why it cannot be told.
         """
+        if isinstance(question, say.Curves):
+            return NOTHING
         return answer(question, self.trace, list(self._models()), None)
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:

@@ -1,0 +1,155 @@
+"""Curves of a run, live and recorded: they agree with what the run itself measures, and with one another."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.recording import Recorded
+from tests.server.desk import Desk, Talk
+from tests.server.test_recorded_runs import APERTURE, ended, recording
+from workbench.curves import NOTHING
+from workbench.recordings import curves
+from workbench.worker.past import Past
+
+PUSHED = """from actr3d.actr import *
+from actr3d.motor import Motor
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    motor = Motor()
+    def init():
+        goal.set("walk")
+    def walk(goal="walk"):
+        motor.walk(1.0)
+        goal.set("on")
+    def wait(goal="on"):
+        goal.set("on")
+
+def build() -> Simulation:
+    parts = (Floor(), Mannequin(name="walker"), Aperture(width=0.2, position=(1.0, 0.0)))
+    return Simulation(Scene(parts=parts), {"walker": Walker}, seed=1)
+"""
+
+
+def least(values: list[float | None]) -> float:
+    return min(value for value in values if value is not None)
+
+
+def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
+    result = ended(talk)["result"]
+    told = talk.say("curves", most=5000)
+    groups = {(one["name"], one["unit"], one["group"]) for one in told["names"]}
+    assert groups >= {
+        ("walker x", "m", "place"),
+        ("walker speed", "m/s", "speed"),
+        ("walker clearance left", "m", "clearance"),
+        ("walker contact force", "N", "contact"),
+        ("walker_torso_yaw", "deg", "joint"),
+        ("walker_torso_yaw speed", "deg/s", "joint speed"),
+    }
+    assert [one["name"] for one in told["names"]] == list(told["curves"])
+    assert told["times"] == pytest.approx([0.01 * n for n in range(len(told["times"]))])
+    of = told["curves"]
+    for side in ("left", "right"):  # the result looks at every physics step, the curves at each fifth
+        assert least(of[f"walker clearance {side}"]) == pytest.approx(result[f"clearance_{side}_m"], abs=0.005)
+    assert of["walker clearance left"][0] is of["walker clearance right"][-1] is None
+    assert max(of["walker speed"]) == pytest.approx(1.29, abs=0.02)
+    way = math.dist((of["walker x"][0], of["walker y"][0]), (of["walker x"][-1], of["walker y"][-1]))
+    assert way == pytest.approx(0.01 * sum(of["walker speed"]), rel=0.02)
+    assert set(of["walker contact force"]) == {0.0}
+    path = recording(desk, talk)
+    assert curves(path, None, 0.0, 5000) == told
+
+
+def test_the_force_of_a_wall_is_told_and_that_of_the_ground_is_not(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED)
+    talk.say("until", contact="walker")
+    touched = talk.wait(lambda: "touches" in talk.state["reason"])["time"]
+    talk.say("step", ticks=20)
+    talk.until("paused", time=round(touched + 0.2, 6))
+    told = talk.say("curves", names=["walker contact force"])
+    force = dict(zip(told["times"], told["curves"]["walker contact force"], strict=True))
+    assert not any(value for time, value in force.items() if time < touched - 0.005)
+    assert max(force.values()) > 10
+
+
+def test_only_what_is_asked_for_is_told_from_a_time_on_and_evenly(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED)
+    talk.say("step", ticks=50)
+    talk.until("paused", tick=50)
+    told = talk.say("curves", names=["walker x", "no"], first=0.4)
+    assert list(told["curves"]) == ["walker x"]
+    assert told["times"] == pytest.approx([0.40 + 0.01 * n for n in range(11)])
+    told = talk.say("curves", names=["walker x"], most=7)
+    assert told["times"] == [0.0, 0.09, 0.18, 0.27, 0.36, 0.45, 0.5]
+    assert talk.say("curves", names=[], most=7)["times"] == []
+
+
+def test_what_lies_ahead_is_told_until_the_run_goes_another_way(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED)
+    talk.say("step", ticks=40)
+    talk.until("paused", tick=40)
+    before = talk.say("curves")
+    talk.say("seek", time=0.1)
+    talk.until("paused", tick=10)
+    assert talk.say("curves") == before
+    talk.say("step", ticks=5)
+    talk.until("paused", tick=15)
+    assert talk.say("curves") == before
+    talk.say("say", word="walk", values=[-1.0])
+    told = talk.say("curves")
+    assert told["times"][-1] == 0.15
+    talk.say("step", ticks=25)
+    talk.until("paused", tick=40)
+    after = talk.say("curves")
+    assert after["times"] == before["times"]
+    assert after["curves"]["walker x"][:16] == before["curves"]["walker x"][:16]
+    assert after["curves"]["walker x"][-1] < before["curves"]["walker x"][-1]
+
+
+def test_a_program_has_no_curves(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "x = 1\n", record=True)
+    talk.say("run")
+    talk.until("ended")
+    assert talk.say("curves") == NOTHING
+    assert curves(recording(desk, talk), None, 0.0, 100) == NOTHING
+
+
+class Steady:
+    """A world whose states are large."""
+
+    def __init__(self) -> None:
+        self.tick = 0
+
+    def state_bytes(self) -> bytes:
+        return self.tick.to_bytes(8, "big") * 125_000
+
+
+def test_of_a_long_past_every_second_state_is_left_out() -> None:
+    world: Any = Steady()
+    past = Past()
+    for world.tick in range(200):
+        past.keep(world.tick, world)
+    ticks = [tick for tick, state in past.since(0, 5000) if state[:8] == tick.to_bytes(8, "big")]
+    assert ticks == [*range(0, 200, 8), 199]
+    past.cut(100)
+    assert [tick for tick, _ in past.since(0, 5000)] == [*range(0, 97, 8)]
+    for world.tick in range(101, 106):
+        past.keep(world.tick, world)
+    assert [tick for tick, _ in past.since(90, 5000)] == [96, 104, 105]
+
+
+def test_a_recording_keeps_its_scene(desk: Desk, tmp_path: Path) -> None:
+    talk: Talk = desk.begin(tmp_path, PUSHED, record=True)
+    talk.say("step", ticks=3)
+    talk.until("paused", tick=3)
+    with Recorded(recording(desk, talk)) as recorded:
+        assert len(recorded.facts["compiled"]) < 20_000
+        assert recorded.facts["world"]["walls"]["aperture"]["position"] == [1.0, 0.0]

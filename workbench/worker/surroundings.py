@@ -1,0 +1,37 @@
+"""What pages, curves and overlays must know of a world: its bodies, doorways and ground, by MuJoCo's numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from actr3d.simulation.clearance import Wall
+from actr3d.world import Aperture, Floor, Mannequin, World
+
+
+def surroundings(world: World) -> dict[str, Any]:
+    """Returns what is in a world, as plain values; it is the same at all times."""
+    people = {part.name: part.shoulder_width for part in world.scene.parts if isinstance(part, Mannequin)}
+    bodies = {
+        name: {
+            "shoulders": people.get(name),
+            "eye": body.eye,
+            "root": body.root,
+            "feels": body.feeling.tolist(),
+            "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
+        }
+        for name, body in world.bodies.items()
+    }
+    walls = {part.name: _wall(part, world)._asdict() for part in world.scene.parts if isinstance(part, Aperture)}
+    grounds = {part.name for part in world.scene.parts if isinstance(part, Floor)}
+    ground = [geom for geom, owner in enumerate(world.owners) if owner in grounds]
+    return {"bodies": bodies, "apertures": list(walls), "walls": walls, "ground": ground}
+
+
+def _wall(aperture: Aperture, world: World) -> Wall:
+    left, right = (int(world.mj_model.geom(f"{aperture.name}_{side}").id) for side in ("left", "right"))
+    return Wall(aperture.position, aperture.heading, aperture.thickness, (left, right))
+
+
+def _finite(limit: float) -> float | None:
+    return limit if math.isfinite(limit) else None
