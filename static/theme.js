@@ -17,9 +17,13 @@ effect(() => {
   document.documentElement.dataset.theme = dark.value ? "dark" : "light";
 });
 
-/** Returns the value of one of the colours of style.css, for a canvas. */
+const LIGHT_DARK = /^light-dark\((.+),\s*(.+)\)$/;
+
+/** Returns the value of one of the colours of style.css as the theme has it, for a canvas or a picture that is kept. */
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const both = LIGHT_DARK.exec(value);
+  return both ? both[dark.peek() ? 2 : 1].trim() : value;
 }
 
 export function nextTheme() {
