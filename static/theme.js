@@ -17,19 +17,13 @@ effect(() => {
   document.documentElement.dataset.theme = dark.value ? "dark" : "light";
 });
 
-const probe = document.createElement("span");
-probe.hidden = true;
-document.documentElement.append(probe);
-const resolved = new Map();
+const LIGHT_DARK = /^light-dark\((.+),\s*(.+)\)$/;
 
-/** Returns one of the colours of style.css as it is now, for a canvas. */
+/** Returns the value of one of the colours of style.css as the theme has it, for a canvas or a picture that is kept. */
 export function colour(name) {
-  const key = `${name} ${dark.peek()}`;
-  if (!resolved.has(key)) {
-    probe.style.color = `var(--${name})`;
-    resolved.set(key, getComputedStyle(probe).color);
-  }
-  return resolved.get(key);
+  const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const both = LIGHT_DARK.exec(value);
+  return both ? both[dark.peek() ? 2 : 1].trim() : value;
 }
 
 export function nextTheme() {

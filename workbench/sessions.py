@@ -66,6 +66,14 @@ class Sessions:
             raise NoSuchSessionError("there is no such session")
         return self._sessions[name]
 
+    def writing(self) -> dict[str, str]:
+        """Returns by their names the recordings that runs go on writing, and their sessions."""
+        return {
+            Path(session.start.record).stem: session.name
+            for session in self.all()
+            if session._worker is not None and session.start is not None and session.start.record is not None
+        }
+
     def view(self, name: str) -> SceneView | None:
         """Returns the 3D view of a session, once there is something to see."""
         view = self._views.get(name)

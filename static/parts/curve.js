@@ -1,0 +1,121 @@
+// Draws curves over time in a box: a scale at its left, lines at round values, each curve in a colour of its own.
+
+import { numberText, roundRange, stepFor, ticks, timeText } from "./ticks.js";
+import { cut, widthOf } from "./surface.js";
+
+export const COLOURS = 6;
+
+/** Returns the name of the colour of the nth curve. */
+export function seriesColour(n) {
+  return `series-${(n % COLOURS) + 1}`;
+}
+
+/** Returns the number of the first of ascending times that is not before a time. */
+export function firstFrom(times, time) {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] < time) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Returns the value that a curve has at a time: that of the last moment known up to then, null where there is none. */
+export function valueAt(times, values, time) {
+  const at = firstFrom(times, time + 1e-6) - 1;
+  return at < 0 ? null : values[at];
+}
+
+/** Returns the least and the largest value of some curves: a round range. */
+export function rangeOf(series) {
+  let [least, most] = [Infinity, -Infinity];
+  for (const { values } of series) {
+    for (const value of values) {
+      if (value === null || Number.isNaN(value)) continue;
+      if (value < least) least = value;
+      if (value > most) most = value;
+    }
+  }
+  return roundRange(least, most);
+}
+
+/** Returns a curve as points of a box; where several values share a pixel, its least and its largest. */
+function pointsOf(times, values, span, box, yOf) {
+  const scale = box.width / (span.to - span.from);
+  const [begin, end] = [Math.max(0, firstFrom(times, span.from) - 1), Math.min(times.length, firstFrom(times, span.to) + 1)];
+  const points = [];
+  const dense = end - begin > 3 * box.width;
+  let [pixel, least, most, last] = [null, 0, 0, null];
+  const flush = () => last !== null && points.push(pixel, yOf(least), pixel, yOf(most), pixel, yOf(last));
+  for (let n = begin; n < end; n += 1) {
+    const x = box.x + (times[n] - span.from) * scale;
+    const value = values[n];
+    if (value === null || value === undefined) {
+      flush();
+      [pixel, last] = [null, null];
+      points.push(x, NaN);
+    } else if (!dense) points.push(x, yOf(value));
+    else if (pixel !== null && Math.abs(x - pixel) < 1) [least, most, last] = [Math.min(least, value), Math.max(most, value), value];
+    else {
+      flush();
+      [pixel, least, most, last] = [x, value, value, value];
+    }
+  }
+  flush();
+  return points;
+}
+
+/**
+ * Draws curves.
+ *
+ * @param surface What is drawn on.
+ * @param box {x, y, width, height} of the place of the curves; the scale stands left of it.
+ * @param series [{name, unit, values, times?, colour?, dash?}]
+ * @param times Those of the series that have none of their own [s].
+ * @param span {from, to}: the times from the left to the right edge [s].
+ * @param range [least, most]: the values from the lower to the upper edge.
+ */
+export function drawCurves(surface, box, { series, times, span, range }) {
+  const [least, most] = range;
+  const yOf = (value) => box.y + box.height - ((value - least) / (most - least)) * box.height;
+  const step = stepFor(most - least, Math.max(1, Math.floor(box.height / 18)));
+  for (const value of ticks(least, most, step)) {
+    const y = Math.round(yOf(value)) + 0.5;
+    surface.line([box.x, y, box.x + box.width, y], "line");
+    if (y > box.y + 4 && y < box.y + box.height - 3) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
+  }
+  surface.within(box.x, box.y, box.width, box.height, () => {
+    series.forEach(({ values, times: own, colour, dash }, n) => {
+      const points = pointsOf(own ?? times, values, span, box, yOf);
+      surface.line(points, colour ?? seriesColour(n), { width: 1.5, dash: dash ?? [] });
+    });
+  });
+}
+
+/** Draws an axis of time with its lines; returns the step between them [s]. `box` is where what it belongs to stands. */
+export function drawTimes(surface, box, span, { y, height = 18, lines = true } = {}) {
+  const step = stepFor(span.to - span.from, Math.max(2, Math.floor(box.width / 80)));
+  const scale = box.width / (span.to - span.from);
+  for (const time of ticks(span.from, span.to, step)) {
+    const x = Math.round(box.x + (time - span.from) * scale) + 0.5;
+    if (lines) surface.line([x, box.y, x, box.y + box.height], "line");
+    const text = timeText(time, step);
+    const half = widthOf(text, { size: 10 }) / 2;
+    const at = Math.min(Math.max(x, box.x + half), box.x + box.width - half);
+    surface.text(text, at, y + height / 2, "quiet", { size: 10, anchor: "middle" });
+  }
+  return step;
+}
+
+/** Draws what the curves are called, from x on, as far as there is room. */
+export function drawLegend(surface, x, y, width, series) {
+  let at = x;
+  series.forEach(({ name, colour, dash }, n) => {
+    const text = cut(name, Math.max(0, x + width - at - 24));
+    if (!text) return;
+    surface.line([at, y, at + 12, y], colour ?? seriesColour(n), { width: 2, dash: dash ?? [] });
+    surface.text(text, at + 16, y, "text");
+    at += 30 + widthOf(text);
+  });
+}

@@ -1,0 +1,72 @@
+// Pictures that are kept: whatever draws on a surface, as PNG or SVG.
+
+import { CanvasSurface, SvgSurface } from "./surface.js";
+
+const SHARPNESS = 2; // pixels of a PNG for each of the page
+const TITLE = 26; // height of the line above a picture [px]
+const MARGIN = 12; // [px]
+
+/**
+ * @typedef Picture
+ * @property {string} name The file's name, without its ending.
+ * @property {string} title What it shows, and of which run; drawn above it.
+ * @property {number} width [px]
+ * @property {number} height [px]
+ * @property {(surface) => void} draw Draws it, from 0, 0.
+ */
+
+/** Draws a picture with its title and background. */
+function drawWhole(surface, { title, width, height, draw }, move) {
+  surface.fill(0, 0, width + 2 * MARGIN, height + TITLE + 2 * MARGIN, "panel");
+  surface.text(title, MARGIN, MARGIN + TITLE / 2 - 4, "text", { size: 12, bold: true });
+  move(MARGIN, MARGIN + TITLE, () => draw(surface));
+}
+
+function sizeOf({ width, height }) {
+  return [Math.ceil(width + 2 * MARGIN), Math.ceil(height + TITLE + 2 * MARGIN)];
+}
+
+/** Returns a picture as the text of an SVG file. */
+export function svgText(picture) {
+  const surface = new SvgSurface(...sizeOf(picture));
+  drawWhole(surface, picture, (x, y, draw) => {
+    const group = document.createElementNS("http://www.w3.org/2000/svg", "g");
+    group.setAttribute("transform", `translate(${x} ${y})`);
+    surface.root.append(group);
+    surface.into = group;
+    draw();
+  });
+  return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(surface.root)}\n`;
+}
+
+/** Returns a picture as a PNG. */
+export function pngBlob(picture) {
+  const canvas = document.createElement("canvas");
+  const [width, height] = sizeOf(picture);
+  // No browser makes a canvas of more than 16,384 pixels a side.
+  const scale = Math.min(SHARPNESS, 16_000 / Math.max(width, height));
+  canvas.width = width * scale;
+  canvas.height = height * scale;
+  const context = canvas.getContext("2d");
+  context.scale(scale, scale);
+  drawWhole(new CanvasSurface(context), picture, (x, y, draw) => {
+    context.translate(x, y);
+    draw();
+  });
+  return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+}
+
+/** Keeps a picture as a file: `kind` is "png" or "svg". */
+export async function savePicture(picture, kind) {
+  const blob = kind === "svg" ? new Blob([svgText(picture)], { type: "image/svg+xml" }) : await pngBlob(picture);
+  saveFile(`${picture.name}.${kind}`, blob);
+}
+
+/** Hands the user a file. */
+export function saveFile(name, blob) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name.replace(/[^\w.+-]+/g, "_");
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

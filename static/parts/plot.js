@@ -1,0 +1,117 @@
+// One plot of curves over time, with its scale, its axis and what the pointer is at; kept as PNG or SVG.
+
+import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js";
+import { dark } from "../theme.js";
+import { drawCurves, drawLegend, drawTimes, rangeOf, seriesColour, valueAt } from "./curve.js";
+import { Icon } from "./icon.js";
+import { savePicture } from "./picture.js";
+import { CanvasSurface } from "./surface.js";
+import { numberText, timeText } from "./ticks.js";
+
+const LEFT = 46; // room for the scale [px]
+const RIGHT = 8;
+const AXIS = 18; // [px]
+
+function boxOf(width, height) {
+  return { x: LEFT, y: 4, width: Math.max(10, width - LEFT - RIGHT), height: Math.max(10, height - AXIS - 4) };
+}
+
+/** Returns from when to when some curves go [s]. */
+export function spanOf(series, times) {
+  const all = series.map(({ times: own }) => own ?? times).filter((list) => list?.length);
+  const [from, to] = [Math.min(...all.map((list) => list[0])), Math.max(...all.map((list) => list.at(-1)))];
+  return to > from ? { from, to } : { from: 0, to: 1 };
+}
+
+function drawPlot(surface, width, height, { series, times, span, range, at }) {
+  const box = boxOf(width, height);
+  drawTimes(surface, box, span, { y: box.y + box.height, height: AXIS });
+  drawCurves(surface, box, { series, times, span, range });
+  if (at === null || at < span.from || at > span.to) return;
+  const x = Math.round(box.x + ((at - span.from) / (span.to - span.from)) * box.width) + 0.5;
+  surface.line([x, box.y, x, box.y + box.height], "strong-line");
+}
+
+/**
+ * @param title What the plot shows.
+ * @param series [{name, unit, values, times?, colour?, dash?}]: curves that share a scale; null is a gap. One with `times` of its
+ *   own is drawn over those [s], such as a curve of another run.
+ * @param times The moments of all the others [s], ascending.
+ * @param span {from, to}: what is shown [s]; as far as the curves go where it is missing.
+ * @param height [px]
+ * @param cursor A signal with the time that the pointer is at [s], or null: plots that share one show the same moment.
+ * @param onPick Called with the time where the user clicks [s].
+ * @param source Said in a picture beside the title: which model, run and seed.
+ */
+export function Plot({ title, series, times = [], span = null, height = 120, cursor = null, onPick = null, source = "" }) {
+  const canvas = useRef(null);
+  const own = useSignal(null);
+  const width = useSignal(0);
+  const pointed = cursor ?? own;
+  const shown = span ?? spanOf(series, times);
+  const range = useMemo(() => rangeOf(series), [series]);
+  const unit = series[0]?.unit ?? "";
+  const at = pointed.value;
+
+  useEffect(() => {
+    const watch = new ResizeObserver(([{ contentRect }]) => (width.value = Math.floor(contentRect.width)));
+    watch.observe(canvas.current.parentElement);
+    return () => watch.disconnect();
+  }, []);
+
+  useEffect(() => {
+    const scale = devicePixelRatio || 1;
+    canvas.current.width = width.value * scale;
+    canvas.current.height = height * scale;
+    const context = canvas.current.getContext("2d");
+    context.scale(scale, scale);
+    if (width.value > 0) drawPlot(new CanvasSurface(context), width.value, height, { series, times, span: shown, range, at });
+  }, [series, times, times.length, shown.from, shown.to, range, at, width.value, height, dark.value]);
+
+  function timeOf(event) {
+    const box = boxOf(width.value, height);
+    const time = shown.from + ((event.offsetX - box.x) / box.width) * (shown.to - shown.from);
+    return Math.min(Math.max(time, shown.from), shown.to);
+  }
+
+  function save(kind) {
+    const wide = Math.max(640, width.value);
+    const draw = (surface) => {
+      drawLegend(surface, LEFT, 8, wide - LEFT, series);
+      const below = { ...boxOf(wide, height), y: 24 };
+      drawTimes(surface, below, shown, { y: below.y + below.height, height: AXIS });
+      drawCurves(surface, below, { series, times, span: shown, range });
+    };
+    const name = [title, source].filter(Boolean).join(" ");
+    savePicture({ name, title: `${title}${unit ? ` [${unit}]` : ""}${source ? `, ${source}` : ""}`, width: wide, height: height + 24, draw }, kind);
+  }
+
+  return html`<figure class="plot" aria-label=${title}>
+    <figcaption>
+      <b>${title}</b>${unit ? html` <span class="quiet">[${unit}]</span>` : null}
+      <span class="plot-names">
+        ${series.map(({ name, values, times: mine, colour, dash }, n) => {
+          const value = at === null ? "" : numberText(valueAt(mine ?? times, values, at));
+          return html`<span key=${n} class="plot-name" title=${name}>
+            <svg width="14" height="8" aria-hidden="true"><line x1="0" y1="4" x2="14" y2="4" stroke="var(--${colour ?? seriesColour(n)})" stroke-width="2" stroke-dasharray=${(dash ?? []).join(" ")} /></svg>
+            <span class="plot-of">${name}</span> <output>${value}</output>
+          </span>`;
+        })}
+      </span>
+      <span class="plot-time number quiet">${at === null ? "" : timeText(at, 0.01)}</span>
+      <button class="bare" title="Keep the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
+      <button class="bare" title="Keep the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
+    </figcaption>
+    <div class="plot-area" style=${{ height: `${height}px` }}>
+      <canvas
+        ref=${canvas}
+        role="img"
+        aria-label="${title}: ${series.map(({ name }) => name).join(", ")}"
+        style=${{ height: `${height}px` }}
+        onPointerMove=${(event) => (pointed.value = timeOf(event))}
+        onPointerLeave=${() => (pointed.value = null)}
+        onClick=${onPick && ((event) => onPick(timeOf(event)))}
+      ></canvas>
+    </div>
+  </figure>`;
+}

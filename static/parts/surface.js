@@ -1,0 +1,176 @@
+// What one draws on: a canvas, or an SVG that is kept. Both take the same calls, so that a picture is like what is on the page.
+
+import { colour } from "../theme.js";
+
+const measure = document.createElement("canvas").getContext("2d");
+const MOST_WIDTHS = 5000;
+const widths = new Map();
+
+/** Returns a font as CSS writes it. */
+function fontOf({ mono = false, size = 11, bold = false }) {
+  return `${bold ? "600 " : ""}${size}px ${colour(mono ? "mono" : "sans")}`;
+}
+
+/** Returns how wide a text is [px]. */
+export function widthOf(text, style = {}) {
+  const key = `${style.mono ? "m" : "s"}${style.size ?? 11}${style.bold ? "b" : ""}${text}`;
+  let width = widths.get(key);
+  if (width === undefined) {
+    measure.font = fontOf(style);
+    width = measure.measureText(text).width;
+    if (widths.size > MOST_WIDTHS) widths.clear();
+    widths.set(key, width);
+  }
+  return width;
+}
+
+/** Returns as much of a text as there is room for, with an ellipsis where it is cut. */
+export function cut(text, most, style = {}) {
+  const line = text.length > 400 ? text.slice(0, 400) : text;
+  if (widthOf(line, style) <= most) return line;
+  let [fits, over] = [0, line.length];
+  while (over - fits > 1) {
+    const middle = (fits + over) >> 1;
+    if (widthOf(`${line.slice(0, middle)}…`, style) <= most) fits = middle;
+    else over = middle;
+  }
+  return fits > 0 ? `${line.slice(0, fits)}…` : "";
+}
+
+/** Draws on a canvas. Colours are names of style.css. */
+export class CanvasSurface {
+  constructor(context) {
+    this.context = context;
+    this.colours = new Map();
+    this.fonts = new Map();
+  }
+
+  #colour(name) {
+    if (!this.colours.has(name)) this.colours.set(name, colour(name));
+    return this.colours.get(name);
+  }
+
+  #font(style) {
+    const key = `${style.mono}${style.size}${style.bold}`;
+    if (!this.fonts.has(key)) this.fonts.set(key, fontOf(style));
+    return this.fonts.get(key);
+  }
+
+  fill(x, y, width, height, name, alpha = 1) {
+    const { context } = this;
+    context.globalAlpha = alpha;
+    context.fillStyle = this.#colour(name);
+    context.fillRect(x, y, width, height);
+    context.globalAlpha = 1;
+  }
+
+  /** A line through [x, y, x, y, …]; NaN breaks it. */
+  line(points, name, { width = 1, dash = [] } = {}) {
+    const { context } = this;
+    context.strokeStyle = this.#colour(name);
+    context.lineWidth = width;
+    context.lineJoin = "round";
+    context.setLineDash(dash);
+    context.beginPath();
+    let broken = true;
+    for (let n = 0; n < points.length; n += 2) {
+      if (Number.isNaN(points[n + 1])) broken = true;
+      else {
+        if (broken) context.moveTo(points[n], points[n + 1]);
+        else context.lineTo(points[n], points[n + 1]);
+        broken = false;
+      }
+    }
+    context.stroke();
+  }
+
+  polygon(points, name) {
+    const { context } = this;
+    context.fillStyle = this.#colour(name);
+    context.beginPath();
+    for (let n = 0; n < points.length; n += 2) context.lineTo(points[n], points[n + 1]);
+    context.fill();
+  }
+
+  /** A text whose middle is at height y; `anchor` is start, middle or end. */
+  text(text, x, y, name, style = {}) {
+    const { context } = this;
+    context.font = this.#font(style);
+    context.fillStyle = this.#colour(name);
+    context.textBaseline = "middle";
+    context.textAlign = { start: "left", middle: "center", end: "right" }[style.anchor ?? "start"];
+    context.fillText(text, x, y);
+  }
+
+  /** Draws something of which only what lies in a rectangle is seen. */
+  within(x, y, width, height, draw) {
+    const { context } = this;
+    context.save();
+    context.beginPath();
+    context.rect(x, y, width, height);
+    context.clip();
+    draw();
+    context.restore();
+  }
+}
+
+/** Makes an SVG that needs nothing else. Colours are names of style.css. */
+export class SvgSurface {
+  constructor(width, height) {
+    this.size = [width, height];
+    this.root = node("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
+    this.into = this.root;
+    this.clips = 0;
+  }
+
+  fill(x, y, width, height, name, alpha = 1) {
+    this.into.append(node("rect", { x: short(x), y: short(y), width: short(width), height: short(height), fill: colour(name), ...(alpha < 1 ? { "fill-opacity": alpha } : {}) }));
+  }
+
+  line(points, name, { width = 1, dash = [] } = {}) {
+    let path = "";
+    let broken = true;
+    for (let n = 0; n < points.length; n += 2) {
+      if (Number.isNaN(points[n + 1])) broken = true;
+      else {
+        path += `${broken ? "M" : "L"}${short(points[n])} ${short(points[n + 1])}`;
+        broken = false;
+      }
+    }
+    const dashes = dash.length ? { "stroke-dasharray": dash.join(" ") } : {};
+    this.into.append(node("path", { d: path, fill: "none", stroke: colour(name), "stroke-width": width, "stroke-linejoin": "round", ...dashes }));
+  }
+
+  polygon(points, name) {
+    this.into.append(node("polygon", { points: Array.from(points, short).join(" "), fill: colour(name) }));
+  }
+
+  text(text, x, y, name, style = {}) {
+    const bold = style.bold ? { "font-weight": 600 } : {};
+    const font = { "font-family": colour(style.mono ? "mono" : "sans"), "font-size": style.size ?? 11, ...bold };
+    const made = node("text", { x: short(x), y: short(y), fill: colour(name), "text-anchor": style.anchor ?? "start", "dominant-baseline": "central", ...font });
+    made.textContent = text;
+    this.into.append(made);
+  }
+
+  within(x, y, width, height, draw) {
+    this.clips += 1;
+    const clip = node("clipPath", { id: `clip${this.clips}` });
+    clip.append(node("rect", { x, y, width, height }));
+    const group = node("g", { "clip-path": `url(#clip${this.clips})` });
+    const outer = this.into;
+    outer.append(clip, group);
+    this.into = group;
+    draw();
+    this.into = outer;
+  }
+}
+
+const SVG = "http://www.w3.org/2000/svg";
+const short = (number) => String(Math.round(number * 100) / 100);
+
+function node(name, attributes) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) if (key !== "xmlns") made.setAttribute(key, value);
+  return made;
+}

@@ -1,0 +1,48 @@
+// Where an axis has its lines, and what stands at them.
+
+const STEPS = [1, 2, 5, 10];
+
+/** Returns the round step with which `most` steps or fewer cover a span. */
+export function stepFor(span, most) {
+  if (!(span > 0)) return 1;
+  const rough = span / Math.max(1, most);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  return power * STEPS.find((step) => step * power >= rough * (1 - 1e-9));
+}
+
+/** Returns the multiples of a step from one number to another, as exact as can be. */
+export function ticks(from, to, step) {
+  const found = [];
+  const digits = digitsOf(step);
+  for (let n = Math.ceil(from / step - 1e-6); n * step <= to + step * 1e-6; n += 1) found.push(Number((n * step).toFixed(digits)));
+  return found;
+}
+
+/** Returns with how many digits after the point multiples of a step are written. */
+export function digitsOf(step) {
+  return Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+}
+
+/** Returns a round range with some room around the values: [least, most]. */
+export function roundRange(least, most) {
+  if (!(least <= most)) return [0, 1];
+  if (most - least < 1e-9 * Math.max(1, Math.abs(most))) {
+    const room = Math.abs(most) * 0.1 || 1;
+    return roundRange(least - room, most + room);
+  }
+  const step = stepFor(most - least, 4);
+  return [Math.floor(least / step + 1e-6) * step, Math.ceil(most / step - 1e-6) * step];
+}
+
+/** Says a time with as many digits as a step asks for, and its unit. */
+export function timeText(time, step = 0.01) {
+  return `${time.toFixed(digitsOf(step))} s`;
+}
+
+/** Says a value of a curve: four digits that count, no more. */
+export function numberText(value) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  const size = Math.abs(value);
+  const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 1 ? 2 : 3;
+  return value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1");
+}
