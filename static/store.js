@@ -30,7 +30,7 @@ export const known = { run: 0, epoch: 0 };
 export function take(message) {
   batch(() => {
     if (message.session) session.value = message.session;
-    if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0 };
+    if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
     Object.assign(known, { run: message.run, epoch: message.epoch });
     if ("state" in message) state.value = message.state;
     if (message.events) events.value = withEvents(events.value, message.events);
@@ -55,7 +55,7 @@ function withEvents({ list, first, missing }, news) {
     list.splice(0, drop);
     first += drop;
   }
-  return { list, first, missing };
+  return { list, first, missing, cut: news.cut !== undefined };
 }
 
 function tell(told) {
@@ -75,7 +75,7 @@ export function forget() {
   batch(() => {
     session.value = null;
     state.value = null;
-    events.value = { list: [], first: 0, missing: 0 };
+    events.value = { list: [], first: 0, missing: 0, cut: false };
     notices.value = [];
     Object.assign(known, { run: 0, epoch: 0 });
   });

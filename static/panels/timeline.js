@@ -1,3 +1,27 @@
-import { html } from "../vendor/preact.js";
+// The timeline: one axis of time for mind and body, on which one goes back and forth.
 
-export const Timeline = () => html`<p class="empty">Timeline</p>`;
+import { computed, html } from "../vendor/preact.js";
+import { session, state } from "../store.js";
+import { curvesVersion, names } from "../timeline/curves.js";
+import { lanes, lanesVersion } from "../timeline/record.js";
+import { Stage } from "../timeline/stage.js";
+import { Tools } from "../timeline/tools.js";
+
+/** What is said where there is nothing to show yet; an empty text where there is. */
+const nothing = computed(() => {
+  lanesVersion.value;
+  curvesVersion.value;
+  if (lanes.lanes.size > 0 || names.value.length > 0) return "";
+  if (!session.value) return "Choose a model above: what its mind and body do is shown here over time.";
+  return state.value ? "Nothing has happened yet. Press Run or step: what mind and body do is shown here over time." : "The run has not begun.";
+});
+
+export function Timeline() {
+  return html`<div class="timeline">
+    <${Tools} />
+    <div class="timeline-body">
+      <${Stage} />
+      ${nothing.value ? html`<p class="empty timeline-nothing">${nothing.value}</p>` : null}
+    </div>
+  </div>`;
+}

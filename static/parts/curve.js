@@ -79,7 +79,7 @@ function pointsOf(times, values, span, box, yOf) {
 export function drawCurves(surface, box, { series, times, span, range }) {
   const [least, most] = range;
   const yOf = (value) => box.y + box.height - ((value - least) / (most - least)) * box.height;
-  const step = stepFor(most - least, Math.max(1, Math.floor(box.height / 18)));
+  const step = stepFor(most - least, Math.max(1, Math.floor(box.height / 11)));
   for (const value of ticks(least, most, step)) {
     const y = Math.round(yOf(value)) + 0.5;
     surface.line([box.x, y, box.x + box.width, y], "line");

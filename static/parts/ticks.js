@@ -30,7 +30,7 @@ export function roundRange(least, most) {
     const room = Math.abs(most) * 0.1 || 1;
     return roundRange(least - room, most + room);
   }
-  const step = stepFor(most - least, 4);
+  const step = stepFor(most - least, 8);
   return [Math.floor(least / step + 1e-6) * step, Math.ceil(most / step - 1e-6) * step];
 }
 

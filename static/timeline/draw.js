@@ -1,0 +1,121 @@
+// Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
+
+import { drawCurves, drawTimes, seriesColour } from "../parts/curve.js";
+import { cut, widthOf } from "../parts/surface.js";
+import { bandText } from "./lanes.js";
+import { firstWhere } from "./search.js";
+import { AXIS } from "./rows.js";
+
+const SCALE = 44; // room for the scale of a plot in the column of names [px]
+const ROOM = 22; // no text is drawn in less [px]
+
+/**
+ * @typedef Scene
+ * @property {number} width [px]
+ * @property {number} height [px]
+ * @property {number} column How wide the column of names is [px].
+ * @property {number} scroll How far the rows are scrolled up [px].
+ * @property {{from: number, to: number}} span What is shown [s].
+ * @property {{rows: object[]}} layout See `layout` of rows.js.
+ * @property {number} end Where bands end that last [s].
+ * @property {number} begin What was before is not known any more [s].
+ */
+
+/** Returns where a time is [px]. */
+export function placeOf(time, { column, width, span }) {
+  return column + ((time - span.from) / (span.to - span.from)) * (width - column);
+}
+
+/** Returns the time of a place [s]. */
+export function timeOf(x, { column, width, span }) {
+  return span.from + ((x - column) / Math.max(1, width - column)) * (span.to - span.from);
+}
+
+/** Draws it. */
+export function drawTimeline(surface, scene) {
+  const { width, height, column, span, layout, scroll } = scene;
+  const box = { x: column, y: AXIS, width: width - column, height: height - AXIS };
+  surface.fill(0, 0, width, AXIS, "raised");
+  surface.within(0, AXIS, width, height - AXIS, () => {
+    for (const row of layout.rows) {
+      const y = row.y - scroll;
+      if (y + row.height < AXIS || y > height) continue;
+      if (row.begins) surface.line([0, y - 2.5, width, y - 2.5], "line");
+      if (row.plot) drawPlotRow(surface, row.plot, y, row.height, scene);
+      else drawLane(surface, row, y, scene);
+    }
+  });
+  drawTimes(surface, box, span, { y: 0, height: AXIS, lines: false });
+  if (scene.begin > span.from) drawUnknown(surface, scene);
+  surface.line([column - 0.5, 0, column - 0.5, height], "line");
+  surface.line([0, AXIS - 0.5, width, AXIS - 0.5], "line");
+}
+
+function drawUnknown(surface, scene) {
+  const x = Math.min(scene.width, placeOf(scene.begin, scene));
+  surface.fill(scene.column, AXIS, x - scene.column, scene.height - AXIS, "line", 0.5);
+  const text = cut("earlier events are no longer kept here", x - scene.column - 8);
+  if (text) surface.text(text, x - 4, scene.height - 10, "quiet", { anchor: "end" });
+}
+
+function drawLane(surface, { lane, label, height }, y, scene) {
+  const { column, width } = scene;
+  surface.text(cut(label, column - 14), 8, y + height / 2, "text");
+  surface.line([column, y + height - 0.5, width, y + height - 0.5], "raised");
+  surface.within(column, y, width - column, height, () => drawBands(surface, lane.bands, y, height, scene));
+}
+
+function drawBands(surface, bands, y, height, scene) {
+  const { column, width, span, end } = scene;
+  const first = firstWhere(bands, (band) => band.to === null || band.to >= span.from);
+  let last = column - 10; // where the last band ended that was drawn: of several in one pixel one is enough
+  for (let n = first; n < bands.length && bands[n].from <= span.to; n += 1) {
+    const band = bands[n];
+    const from = Math.max(column - 4, placeOf(band.from, scene));
+    const to = Math.min(width + 4, placeOf(band.to ?? Math.max(end, band.from), scene));
+    if (to < last + 0.7) continue;
+    last = Math.max(to, from + 1);
+    if (band.mark) {
+      const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
+      drawMark(surface, band, from, next, y, height);
+    } else drawBand(surface, band, from, to, y, height);
+  }
+}
+
+function drawBand(surface, band, from, to, y, height) {
+  const wide = to - from;
+  surface.fill(from, y + 1.5, Math.max(1, wide - (wide > 3 ? 0.5 : 0)), height - 3, band.tone, wide < 4 ? 0.75 : 0.26);
+  if (wide >= 4) surface.fill(from, y + 1.5, 2, height - 3, band.tone);
+  if (wide < ROOM) return;
+  const text = cut(bandText(band), wide - 8, { mono: true });
+  if (text) surface.text(text, from + 5, y + height / 2, "text", { mono: true });
+}
+
+function drawMark(surface, band, x, next, y, height) {
+  const middle = y + height / 2;
+  if (band.tick) surface.fill(x - 1, y + 1.5, 2, height - 3, band.tone);
+  else surface.polygon([x, middle - 4, x + 4, middle, x, middle + 4, x - 4, middle], band.tone === "text" ? "quiet" : band.tone);
+  if (next - x < ROOM + 6) return;
+  const text = cut(bandText(band), next - x - 14, { mono: true });
+  if (text) surface.text(text, x + 7, middle, "text", { mono: true });
+}
+
+function drawPlotRow(surface, plot, y, height, scene) {
+  const { column, width, span } = scene;
+  const room = column - SCALE - 8;
+  surface.text(cut(`${plot.title} [${plot.unit}]`, room), 8, y + 10, "text", { bold: true });
+  plot.series.slice(0, Math.floor((height - 18) / 13)).forEach(({ name }, n) => {
+    const at = y + 25 + 13 * n;
+    surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
+    surface.text(cut(shortName(name, plot), room - 12, { size: 10 }), 20, at, "quiet", { size: 10 });
+  });
+  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span });
+}
+
+/** The name of a curve without what the plot's title says already. */
+function shortName(name, { title, series }) {
+  const rest = name.replace(` ${title}`, "").trim();
+  if (series.length < 2 || widthOf(rest) === 0) return rest || name;
+  const start = rest.slice(0, rest.indexOf(" ") + 1);
+  return start && series.every((one) => one.name.startsWith(start)) ? rest.slice(start.length) : rest;
+}

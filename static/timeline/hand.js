@@ -1,0 +1,87 @@
+// What the pointer, the wheel and the keys do on the timeline.
+
+import { order } from "../server.js";
+import { running, session } from "../store.js";
+import { timeOf } from "./draw.js";
+import { AXIS, column } from "./rows.js";
+import { furthest, present, seek } from "./seek.js";
+import { pan, span, zoom } from "./view.js";
+
+const GRIP = 4; // so near the border of the column of names is taken hold of [px]
+const COLUMN = [70, 360]; // how wide that may be [px]
+const NOTCH = 0.0015; // how much a pixel of the wheel zooms
+const LINE = 16; // a line of the wheel [px]
+const FEW = 5; // ticks of a step with Shift
+
+/** Returns what a place of the timeline is: "border", "axis", "names" or "lanes". */
+export function partAt(x, y) {
+  if (Math.abs(x - column.peek()) <= GRIP) return "border";
+  if (x < column.peek()) return "names";
+  return y < AXIS ? "axis" : "lanes";
+}
+
+/** The view with the sizes that places are reckoned by. */
+function sceneOf(stage) {
+  return { column: column.peek(), width: stage.clientWidth, span: span.peek() };
+}
+
+function secondsOf(pixels, stage) {
+  const { from, to } = span.peek();
+  return (pixels * (to - from)) / Math.max(1, stage.clientWidth - column.peek());
+}
+
+function placeIn(event, stage) {
+  const { left, top } = stage.getBoundingClientRect();
+  return [event.clientX - left, event.clientY - top];
+}
+
+/** Begins to scrub, to pan or to set the width of the names. */
+export function begin(event) {
+  if (event.button !== 0) return;
+  const stage = event.currentTarget;
+  let [x, y] = placeIn(event, stage);
+  const part = partAt(x, y);
+  if (part === "names") return;
+  const move = (moved) => {
+    const [to] = placeIn(moved, stage);
+    if (part === "border") column.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
+    else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), furthest.peek());
+    else seek(Math.max(0, timeOf(to, sceneOf(stage))));
+    x = to;
+  };
+  stage.focus({ preventScroll: true, focusVisible: false });
+  stage.setPointerCapture(event.pointerId);
+  document.body.dataset.dragging = "";
+  if (part === "lanes") move(event);
+  stage.onpointermove = move;
+  stage.onpointerup = stage.onpointercancel = () => {
+    stage.onpointermove = stage.onpointerup = stage.onpointercancel = null;
+    delete document.body.dataset.dragging;
+  };
+  event.preventDefault();
+}
+
+/** Zooms about the pointer; pans with Shift, or where the wheel goes sideways. Over the names the rows scroll as elsewhere. */
+export function turn(event) {
+  const stage = event.currentTarget;
+  const [x, y] = placeIn(event, stage);
+  if (x < column.peek() && y >= AXIS && !event.shiftKey) return;
+  event.preventDefault();
+  const unit = event.deltaMode === 1 ? LINE : 1;
+  const sideways = Math.abs(event.deltaX) > Math.abs(event.deltaY);
+  if (sideways || event.shiftKey) pan(secondsOf((sideways ? event.deltaX : event.deltaY) * unit, stage), present.peek(), furthest.peek());
+  else zoom(Math.exp(event.deltaY * unit * NOTCH), timeOf(Math.max(x, column.peek()), sceneOf(stage)), present.peek(), furthest.peek());
+}
+
+/** Goes to another time by keys, or scrolls. */
+export function press(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const tick = session.peek()?.period || 0.01;
+  const step = event.shiftKey ? FEW * tick : tick;
+  const to = { ArrowLeft: present.peek() - step, ArrowRight: present.peek() + step, Home: 0, End: furthest.peek() }[event.key];
+  if (to !== undefined) seek(Math.max(0, to));
+  else if (event.key === " ") order({ type: running.peek() ? "pause" : "run" });
+  else if (event.key === "ArrowDown" || event.key === "ArrowUp") event.currentTarget.parentElement.parentElement.scrollBy(0, event.key === "ArrowDown" ? 36 : -36);
+  else return;
+  event.preventDefault();
+}

@@ -1,0 +1,27 @@
+// The lanes of the run that is shown, fed with its events as they come.
+
+import { effect, signal } from "../vendor/preact.js";
+import { events } from "../store.js";
+import { Lanes } from "./lanes.js";
+
+export const lanes = new Lanes();
+/** Counts the changes of the lanes. */
+export const lanesVersion = signal(0);
+
+const taken = { list: null, first: 0, next: 0 };
+
+effect(() => {
+  const { list, first, cut } = events.value;
+  // Where the end of a run is cut off, it is simplest to begin anew: it happens only when a user sends it another way.
+  if (list !== taken.list || cut) {
+    lanes.clear();
+    Object.assign(taken, { list, first, next: first });
+  }
+  for (let n = taken.next - first; n < list.length; n += 1) lanes.take(list[n]);
+  taken.next = first + list.length;
+  if (first > taken.first) {
+    taken.first = first;
+    if (list.length && lanes.clocks.size === 1) lanes.forget(list[0][0] / 1e6);
+  }
+  lanesVersion.value = lanesVersion.peek() + 1;
+});

@@ -1,0 +1,77 @@
+// Which rows the timeline has, in which order, and how high they are.
+
+import { remembered } from "../remembered.js";
+import { contacts, names, plots } from "./curves.js";
+import { lanes } from "./record.js";
+
+export const AXIS = 20; // [px]
+export const LANE = 18;
+export const PLOT = 52;
+const GAP = 5; // between two groups
+
+/** The groups in their order. */
+export const GROUPS = [
+  { id: "marks", text: "Marks", title: "What was printed, what users changed, contacts, rewards" },
+  { id: "plan", text: "SGOMS", title: "Planning units, unit tasks, methods and operators" },
+  { id: "productions", text: "Productions", title: "From when a production is chosen to when it fires" },
+  { id: "curves", text: "Curves", title: "Joint angles, speed, clearance and other curves" },
+  { id: "buffers", text: "Buffers", title: "What each buffer holds" },
+  { id: "modules", text: "Modules", title: "When modules and muscles are busy, and errors" },
+];
+
+/** Which groups are hidden. */
+export const hidden = remembered("timeline hidden", []);
+/** How wide the column of names is [px]. */
+export const column = remembered("timeline names", 150);
+
+/** Which groups there is anything of. */
+export function groupsThere() {
+  const there = new Set([...lanes.lanes.values()].map(({ group }) => group));
+  if (names.value.length > 0) there.add("curves");
+  return GROUPS.filter(({ id }) => there.has(id));
+}
+
+/** What the labels of all lanes begin with, such as the only agent's name; it is left out. */
+function commonStart(list) {
+  const paths = list.filter(({ group }) => group === "buffers" || group === "modules" || group === "plan").map(({ label }) => label);
+  const start = paths[0]?.includes(".") ? paths[0].slice(0, paths[0].indexOf(".") + 1) : "";
+  return start && paths.every((path) => path.startsWith(start)) ? start : "";
+}
+
+function lanesOf(group, all) {
+  const list = all.filter((lane) => lane.group === group);
+  if (group === "marks" && names.value.some((curve) => curve.group === "contact")) list.push({ key: "contact", group, label: "contact", bands: contacts.value, at: bandAt });
+  return list;
+}
+
+function bandAt(time, near) {
+  return this.bands.find(({ from, to }) => from <= time + near && to >= time - near) ?? null;
+}
+
+/**
+ * Returns {rows, height}: each row has its place y and height, and `lane` with its `label`, or `plot`.
+ *
+ * @param filter Only lanes and plots with this in their name are shown.
+ */
+export function layout(filter) {
+  const all = [...lanes.lanes.values()];
+  const start = commonStart(all);
+  const sought = filter.trim().toLowerCase();
+  const rows = [];
+  let y = AXIS;
+  for (const { id } of GROUPS) {
+    if (hidden.value.includes(id)) continue;
+    const found = id === "curves" ? plots.value.map((plot) => ({ plot, label: plot.title, height: PLOT })) : lanesOf(id, all).map((lane) => ({ lane, label: short(lane.label, start), height: LANE }));
+    const shown = found.filter(({ label, plot }) => [label, ...(plot?.series ?? []).map(({ name }) => name)].some((text) => text.toLowerCase().includes(sought)));
+    shown.forEach((row, n) => {
+      if (n === 0 && rows.length > 0) y += GAP;
+      rows.push({ ...row, y, begins: n === 0 && rows.length > 0 });
+      y += row.height;
+    });
+  }
+  return { rows, height: y + GAP };
+}
+
+function short(label, start) {
+  return label.startsWith(start) ? label.slice(start.length) : label;
+}

@@ -1,0 +1,146 @@
+// The part of the timeline that is drawn: the canvas, the playhead over it, and what the pointer is at.
+
+import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { CanvasSurface } from "../parts/surface.js";
+import { timeText } from "../parts/ticks.js";
+import { events, running, state } from "../store.js";
+import { dark } from "../theme.js";
+import { curvesVersion, names, plots } from "./curves.js";
+import { drawTimeline, placeOf, timeOf } from "./draw.js";
+import { begin, partAt, press, turn } from "./hand.js";
+import { Painter } from "./painter.js";
+import { lanes, lanesVersion } from "./record.js";
+import { AXIS, column, hidden, layout } from "./rows.js";
+import { furthest, present } from "./seek.js";
+import { found, Tip } from "./tip.js";
+import { settle, span } from "./view.js";
+
+const size = signal({ width: 0, height: 0 });
+const scroll = signal(0);
+/** How high all rows are [px]. */
+const height = signal(0);
+/** What lanes and plots are called that are shown. */
+export const filter = signal("");
+
+/** Returns all that a drawing needs to know; `whole` is for a picture with all rows. */
+export function scene(whole = false) {
+  const rows = layout(filter.peek());
+  const { width, height: seen } = size.peek();
+  return {
+    width: whole ? Math.max(800, width) : width,
+    height: whole ? rows.height : seen,
+    column: column.peek(),
+    scroll: whole ? 0 : scroll.peek(),
+    span: span.peek(),
+    layout: rows,
+    end: furthest.peek(),
+    begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
+  };
+}
+
+function paint(canvas) {
+  const now = scene();
+  height.value = now.layout.height;
+  const scale = devicePixelRatio || 1;
+  const [width, high] = [Math.round(now.width * scale), Math.round(now.height * scale)];
+  if (canvas.width !== width || canvas.height !== high) Object.assign(canvas, { width, height: high });
+  const context = canvas.getContext("2d");
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  context.clearRect(0, 0, now.width, now.height);
+  if (now.width > now.column) drawTimeline(new CanvasSurface(context), now);
+}
+
+/** Sets the playhead and the veil over what is ahead of it. */
+function place(stage) {
+  const view = { column: column.value, width: size.value.width, span: span.value };
+  const inside = (x) => Math.min(Math.max(x, view.column), view.width);
+  const [now, far] = [placeOf(present.value, view), placeOf(furthest.value, view)];
+  const [veil, end, head] = [".timeline-veil", ".timeline-end", ".timeline-head"].map((part) => stage.querySelector(part));
+  head.hidden = now < view.column - 1 || now > view.width + 1;
+  head.style.transform = `translateX(${now}px)`;
+  veil.style.left = `${inside(now)}px`;
+  veil.style.width = `${inside(far) - inside(now)}px`;
+  end.hidden = far < view.column || far > view.width || furthest.value === 0;
+  end.style.transform = `translateX(${far}px)`;
+}
+
+/** Draws what has changed, as long as the stage is there. */
+function attend(stage) {
+  const painter = new Painter(() => paint(stage.querySelector("canvas")));
+  const watch = new ResizeObserver(() => {
+    size.value = { width: stage.clientWidth, height: stage.parentElement.parentElement.clientHeight };
+  });
+  watch.observe(stage.parentElement.parentElement);
+  stage.addEventListener("wheel", turn, { passive: false });
+  const ends = [
+    effect(() => settle(present.value, furthest.value)),
+    effect(() => place(stage)),
+    effect(() => {
+      for (const one of [dark, span, size, scroll, filter, hidden, column, plots, names]) one.value;
+      painter.ask();
+    }),
+    effect(() => {
+      for (const one of [lanesVersion, curvesVersion, furthest]) one.value;
+      painter.ask(running.value);
+    }),
+  ];
+  return () => {
+    for (const end of ends) end();
+    watch.disconnect();
+    painter.stop();
+    stage.removeEventListener("wheel", turn);
+  };
+}
+
+/** Returns what is at a place of the stage. */
+function lookUp(event, stage) {
+  const { left, top } = stage.getBoundingClientRect();
+  const [x, y] = [event.clientX - left, event.clientY - top];
+  stage.dataset.part = partAt(x, y);
+  const view = { column: column.peek(), width: size.peek().width, span: span.peek() };
+  const row = y < AXIS ? null : layout(filter.peek()).rows.find((one) => y + scroll.peek() >= one.y && y + scroll.peek() < one.y + one.height);
+  if (!row || (x < view.column && row.plot)) return null;
+  if (x < view.column) return { row, time: 0, band: null, named: true };
+  return found(row, timeOf(x, view), (view.span.to - view.span.from) / Math.max(1, view.width - view.column));
+}
+
+export function Stage() {
+  const stage = useRef(null);
+  const at = useSignal(null);
+  useEffect(() => attend(stage.current), []);
+
+  function hover(event) {
+    const there = event.buttons ? null : lookUp(event, stage.current);
+    at.value = there && { ...there, x: event.clientX, y: event.clientY };
+  }
+
+  const now = state.value ? present.value : 0;
+  return html`<div class="timeline-rows" onScroll=${(event) => (scroll.value = event.currentTarget.scrollTop)}>
+    <div class="timeline-all" style=${{ height: `${Math.max(height.value, size.value.height)}px` }}>
+      <div
+        id="timeline"
+        ref=${stage}
+        class="timeline-stage"
+        style=${{ height: `${size.value.height}px` }}
+        role="slider"
+        tabindex="0"
+        aria-label="Time of the run"
+        aria-orientation="horizontal"
+        aria-valuemin="0"
+        aria-valuemax=${furthest.value}
+        aria-valuenow=${now}
+        aria-valuetext="${timeText(now)} of ${timeText(furthest.value)}"
+        onPointerDown=${begin}
+        onPointerMove=${hover}
+        onPointerLeave=${() => (at.value = null)}
+        onKeyDown=${press}
+      >
+        <canvas aria-hidden="true"></canvas>
+        <div class="timeline-veil"></div>
+        <div class="timeline-end" title="As far as the run has come"></div>
+        <div class="timeline-head"></div>
+      </div>
+    </div>
+    <${Tip} at=${at.value} />
+  </div>`;
+}

@@ -1,0 +1,56 @@
+// What the pointer is at, told beside it.
+
+import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { seriesColour, valueAt } from "../parts/curve.js";
+import { numberText, timeText } from "../parts/ticks.js";
+import { bandText } from "./lanes.js";
+
+const NEAR = 4; // so far off a mark is still pointed at [px]
+const AWAY = 14; // from the pointer [px]
+const MOST = 1200; // characters of a text
+
+/** Returns what there is at a place: {row, time, band}. */
+export function found(row, time, secondsPerPixel) {
+  return row ? { row, time, band: row.lane?.at(time, NEAR * secondsPerPixel) ?? null } : null;
+}
+
+function Times({ band }) {
+  if (band.mark) return html`<p class="number quiet">at ${timeText(band.from, 0.001)}</p>`;
+  const to = band.to === null ? "now" : timeText(band.to, 0.001);
+  const length = band.to === null ? "" : `, ${((band.to - band.from) * 1000).toFixed(0)} ms`;
+  return html`<p class="number quiet">${timeText(band.from, 0.001)} to ${to}${length}${band.end ? `, ${band.end}` : ""}</p>`;
+}
+
+function OfBand({ row, band }) {
+  return html`<p><b>${row.lane.label}</b></p>
+    ${bandText(band) ? html`<p class="mono">${bandText(band).slice(0, MOST)}</p>` : null}
+    ${band.more ? html`<p class="quiet">${String(band.more).slice(0, MOST)}</p>` : null}
+    <${Times} band=${band} />`;
+}
+
+function OfRow({ at }) {
+  if (at.row.plot) return html`<${OfPlot} plot=${at.row.plot} time=${at.time} />`;
+  return at.named ? html`<p><b>${at.row.lane.label}</b></p>` : html`<${OfBand} row=${at.row} band=${at.band} />`;
+}
+
+function OfPlot({ plot, time }) {
+  return html`<p><b>${plot.title}</b> <span class="number quiet">at ${timeText(time)}</span></p>
+    ${plot.series.map(({ name, unit, values }, n) => {
+      const value = numberText(valueAt(plot.times, values, time));
+      return html`<p key=${name} class="number"><span class="swatch" style=${{ background: `var(--${seriesColour(n)})` }}></span>${name} ${value} ${unit}</p>`;
+    })}`;
+}
+
+/** @param at {x, y} of the pointer in the window [px], and what is there (see `found`), or the `named` row; null for nothing. */
+export function Tip({ at }) {
+  const box = useRef(null);
+  const shown = at && (at.row.plot || at.band || at.named);
+  useLayoutEffect(() => {
+    if (!shown) return;
+    const { offsetWidth: width, offsetHeight: height, style } = box.current;
+    style.left = `${at.x + AWAY + width > innerWidth ? Math.max(0, at.x - AWAY - width) : at.x + AWAY}px`;
+    style.top = `${Math.max(0, at.y - AWAY - height)}px`;
+  });
+  if (!shown) return null;
+  return html`<div ref=${box} class="timeline-tip" role="tooltip"><${OfRow} at=${at} /></div>`;
+}

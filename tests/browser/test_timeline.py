@@ -1,0 +1,244 @@
+"""The timeline in a real browser: its lanes and plots, going back and forth on it, and the pictures that it keeps."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from playwright.sync_api import FloatRect, Page, expect
+
+from tests.browser.looking import PATIENCE, shows
+from tests.server.serving import Served
+
+NAMES = 150
+"""How wide the column of names is at first [px]."""
+LANE = 18
+"""How high a row is [px]."""
+
+
+def box(page: Page) -> FloatRect:
+    found = page.locator("#timeline").bounding_box()
+    assert found is not None
+    return found
+
+
+def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
+    """Returns a place of the timeline: how far from the left edge of its axis to the right one."""
+    area = box(page)
+    return area["x"] + NAMES + share * (area["width"] - NAMES), area["y"] + y
+
+
+def told(page: Page, share: float) -> list[str]:
+    """Returns what is told of each row at a place of the axis."""
+    texts: list[str] = []
+    for y in range(30, int(box(page)["height"]), LANE // 2):
+        page.mouse.move(*at(page, share, y))
+        page.wait_for_timeout(60)
+        tip = page.get_by_role("tooltip")
+        if tip.count() and (text := tip.inner_text()) not in texts:
+            texts.append(text)
+    return texts
+
+
+def slider(page: Page, name: str) -> float:
+    value = page.locator("#timeline").get_attribute(f"aria-{name}")
+    assert value is not None
+    return float(value)
+
+
+def when(page: Page, time: str) -> None:
+    """Waits until the run is at a time, and the playhead, too."""
+    shows(page, "#time", re.escape(f"t = {time} s"))
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuetext", re.compile(re.escape(f"{time} s of ")), timeout=PATIENCE)
+
+
+@pytest.fixture
+def ended(pages: Callable[..., Page]) -> Page:
+    """A page that shows a run of models/doorway.py that is over."""
+    page = pages(height=1000)
+    page.evaluate("localStorage.setItem('actr3d.timeline height', '620')")
+    page.reload()
+    shows(page, "#time", "t =")
+    page.evaluate(
+        """async () => {
+          const { say } = await import("/static/server.js");
+          const { session, state } = await import("/static/store.js");
+          const before = session.value.run;
+          await say({ type: "restart", seed: 1, run: true });
+          while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
+        }"""
+    )
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"), timeout=PATIENCE)
+    return page
+
+
+def test_lanes_and_plots_tell_what_was_when(ended: Page) -> None:
+    page = ended
+    everything = "\n---\n".join(told(page, 5.0 / 8))
+    assert re.search(r"^walker\n\w+", everything, re.MULTILINE)  # a production
+    assert re.search(r"walker\.goal\n[\w -]+", everything)
+    assert re.search(r"speed at [45]\.\d\d s\s+walker speed [01]\.\d+ m/s", everything)
+    assert re.search(r"joints at [45]\.\d\d s\s+walker\w*torso\w* -?[\d.]+ deg", everything)
+    # A moment later a gap was seen, and printed.
+    page.get_by_label("Filter rows").fill("printed")
+    assert any("a gap of 0.50 m" in text for text in told(page, 4.7 / 8))
+
+
+def test_going_back_and_forth(ended: Page) -> None:
+    page = ended
+    end = slider(page, "valuemax")
+    again, newest = page.get_by_role("button", name="Continue from here"), page.get_by_role("button", name="Newest moment")
+    expect(again).to_be_disabled()
+    page.mouse.move(*at(page, 0.8))
+    page.mouse.down()
+    for share in (0.7, 0.5, 0.3, 0.25):
+        page.mouse.move(*at(page, share))
+        assert abs(slider(page, "valuenow") - 8 * share) < 0.02  # the playhead is there at once
+    page.mouse.up()
+    when(page, "2.00")
+    assert slider(page, "valuemax") == end
+    page.keyboard.press("ArrowRight")
+    when(page, "2.01")
+    page.keyboard.press("Shift+ArrowLeft")
+    when(page, "1.96")
+    page.keyboard.press("Home")
+    when(page, "0.00")
+    newest.click()
+    when(page, f"{end:.2f}")
+    page.locator("#timeline").focus()
+    page.keyboard.press("ArrowLeft")
+    when(page, f"{end - 0.01:.2f}")
+    page.mouse.click(*at(page, 0.5))
+    when(page, "4.00")
+    again.click()
+    shows(page, "#status", "ended")
+    assert slider(page, "valuemax") == slider(page, "valuenow") == end  # it went as it had gone
+    # Where something is changed in the past, another way begins: what was known after it is gone.
+    page.mouse.click(*at(page, 0.25))
+    when(page, "2.00")
+    page.locator("#aperture").fill("90")
+    shows(page, "#width", "90 cm")
+    again.click()
+    shows(page, "#status", "ended")
+    page.get_by_label("Filter rows").fill("commands")
+    assert any(re.search(r"commands\naperture 0\.9", text) for text in told(page, 0.25))
+    page.get_by_label("Filter rows").fill("joints")
+    assert any(re.search(r"torso\w* -?[01]\.\d+ deg", text) for text in told(page, 5.8 / 8))  # it is wide enough not to turn
+
+
+def test_zoom_and_choice_of_rows(ended: Page) -> None:
+    page = ended
+    fit = page.get_by_role("button", name="Fit")
+    expect(fit).to_have_attribute("aria-pressed", "true")
+    page.mouse.move(*at(page, 0.5))
+    page.mouse.wheel(0, -400)
+    expect(fit).to_have_attribute("aria-pressed", "false")
+    page.mouse.click(*at(page, 0.5))
+    when(page, "4.00")  # what the pointer was at has stayed where it was
+    page.mouse.click(*at(page, 0.75))
+    near = slider(page, "valuenow")
+    assert 4.5 < near < 5.8
+    page.mouse.move(*at(page, 0.5, 8))
+    page.mouse.down()
+    page.mouse.move(*at(page, 0.25, 8))
+    page.mouse.up()
+    page.mouse.click(*at(page, 0.5))
+    assert abs(slider(page, "valuenow") - near) < 0.05  # the axis was drawn to the left by a quarter
+    fit.click()
+    marks, curves = page.get_by_role("button", name="Marks"), page.get_by_role("button", name="Curves", exact=True)
+    assert any("printed" in text for text in told(page, 6.8 / 8))
+    marks.click()
+    curves.click()
+    assert not any("printed" in text or "speed at" in text for text in told(page, 6.8 / 8))
+    curves.click()
+    page.get_by_role("button", name="Curves …").click()
+    page.get_by_label("walker contact force").check()
+    page.get_by_role("button", name="Close").click()
+    page.reload()
+    shows(page, "#status", "paused|ended")
+    expect(page.get_by_role("button", name="Marks")).to_have_attribute("aria-pressed", "false")
+    page.get_by_label("Filter rows").fill("contact")
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"), timeout=PATIENCE)
+    page.wait_for_timeout(500)
+    assert any("contact force at" in text for text in told(page, 0.5))
+
+
+def test_pictures(ended: Page, tmp_path: Path) -> None:
+    page = ended
+
+    def kept(kind: str, what: str | None = None) -> Path:
+        page.get_by_role("button", name="Keep a picture").click()
+        if what is not None:
+            page.get_by_label("Of what").select_option(what)
+        with page.expect_download() as download:
+            page.get_by_role("button", name=kind).click()
+        path = tmp_path / download.value.suggested_filename
+        download.value.save_as(path)
+        return path
+
+    svg = kept("SVG")
+    assert svg.name.startswith("doorway_seed_")
+    text = svg.read_text(encoding="utf-8")
+    words = [node.text for node in ElementTree.fromstring(text).iter("{http://www.w3.org/2000/svg}text")]
+    assert any("doorway.py" in str(word) and "seed" in str(word) for word in words)
+    assert {"0 s", "printed", "eye", "goal", "speed [m/s]"} <= set(words)
+    assert not re.search(r"href|url\((?!#)|var\(|light-dark", text)
+    plot = kept("SVG", "speed [m/s]")
+    assert {"walker speed", "0 s"} <= {node.text for node in ElementTree.fromstring(plot.read_text(encoding="utf-8")).iter()}
+    png = kept("PNG").read_bytes()
+    assert png.startswith(b"\x89PNG\r\n") and len(png) > 20_000
+    assert int.from_bytes(png[16:20]) > 2000  # sharp enough to print [pixels across]
+
+
+def test_what_a_model_says_is_text(pages: Callable[..., Page], workbench: Served) -> None:
+    """Also of a program whose models run one after another, whose times follow each other on the axis."""
+    (workbench.folder / "twice.py").write_text(
+        "from actr3d.actr import ACTR, Buffer, Model\n\n\n"
+        "class Mind(ACTR):\n    goal = Buffer()\n    goal.set('<b>bold</b>')\n\n"
+        "    def speak(goal='<b>bold</b>'):\n        print('<img src=x onerror=alert(1)>')\n        goal.set('done')\n\n\n"
+        "class Place(Model):\n    pass\n\n\n"
+        "for _ in range(2):\n    place = Place()\n    place.mind = Mind()\n    place.run(0.4)\n",
+        encoding="utf-8",
+    )
+    page = pages("twice.py")
+    page.on("dialog", lambda dialog: pytest.fail("it was run as HTML"))
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", "0.8", timeout=PATIENCE)
+    page.get_by_label("Filter rows").fill("printed")
+    first, second = told(page, 0.05), told(page, 0.45)
+    assert any("<img src=x onerror=alert(1)>\nat 0.050 s" in text for text in first), first
+    assert any("<img src=x onerror=alert(1)>\nat 0.450 s" in text for text in second), second
+    page.get_by_label("Filter rows").fill("goal")
+    assert any("<b>bold</b>" in text for text in told(page, 0.02))
+    page.locator("#timeline").focus()
+    page.keyboard.press("Home")
+    when(page, "0.00")
+
+
+def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None:
+    """Whatever has happened before, more events cost what they are, and what is drawn is no more than the page is wide."""
+    page = pages("counting.py")
+    counts: dict[str, Any] = page.evaluate(
+        """async () => {
+          const { Lanes } = await import("/static/timeline/lanes.js");
+          const { drawTimeline } = await import("/static/timeline/draw.js");
+          const lanes = new Lanes();
+          for (let n = 0; n < 100000; n += 1) {
+            lanes.take([n * 1000, "mind.goal", "buffer", { chunk: n % 2 ? { 0: `chunk ${n}` } : null }]);
+          }
+          const lane = lanes.lanes.get("buffer mind.goal");
+          let calls = 0;
+          const surface = { fill: () => (calls += 1), line() {}, polygon() {}, text: () => (calls += 1), within: (x, y, w, h, draw) => draw() };
+          const layout = { rows: [{ lane, label: "goal", y: 20, height: 18 }] };
+          drawTimeline(surface, { width: 900, height: 60, column: 100, scroll: 0, span: { from: 0, to: 100 }, layout, end: 100, begin: 0 });
+          return { bands: lane.bands.length, calls, at: lane.at(50.0015, 0)?.chunk[0], open: lane.open?.from };
+        }"""
+    )
+    assert counts == {"bands": 50_000, "calls": counts["calls"], "at": "chunk 50001", "open": 99.999}
+    assert counts["calls"] < 3 * 900
