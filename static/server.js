@@ -41,11 +41,12 @@ export function show(session) {
   else connect();
 }
 
-/** Shows a model: the session with it that there is, or a new one. */
-export async function showModel(model) {
+/** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
+export async function showModel(model, { run = false } = {}) {
   const { sessions } = await call("GET", "/api/sessions");
   const there = sessions.filter((session) => session.model === model).at(-1);
-  show((there ?? (await call("POST", "/api/sessions", { model }))).id);
+  if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
+  show((there ?? (await call("POST", "/api/sessions", { model, run }))).id);
 }
 
 function attach() {

@@ -12,7 +12,7 @@ export const state = signal(null);
 /** The events of the run in order, each [time in us, source, kind, data]; also those after the present moment of a run that went
  * back. `first` is the number of the first, `missing` how many were left out before it. The list grows in place. */
 export const events = signal({ list: [], first: 0, missing: 0 });
-/** What the user is told: {number, level, text, file, line, detail}. */
+/** What the user is told: {number, level, text, file, line, detail, attempt, version}. */
 export const notices = signal([]);
 /** Whether the websocket is open; null before it was for the first time. */
 export const connected = signal(null);

@@ -13,8 +13,8 @@ import { remembered } from "./remembered.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
-const side = remembered("side width", 480);
-const below = remembered("timeline height", 290);
+const side = remembered("side width", 560);
+const below = remembered("timeline height", 270);
 
 export function Workbench() {
   const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };

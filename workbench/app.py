@@ -21,23 +21,26 @@ from workbench.recordings import Recordings
 from workbench.sessions import Sessions
 from workbench.shipped import static
 from workbench.viser_bridge import Bridge
+from workbench.worker.spawn import MEMORY, Zygote
 from workbench.worker.workers import Workers
 
-MEMORY = 4_000
-"""How much memory a model may take beyond what a worker has at its start [MB], unless told otherwise."""
 
-
-def make_app(models: Path, gate: Gate, *, memory: int = MEMORY) -> FastAPI:
-    """Makes the application.
+def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, zygote: Zygote | None = None) -> FastAPI:
+    """Makes the application. Its `state.leave` ends all that runs.
 
     Args:
         models: The models folder.
         gate: Whom it lets in.
         memory: How much memory a model may take [MB]; 0 for no limit.
+        zygote: The process from which workers are forked, where it has been started already.
     """
     folder = ModelFolder(models)
-    workers = Workers(memory)
+    workers = Workers(memory, zygote)
     sessions = Sessions(folder, Recordings(folder.root), workers)
+
+    async def leave() -> None:
+        await sessions.close_all()
+        await workers.close()
 
     @asynccontextmanager
     async def life(app: FastAPI) -> AsyncGenerator[None]:
@@ -49,10 +52,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY) -> FastAPI:
         app.state.later = later
         workers.begin()
         yield
-        await sessions.close_all()
-        await workers.close()
+        await leave()
 
     app = FastAPI(title="ACT-R 3D workbench", docs_url=None, redoc_url=None, openapi_url="/api/openapi.json", lifespan=life)
+    app.state.leave = leave
     app.state.sessions = sessions
     app.state.bridge = Bridge()
     app.state.pages = 0

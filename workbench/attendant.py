@@ -9,11 +9,14 @@ from typing import Protocol
 
 import msgspec
 
+from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import FromWorker, Notice, Over, Start, Where, notice
-from workbench.worker.workers import Worker
+from workbench.worker.workers import LOST, PRINTED, Worker
 
 SILENT = 1.0
 """A worker that is busy and says nothing for so long [s] is asked where it is."""
+LAST_WORDS = 1.0
+"""So long what a worker has said is still read after its end [s]."""
 MOST_PRINTED = 200
 """So many lines that a worker prints past its model's `print` are told of; the rest is left out."""
 
@@ -60,16 +63,28 @@ class Attendant:
         printing = asyncio.create_task(self._print())
         watching = asyncio.create_task(self._watch())
         try:
-            over = await self._listen()
+            over = await self._hear_out()
             if not over:
                 await worker.stop()
             status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
+            worker.kill()  # and what it has started
             await asyncio.wait([printing], timeout=1)
             self._told.take_end(worker, "" if over else _why(status))
         finally:
             printing.cancel()
             watching.cancel()
             worker.release()
+
+    async def _hear_out(self) -> bool:
+        """Takes what the worker says, until it is gone, even where others hold its wire; tells whether it ends in good order."""
+        listening = asyncio.create_task(self._listen())
+        try:
+            await asyncio.wait([listening, self._worker.exit], return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait([listening], timeout=LAST_WORDS)
+        finally:
+            listening.cancel()
+        await asyncio.wait([listening])
+        return not listening.cancelled() and listening.result()
 
     async def _listen(self) -> bool:
         """Takes what the worker says; tells whether it ends in good order."""
@@ -85,20 +100,22 @@ class Attendant:
 
     async def _print(self) -> None:
         """Tells what the worker prints past its model's `print`."""
-        count = 0
-        while True:
+        output, count = self._worker.output, 0
+        while count < MOST_PRINTED:
             try:
-                line = await self._worker.output.readline()
+                line = await output.readline()
             except ValueError:  # a line that is longer than the stream takes
                 continue
             if not line:
                 return
             count += 1
             text = line.decode(errors="replace").rstrip()
-            if count <= MOST_PRINTED and text:
-                self._told.tell(Notice(level="info", text=text))
-            elif count == MOST_PRINTED + 1:
-                self._told.tell(Notice(level="warning", text="the model's process prints much more; that is left out"))
+            if text:
+                self._told.tell(notice("info", text))
+        if await output.read(PRINTED):
+            self._told.tell(notice("warning", "the model's process prints much more; that is left out"))
+            while await output.read(PRINTED):
+                pass
 
     async def _watch(self) -> None:
         """Asks the worker where it is when it is busy and says nothing."""
@@ -113,6 +130,10 @@ class Attendant:
 
 def _why(status: int) -> str:
     """Says how a process ended that nobody has asked to end."""
+    if status == LOST:
+        return "the process from which all models' processes come was ended, and all runs with it; begin again"
+    if status == TOO_MUCH_MEMORY:
+        return "the model's process was ended: it used more memory than it may"
     if status >= 0:
         return f"the model ended its process, with exit code {status}"
     name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)

@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import argparse
 import html
-import logging
 import socket
 import sys
 import tempfile
 import threading
 import time
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
-import uvicorn
-
-from workbench.app import MEMORY, make_app
 from workbench.auth import LOOPBACK, Gate, Token
 from workbench.shipped import models_folder
+from workbench.worker.spawn import MEMORY, Zygote, spawn
 
 READ_TIME = 20.0
 """So long a browser may take to start and to read the file that leads it here [s]."""
-LARGEST_MESSAGE = 60_000_000
-"""No message on a websocket is longer [bytes]; pictures that viser's page sends are the largest."""
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -53,19 +49,6 @@ def _listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-class _Server(uvicorn.Server):
-    """Tells when it has started."""
-
-    def __init__(self, config: uvicorn.Config, started: threading.Event) -> None:
-        super().__init__(config)
-        self._begun = started
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Starts, and tells so."""
-        await super().startup(sockets)
-        self._begun.set()
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command until it is interrupted; returns its exit code."""
     options = _parser().parse_args(arguments)
@@ -84,34 +67,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"warning: others can reach {host}; whoever has the address below can run programs as you", file=sys.stderr)
     names: list[str] = [*options.name, host]
     gate = Gate(token=Token(), port=port, hosts=LOOPBACK | {name.lower() for name in names})
-    app = make_app(folder, gate, memory=options.memory)
-    logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
-    config = uvicorn.Config(
-        app,
-        log_config=None,
-        log_level="warning",
-        access_log=False,  # it would write the token down
-        server_header=False,
-        ws="websockets-sansio",
-        ws_max_size=LARGEST_MESSAGE,
-        ws_per_message_deflate=False,
-        limit_concurrency=500,
-        timeout_graceful_shutdown=2,
-    )
-    started = threading.Event()
-    address = f"http://{host}:{port}/?token={gate.token.reveal()}"
-    threading.Thread(target=_tell, args=(started, folder, address, not options.no_browser), daemon=True).start()
-    _Server(config, started).run(sockets=[listening])
+    zygote = spawn()  # it loads while the server does
+    try:
+        started = partial(_tell, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
+        _serve(folder, gate, zygote, listening, started, options.memory)
+    except KeyboardInterrupt:
+        return 130
     return 0
 
 
-def _tell(started: threading.Event, folder: Path, address: str, browse: bool) -> None:
-    """Tells the address once the server has started, as the last line, and opens it."""
-    started.wait()
+def _serve(folder: Path, gate: Gate, zygote: Zygote, listening: socket.socket, started: Callable[[], None], memory: int) -> None:
+    from workbench.app import make_app
+    from workbench.serving import serve
+
+    serve(make_app(folder, gate, memory=memory, zygote=zygote), listening, started)
+
+
+def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:
+    """Tells the address, as the last line, and opens it."""
+    address = f"{url}/?token={token.reveal()}"
     print(f"models: {folder}")
     print(address, flush=True)
     if browse:
-        _browse(address)
+        threading.Thread(target=_browse, args=(address,), daemon=True).start()
 
 
 def _browse(address: str) -> None:

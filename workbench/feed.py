@@ -12,7 +12,11 @@ import msgspec
 
 MOST_EVENTS = 50_000
 """So many events of a run the server has at hand; older ones are in the worker's trace, and in the recording."""
+MOST_KEPT = 50_000_000
+"""And so many bytes of them."""
 MOST_NOTICES = 500
+MOST_REPLIES = 1_000
+"""So many replies may wait for a browser; one that goes on asking and reads nothing is sent away."""
 AT_ONCE = 2_000
 """So many events go in one message."""
 
@@ -28,6 +32,8 @@ class EventLog:
     def __init__(self) -> None:
         self.first = 0
         self._events: deque[bytes] = deque()
+        self._size = 0
+        """How many bytes they have."""
 
     @property
     def next(self) -> int:
@@ -38,16 +44,19 @@ class EventLog:
         """Takes in events; those that are known already are left out, and where some are missing it begins anew after the gap."""
         if first > self.next:
             self._events.clear()
+            self._size = 0
             self.first = first
-        self._events.extend(events[self.next - first :])
-        while len(self._events) > MOST_EVENTS:
-            self._events.popleft()
+        new = events[self.next - first :]
+        self._events.extend(new)
+        self._size += sum(map(len, new))
+        while len(self._events) > MOST_EVENTS or self._size > MOST_KEPT:
+            self._size -= len(self._events.popleft())
             self.first += 1
 
     def cut(self, number: int) -> None:
         """Drops the events from a number on."""
         while self._events and self.next > number:
-            self._events.pop()
+            self._size -= len(self._events.pop())
         if not self._events:
             self.first = number
 
@@ -146,6 +155,11 @@ class Feed:
         """Takes what came of something that this browser has said."""
         self._replies.append(reply)
         self.wake()
+
+    @property
+    def choked(self) -> bool:
+        """Whether the browser goes on asking and does not read what it is told."""
+        return len(self._replies) > MOST_REPLIES
 
     async def next(self) -> bytes:
         """Returns the next message, as soon as there is anything to tell."""

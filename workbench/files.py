@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import io
 import os
 import secrets
 import time
+import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -133,10 +135,7 @@ class ModelFolder:
             FileError: If it cannot be written.
         """
         where = self.locate(path)
-        try:
-            data = text.encode("utf-8")
-        except UnicodeEncodeError:
-            raise FileError("the text has half characters, which no file can hold") from None
+        data = _encoded(text, self._line_end(where))
         if len(data) > LARGEST:
             raise FileError(f"a model file has no more than {LARGEST:,} bytes")
         now = self.version(where) if where.is_file() else None
@@ -151,6 +150,12 @@ class ModelFolder:
         except OSError as error:
             raise FileError(f"cannot write '{path}': {error.strerror}") from None
         return ModelFile(path=path, text=text, version=self.version(where))
+
+    def _line_end(self, where: Path) -> str:
+        """Returns how a file's lines end, so that a file from elsewhere keeps its way."""
+        with contextlib.suppress(OSError), where.open("rb") as file:
+            return "\r\n" if file.readline(LARGEST).endswith(b"\r\n") else "\n"
+        return "\n"
 
     def _write(self, where: Path, data: bytes) -> None:
         """Writes a file as a whole, or not at all."""
@@ -216,3 +221,20 @@ class ModelFolder:
         if not where.is_file():
             raise NoSuchFileError(f"there is no '{path}'")
         return where
+
+
+def _encoded(text: str, line_end: str) -> bytes:
+    """Returns a text as it stands in a file, in the encoding that its first lines declare.
+
+    Raises:
+        FileError: If that encoding does not have all of its characters, or is unknown.
+    """
+    try:
+        declared, _ = tokenize.detect_encoding(io.BytesIO(text.encode("utf-8")).readline)
+        return text.replace("\n", line_end).encode(declared)
+    except UnicodeEncodeError as error:
+        if 0xD800 <= ord(error.object[error.start]) < 0xE000:
+            raise FileError("the text has half characters, which no file can hold") from None
+        raise FileError(f"{error.object[error.start]!r} is not in the encoding that the text declares ({error.encoding})") from None
+    except (SyntaxError, LookupError) as error:
+        raise FileError(f"the text declares an encoding that cannot be used: {error}") from None

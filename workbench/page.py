@@ -101,9 +101,12 @@ class _Page:
         session: Any = None  # of that feed
         try:
             while True:
-                text = await self._websocket.receive_text()
-                if len(text) > LONGEST:
-                    await self._websocket.close(1009)
+                message = await self._websocket.receive()
+                if message["type"] == "websocket.disconnect":
+                    return
+                text: str = message.get("text") or ""  # what is no text is nothing that a page says
+                if len(text) > LONGEST or (feed is not None and feed.choked):
+                    await self._websocket.close(1009 if len(text) > LONGEST else 1008)
                     return
                 attach, request, problem = _read(text)
                 if attach is not None:

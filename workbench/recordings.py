@@ -1,59 +1,35 @@
-"""The recordings of a models folder: what there is, what came of each, and how two of them differ."""
+"""The recordings of a models folder: what there is, and what can be taken away of each."""
 
 from __future__ import annotations
 
 import csv
-import hashlib
 import io
-import itertools
 import re
 import secrets
 import time
 from array import array
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from actr3d.clock import MICROSECONDS, seconds
-from actr3d.errors import Actr3dError, RecordingError
+from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import NOTHING, Curves, stride
 from workbench.files import OWN
+from workbench.summaries import Summaries, Summary, begun
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 MOST = 1_000
-"""So many recordings are listed, the newest first."""
+"""So many recordings are told of at once."""
 
 
 class NoSuchRecordingError(Actr3dError):
     """There is no recording of that name."""
 
     status = 404
-
-
-@dataclass(frozen=True, kw_only=True)
-class Summary:
-    """What a list tells of a recording."""
-
-    id: str
-    model: str
-    kind: str
-    seed: Any
-    parameters: dict[str, Any]
-    ended: str | None
-    """How it ended; None where it was broken off, or goes on."""
-    time: float
-    """How long it is [s of simulated time]."""
-    events: int
-    size: int
-    """[bytes]"""
-    made: float
-    """When it was last written [s since 1970]."""
 
 
 class Recordings:
@@ -65,6 +41,7 @@ class Recordings:
 
     def __init__(self, root: Path) -> None:
         self._folder = root / OWN / "recordings"
+        self._summaries = Summaries()
 
     def new(self, model: str) -> Path:
         """Returns a new file for a run of a model."""
@@ -84,21 +61,25 @@ class Recordings:
             raise NoSuchRecordingError("there is no such recording")
         return path
 
-    def list(self) -> list[Summary]:
-        """Returns what there is, the newest first; what cannot be read is left out."""
-        files = sorted(self._folder.glob("*.sqlite"), key=lambda path: path.stat().st_mtime, reverse=True) if self._folder.is_dir() else []
-        return [summary for path in files[:MOST] if (summary := _summary(path)) is not None]
+    def list(self, first: int = 0, most: int = MOST) -> tuple[int, list[Summary]]:
+        """Returns how many there are, and what is known of some, the newest first; also of what cannot be read.
+
+        Args:
+            first: How many of the newest are left out.
+            most: How many are told of.
+        """
+        files = [path for path in self._folder.glob("*.sqlite") if _NAME.fullmatch(path.stem) and not path.is_symlink()]
+        files.sort(key=lambda path: (begun(path), path.name), reverse=True)
+        self._summaries.forget({path.name for path in files})
+        return len(files), [self._summaries.of(path) for path in files[first : first + most]]
 
     def summary(self, name: str) -> Summary:
         """Returns what is known of one.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name, or it cannot be read.
+            NoSuchRecordingError: If there is none of that name.
         """
-        summary = _summary(self.path(name))
-        if summary is None:
-            raise NoSuchRecordingError("there is no such recording")
-        return summary
+        return self._summaries.of(self.path(name))
 
     def delete(self, name: str) -> None:
         """Deletes a recording.
@@ -109,36 +90,6 @@ class Recordings:
         path = self.path(name)
         for each in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm", "-journal"))):
             each.unlink(missing_ok=True)
-
-
-def _summary(path: Path) -> Summary | None:
-    try:
-        with Recorded(path) as recorded:
-            facts = recorded.facts
-            ended: dict[str, Any] | None = facts.get("ended")
-            ticks = recorded.ticks
-            last = seconds(ticks * facts["period_us"]) if "period_us" in facts else _last_time(recorded)
-            return Summary(
-                id=path.stem,
-                model=Path(facts.get("file", "")).name,
-                kind=facts["kind"],
-                seed=facts.get("program_seed", facts.get("seed")),
-                parameters=facts.get("parameters", {}),
-                ended=None if ended is None else ended["by"],
-                time=last,
-                events=recorded.event_count,
-                size=path.stat().st_size,
-                made=path.stat().st_mtime,
-            )
-    except (RecordingError, OSError, KeyError, ValueError):
-        return None
-
-
-def _last_time(recorded: Recorded) -> float:
-    """Returns when a program's last event was [s]."""
-    row = recorded._file.execute("SELECT data FROM events ORDER BY first DESC LIMIT 1").fetchone()
-    events: list[Any] = [] if row is None else msgspec.json.decode(row[0])
-    return seconds(events[-1][0]) if events else 0.0
 
 
 # -- to take away
@@ -207,35 +158,3 @@ def _csv_line(values: tuple[Any, ...]) -> str:
     # A text that begins like a formula would be one in a spreadsheet.
     csv.writer(text).writerow([f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") else value for value in values])
     return text.getvalue()
-
-
-# -- two of them
-
-
-def compare(first: Path, second: Path) -> dict[str, Any]:
-    """Returns where two recordings differ: their parameters, and the first event that is not the same.
-
-    Raises:
-        RecordingError: If one cannot be read.
-    """
-    with Recorded(first) as one, Recorded(second) as other:
-        ours, theirs = _told(one.facts), _told(other.facts)
-        different = {name: [ours.get(name), theirs.get(name)] for name in {**ours, **theirs} if ours.get(name) != theirs.get(name)}
-        number = 0
-        difference: dict[str, Any] | None = None
-        for number, (mine, its) in enumerate(itertools.zip_longest(one.events(), other.events())):
-            if mine != its:
-                told = [None if event is None else [event.time_us, event.source, event.kind, event.data] for event in (mine, its)]
-                times = [event.time for event in (mine, its) if event is not None]
-                difference = {"number": number, "time": min(times), "events": told}
-                break
-        same = number if difference is not None else one.event_count
-        return {"parameters": different, "difference": difference, "same_events": same}
-
-
-def _told(facts: dict[str, Any]) -> dict[str, Any]:
-    """Returns what of a run's facts was chosen by who began it."""
-    seed = facts.get("program_seed", facts.get("seed"))
-    texts = sorted(facts.get("sources", {}).values())
-    text = hashlib.sha256("\0".join(texts).encode("utf-8", "replace")).hexdigest()[:12]
-    return {**facts.get("parameters", {}), "seed": seed, "model": Path(facts.get("file", "")).name, "text": text}

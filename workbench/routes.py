@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -16,11 +14,16 @@ from fastapi import Path as InPath
 from fastapi.responses import FileResponse, Response, StreamingResponse
 from pydantic import Field
 
+from actr3d.recording import Recorded
+from actr3d.values import to_json
 from workbench import protocol as say
+from workbench.comparing import compare
 from workbench.files import ModelFile
 from workbench.loader import listing_of
-from workbench.recordings import compare, curves, events_csv, states_csv
-from workbench.sessions import Sessions
+from workbench.recordings import MOST as MOST_LISTED
+from workbench.recordings import curves, events_csv, states_csv
+from workbench.replaying import replay as again
+from workbench.sessions import SessionError, Sessions
 
 router = APIRouter(prefix="/api")
 
@@ -30,8 +33,6 @@ Id = Annotated[str, InPath(min_length=1, max_length=160)]
 Version = Annotated[str, Field(max_length=100)]
 ANSWER_TIME = 10.0
 """So long a request waits for what comes of a command [s]; the command goes on."""
-REPLAY_TIME = 120.0
-"""So long a recording is run again for a comparison [s]."""
 
 
 class Save(say.Said):
@@ -86,6 +87,8 @@ class Pair(say.Said):
 
     first: Annotated[str, Field(max_length=160)]
     second: Annotated[str, Field(max_length=160)]
+    kinds: tuple[say.Name, ...] = Field(default=(), max_length=50)
+    """Which kinds of events are compared; nothing for all."""
 
 
 def _sessions(request: Request) -> Sessions:
@@ -114,7 +117,18 @@ def _listed(path: Path) -> dict[str, Any]:
 @router.get("/model")
 def model(request: Request, path: InFolder) -> dict[str, Any]:
     """Gives a model file's text, and what it says of itself."""
-    return _told(_sessions(request).folder.read(path))
+    sessions = _sessions(request)
+    file = sessions.folder.read(path)
+    request.app.state.later(sessions.saved, sessions.folder.locate(path))  # who reads it anew may have seen that it has changed
+    return _told(file)
+
+
+@router.get("/model/version")
+def version(request: Request, path: InFolder) -> dict[str, Any]:
+    """Tells which text a model file has now, without the text; null where there is no such file."""
+    folder = _sessions(request).folder
+    where = folder.locate(path)
+    return {"path": path, "version": folder.version(where) if where.is_file() else None}
 
 
 @router.put("/model")
@@ -135,13 +149,20 @@ def duplicate(request: Request, body: Rename) -> dict[str, Any]:
 @router.post("/model/rename")
 def rename(request: Request, body: Rename) -> dict[str, Any]:
     """Gives a model file another name."""
-    return _told(_sessions(request).folder.rename(body.path, body.to))
+    sessions = _sessions(request)
+    before = sessions.folder.locate(body.path)
+    file = sessions.folder.rename(body.path, body.to)
+    request.app.state.later(sessions.renamed, before, sessions.folder.locate(file.path), file.path)
+    return _told(file)
 
 
 @router.post("/model/delete")
 def delete(request: Request, body: Delete) -> dict[str, Any]:
     """Puts a model file into the trash folder."""
-    return {"trash": _sessions(request).folder.delete(body.path)}
+    sessions = _sessions(request)
+    trash = sessions.folder.delete(body.path)
+    request.app.state.later(sessions.saved, sessions.folder.locate(body.path))
+    return {"trash": trash}
 
 
 @router.post("/check")
@@ -212,15 +233,26 @@ async def close_session(request: Request, session: Id) -> dict[str, Any]:
 
 
 @router.get("/recordings")
-def recordings(request: Request) -> dict[str, Any]:
-    """Lists the recordings, the newest first."""
-    return {"recordings": [asdict(summary) for summary in _sessions(request).recordings.list()]}
+def recordings(
+    request: Request, first: Annotated[int, Query(ge=0, le=1_000_000)] = 0, most: Annotated[int, Query(ge=1, le=MOST_LISTED)] = MOST_LISTED
+) -> Response:
+    """Lists recordings, the newest first: `total` of them, and what is known of those from `first` on.
+
+    `problem` says why one cannot be read, `session` which session goes on writing it.
+    """
+    sessions = _sessions(request)
+    total, found = sessions.recordings.list(first, most)
+    writing = sessions.writing()
+    listed = [{**vars(summary), "session": writing.get(summary.id)} for summary in found]
+    return Response(to_json({"total": total, "recordings": listed}).encode(errors="replace"), media_type="application/json")
 
 
 @router.get("/recordings/{recording}")
-def recording(request: Request, recording: Id) -> dict[str, Any]:
+def recording(request: Request, recording: Id) -> Response:
     """Tells of a recording."""
-    return asdict(_sessions(request).recordings.summary(recording))
+    sessions = _sessions(request)
+    told = {**vars(sessions.recordings.summary(recording)), "session": sessions.writing().get(recording)}
+    return Response(to_json(told).encode(errors="replace"), media_type="application/json")
 
 
 @router.get("/recordings/{recording}/file")
@@ -231,6 +263,7 @@ def download(request: Request, recording: Id, form: Literal["sqlite", "events.cs
     if form == "sqlite":
         return FileResponse(path, media_type="application/vnd.sqlite3", filename=name)
     make: Callable[[Path], Iterator[str]] = events_csv if form == "events.csv" else states_csv
+    Recorded(path).close()  # once the answer has begun, it is too late to say that it cannot be read
     headers = {"content-disposition": f'attachment; filename="{name}"'}
     return StreamingResponse(make(path), media_type="text/csv; charset=utf-8", headers=headers)
 
@@ -258,32 +291,24 @@ async def open_recording(request: Request, recording: Id) -> dict[str, Any]:
 
 @router.post("/recordings/{recording}/replay")
 async def replay(request: Request, recording: Id) -> dict[str, Any]:
-    """Runs a recording again, in a process of its own, and says whether every byte agrees."""
-    path = _sessions(request).recordings.path(recording)
-    command = [sys.executable, "-m", "actr3d.cli", "replay", str(path)]
-    environment = {**os.environ, "PYTHONHASHSEED": "0"}
-    process = await asyncio.create_subprocess_exec(
-        *command, stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.STDOUT, env=environment
-    )
-    try:
-        async with asyncio.timeout(REPLAY_TIME):
-            output, _ = await process.communicate()
-    except TimeoutError:
-        process.kill()
-        await process.wait()
-        return {"agrees": None, "text": f"it takes longer than {REPLAY_TIME:g} s"}
-    return {"agrees": {0: True, 1: False}.get(process.returncode or 0), "text": output.decode(errors="replace").strip()}
+    """Runs a recording again, in a process of its own, and says whether every byte agrees; it ends when nobody waits any more."""
+    return await again(_sessions(request).recordings.path(recording), request.is_disconnected)
 
 
 @router.post("/recordings/{recording}/delete")
 def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
-    """Deletes a recording."""
-    _sessions(request).recordings.delete(recording)
+    """Deletes a recording; 409 while a run goes on writing it."""
+    sessions = _sessions(request)
+    if recording in sessions.writing():
+        raise SessionError("the present run is still writing this recording; begin another run, or close the session, and then delete it")
+    sessions.recordings.delete(recording)
     return {"deleted": recording}
 
 
 @router.post("/compare")
-def compare_recordings(request: Request, body: Pair) -> dict[str, Any]:
-    """Says where two recordings differ: parameters, and the first event that is not the same."""
+def compare_recordings(request: Request, body: Pair) -> Response:
+    """Says where two recordings differ: parameters, the lines of the model, and the first event that is not the same."""
     recordings = _sessions(request).recordings
-    return compare(recordings.path(body.first), recordings.path(body.second))
+    first, second = recordings.path(body.first), recordings.path(body.second)
+    told = {"runs": [vars(recordings.summary(name)) for name in (body.first, body.second)], **compare(first, second, body.kinds)}
+    return Response(to_json(told).encode(errors="replace"), media_type="application/json")

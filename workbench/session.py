@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -16,14 +17,16 @@ from actr3d.errors import Actr3dError, SimulationError
 from workbench import protocol as say
 from workbench.attendant import Attendant
 from workbench.feed import MOST_NOTICES, EventLog, Feed
+from workbench.files import ModelFolder
+from workbench.look import Look
 from workbench.telling import Telling
-from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Reply, Start, State
+from workbench.worker.messages import At, Cut, Do, Draw, Facts, FromWorker, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 
 MOST_WAITING = 200
 """So many commands and questions of one session may wait for their answers."""
 
-Watcher = Callable[["Session", Facts | State | None], None]
+Watcher = Callable[["Session", Facts | State | Look | None], None]
 
 
 class Session(Telling):
@@ -43,7 +46,8 @@ class Session(Telling):
         self.model = shown_path
         self.feeds: list[Feed] = []
         self.watchers: list[Watcher] = []
-        """Are told of the facts of each new run, of each state, and by None of the end."""
+        """Are told of the facts of each new run, of each state, of another look, and by None of the end."""
+        self.look = Look()
         self.run = self.epoch = self.state_version = self.facts_version = 0
         self.log = EventLog()
         self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
@@ -60,7 +64,8 @@ class Session(Telling):
         self._worker: Worker | None = None
         self._tasks: set[asyncio.Task[Any]] = set()
         self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
-        self._number = self._notice_number = 0
+        self._number = self._notice_number = self._attempt = 0
+        self._drawn: tuple[str, ...] = ()
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
@@ -97,7 +102,9 @@ class Session(Telling):
             OSError: If no worker can be started.
         """
         text = read_source(self.path) if source is None else source
+        version = ModelFolder.version(self.path) if source is None else hashlib.sha256(text.encode()).hexdigest()
         before = self.start.settings if self.start is not None else {}
+        self._attempt += 1
         start = Start(
             path=str(self.path),
             source=text,
@@ -110,6 +117,8 @@ class Session(Telling):
             factor=self.speed,
             breakpoints=self.breakpoints,
             run=run,
+            attempt=self._attempt,
+            version=version,
         )
         worker = await self._workers.launch()
         if self._loading is not None:
@@ -146,9 +155,9 @@ class Session(Telling):
                 for feed in self.feeds:
                     feed.cut(message.events)
             case Notice():
-                self.tell(message)
+                self.tell(message, start)
             case At():
-                self._stuck = {"file": message.file, "line": message.line, "function": message.function}
+                self._stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
                 self._changed(facts=True)
             case _:
                 pass
@@ -163,6 +172,8 @@ class Session(Telling):
         self.epoch += 1
         self.log = EventLog()
         self.start, self.facts, self.state, self._stuck = start, facts, None, None
+        if self._drawn:
+            worker.send(Draw(kinds=self._drawn))
         self._tell_watchers(facts)
         self._changed(facts=True)
 
@@ -229,7 +240,7 @@ class Session(Telling):
             said: One of `protocol.Anything`.
             who: Who says it, as others are told.
         """
-        if not isinstance(said, say.QUESTIONS) and who and who != self._controlled_by:
+        if not isinstance(said, (*say.QUESTIONS, *say.LOOKS)) and who and who != self._controlled_by:
             self._controlled_by = who
             self._changed(facts=True)
         try:
@@ -239,6 +250,10 @@ class Session(Telling):
                 case say.Restart():
                     seed = said.seed if said.seed is not None or said.new_seed or self.start is None else self.start.seed
                     await self.begin(said.settings, seed=seed, record=said.record, run=said.run)
+                case say.Overlay() | say.Camera():
+                    self.look = self.look.after(said)
+                    self._tell_watchers(self.look)
+                    self._changed(facts=True)
                 case _:
                     self._note(said)
                     return await self._ask(said)
@@ -267,12 +282,21 @@ class Session(Telling):
         worker.send(Do(id=number, say=said.model_dump_json().encode()))
         return await waiting
 
+    def draw(self, kinds: tuple[str, ...]) -> None:
+        """Lets the states of this run and later ones tell what overlays of these kinds show."""
+        if kinds != self._drawn:
+            self._drawn = kinds
+            if self._worker is not None:
+                self._worker.send(Draw(kinds=kinds))
+
     # -- what is told of it
 
-    def tell(self, notice: Notice) -> None:
-        """Tells all who watch something."""
-        told = {"level": notice.level, "text": notice.text, "file": self._shown_file(notice.file), "line": notice.line}
-        self.notices.append((self._notice_number, msgspec.json.encode({"number": self._notice_number, **told, "detail": notice.detail})))
+    def tell(self, notice: Notice, start: Start | None = None) -> None:
+        """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
+        told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
+        told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
+        told |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
+        self.notices.append((self._notice_number, msgspec.json.encode(told)))
         self._notice_number += 1
         self._changed()
 
@@ -283,6 +307,11 @@ class Session(Telling):
 
     def file_changed(self) -> None:
         """Takes note that the model's file has been saved: the run may be stale now."""
+        self._changed(facts=True)
+
+    def renamed(self, path: Path, model: str) -> None:
+        """Takes note that the model's file has another name now."""
+        self.path, self.model = path, model
         self._changed(facts=True)
 
     # -- who watches
@@ -304,7 +333,7 @@ class Session(Telling):
         for feed in self.feeds:
             feed.wake()
 
-    def _tell_watchers(self, what: Facts | State) -> None:
+    def _tell_watchers(self, what: Facts | State | Look) -> None:
         for watcher in self.watchers:
             watcher(self, what)
 

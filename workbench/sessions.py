@@ -66,6 +66,14 @@ class Sessions:
             raise NoSuchSessionError("there is no such session")
         return self._sessions[name]
 
+    def writing(self) -> dict[str, str]:
+        """Returns by their names the recordings that runs go on writing, and their sessions."""
+        return {
+            Path(session.start.record).stem: session.name
+            for session in self.all()
+            if session._worker is not None and session.start is not None and session.start.record is not None
+        }
+
     def view(self, name: str) -> SceneView | None:
         """Returns the 3D view of a session, once there is something to see."""
         view = self._views.get(name)
@@ -135,6 +143,12 @@ class Sessions:
         for session in self.all():
             if session.path == path:
                 session.file_changed()
+
+    def renamed(self, before: Path, path: Path, model: str) -> None:
+        """Takes note that a model file has another name now: its sessions go on with it."""
+        for session in self.all():
+            if session.path == before:
+                session.renamed(path, model)
 
     async def check(self, path: Path, text: str) -> list[dict[str, Any]]:
         """Loads a model in a worker, and builds what it describes, without running it; returns what is complained of.

@@ -10,6 +10,7 @@ import msgspec
 from actr3d.actr.reading import read_source
 from actr3d.errors import Actr3dError
 from workbench.feed import Feed, Raw
+from workbench.look import Look
 from workbench.worker.messages import Facts, Start, State
 from workbench.worker.workers import Worker
 
@@ -27,17 +28,21 @@ class Telling:
     feeds: list[Feed]
     breakpoints: tuple[str, ...]
     has_scene: bool
+    look: Look
     _worker: Worker | None
     _loading: Worker | None
     _ending: str
     _stuck: dict[str, Any] | None
     _controlled_by: str
+    _attempt: int
 
-    def _shown_file(self, file: str | None) -> str | None:
-        """Returns a file of the model's folder as pages call it."""
-        if file == str(self.path):
-            return self.model
-        return file
+    def _shown_file(self, file: str | None, start: Start | None = None) -> str | None:
+        """Returns a file of the models folder as pages call it; the model itself by its present name."""
+        if file is None or file == str(self.path) or (start is not None and file == start.path):
+            return file and self.model
+        root = self.path.parents[self.model.count("/")]
+        inside = self.path == root / self.model and Path(file).is_relative_to(root)
+        return Path(file).relative_to(root).as_posix() if inside else file
 
     def facts_json(self) -> bytes:
         """Returns what is known of the session and its run."""
@@ -46,10 +51,15 @@ class Telling:
             **self.summary(),
             "stuck": self._stuck,
             "scene": self.has_scene,
+            **self.look.told(),
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": facts.seed if facts is not None else None,
             "stale": start is not None and self._text_differs(start),
+            "gone": not self.path.is_file(),
+            "attempt": self._attempt,
+            "shown_attempt": start.attempt if start is not None else None,
+            "version": start.version if start is not None else None,
             "recording": Path(start.record).stem if start is not None and start.record is not None else None,
         }
         if facts is not None:

@@ -16,7 +16,7 @@ from actr3d.actr.past import Past
 from actr3d.actr.present import Present
 from actr3d.actr.retrievals import RetrievalReason
 from actr3d.actr.searches import Searching, SearchReason
-from actr3d.actr.trial import Trial
+from actr3d.actr.trial import ConditionReason, Trial
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SchedulerError, did_you_mean
 from actr3d.trace import TraceEvent
@@ -48,6 +48,8 @@ class ProductionReason:
     """How what was found is known, such as «as seen since 0.050 s»; None where it is certain at that time."""
     bindings: Mapping[str, str]
     """What the conditions before the failing one bound."""
+    conditions: tuple[ConditionReason, ...] = field(default=(), compare=False)
+    """How each condition stands, in the order in which they are tried; also those after the failing one, as far as can be told."""
     utility: float | None
     """The sum of the parts that are known; None where a part cannot be told."""
     parts: Mapping[str, float | None]
@@ -136,6 +138,7 @@ def why(production: Production, state: State) -> ProductionReason:
         found=failed.found if failed is not None else None,
         seen=trial.seen,
         bindings=trial.bindings,
+        conditions=trial.conditions,
         utility=sum(known) if len(known) == len(parts) else None,
         parts=parts,
         selected=choice is not None and choice.chosen == production.name,

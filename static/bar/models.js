@@ -1,11 +1,13 @@
 // Which model is shown: choosing one shows the session with it, or begins one.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
-import { call, showModel } from "../server.js";
-import { complain, session } from "../store.js";
+import { call, say, showModel } from "../server.js";
+import { complain, connected, session } from "../store.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
+/** Where the folder is. */
+export const folder = signal("");
 /** The model that is shown. */
 export const model = signal(null);
 
@@ -13,19 +15,36 @@ const FIRST = ["aperture_passage.py", "doorway.py"];
 
 /** Reads anew which models there are. */
 export async function listModels() {
-  models.value = (await call("GET", "/api/models")).models;
+  const told = await call("GET", "/api/models");
+  folder.value = told.folder;
+  models.value = told.models;
 }
 
 /** Shows a model. */
 export async function choose(path) {
-  model.value = path;
+  note(path);
   try {
-    sessionStorage.setItem("model", path);
-    history.replaceState(null, "", `?model=${encodeURIComponent(path)}`);
     await showModel(path);
   } catch (error) {
     complain(error.message);
   }
+}
+
+/** Runs a model from its start, as its file is now; throws an Error that says why not. */
+export async function runModel(path) {
+  if (session.value?.model === path && connected.value) {
+    await say({ type: "restart", run: true });
+    return;
+  }
+  note(path);
+  await showModel(path, { run: true });
+}
+
+/** Remembers which model is shown, also for when the page is loaded again. */
+export function note(path) {
+  model.value = path;
+  sessionStorage.setItem("model", path);
+  history.replaceState(null, "", `?model=${encodeURIComponent(path)}`);
 }
 
 async function begin() {
@@ -47,6 +66,7 @@ async function begin() {
 export function ModelChoice() {
   useEffect(() => void begin(), []);
   const shown = session.value?.model ?? model.value ?? "";
+  const gone = shown && models.value.length > 0 && !models.value.some(({ path }) => path === shown);
   const folders = Map.groupBy(models.value, ({ path }) => path.split("/").slice(0, -1).join("/"));
   const option = ({ path, title }) => html`<option key=${path} value=${path} title=${title}>${path.split("/").at(-1)}</option>`;
   return html`<select
@@ -57,6 +77,7 @@ export function ModelChoice() {
     onChange=${(event) => choose(event.currentTarget.value)}
   >
     ${models.value.length === 0 ? html`<option value="">no models</option>` : null}
+    ${gone ? html`<option value=${shown}>${shown} (not in the folder)</option>` : null}
     ${[...folders].map(([folder, list]) => (folder ? html`<optgroup key=${folder} label=${folder}>${list.map(option)}</optgroup>` : list.map(option)))}
   </select>`;
 }

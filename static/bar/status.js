@@ -1,6 +1,7 @@
 // The line below: how the run stands, what it began with, who watches.
 
 import { html } from "../vendor/preact.js";
+import { Former } from "../editor/running.js";
 import { connected, session, state } from "../store.js";
 
 function standing() {
@@ -18,6 +19,7 @@ export function StatusLine() {
   return html`<footer class="status-line">
     <span id="status" role="status" class=${level}>${standing()}</span>
     <span class="stretch"></span>
+    <${Former} />
     ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
     ${seed !== null && seed !== undefined ? html`<span title="The seed of the run">seed ${String(seed)}</span>` : null}
     <span>${state.value?.events ?? 0} events</span>

@@ -5,11 +5,21 @@ import { bindKey, keyText } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { order } from "../server.js";
 import { running, session, state } from "../store.js";
+import { runUntil } from "./until.js";
 
 /** Speeds as [text, times real time]; null for as fast as possible. */
 const SPEEDS = [["1/20 x", 0.05], ["1/10 x", 0.1], ["1/4 x", 0.25], ["1/2 x", 0.5], ["1 x", 1], ["2 x", 2], ["5 x", 5], ["10 x", 10], ["20 x", 20], ["fastest", null]];
 
-const toggle = () => order({ type: running.value ? "pause" : "run" });
+/** Whether the run cannot go on from here. */
+function isOver() {
+  return ["ended", "failed"].includes(state.value?.status) || !session.value?.alive;
+}
+
+/** Runs or pauses; a run that is over begins again. */
+function toggle() {
+  if (!session.value) return;
+  order(running.value ? { type: "pause" } : isOver() ? { type: "restart", run: true } : { type: "run" });
+}
 
 const BUTTONS = [
   { id: "back", text: "One tick of 10 ms back", key: "ArrowLeft", what: { type: "back" } },
@@ -38,11 +48,13 @@ function changeSpeed(by) {
 export function Transport() {
   const goes = running.value;
   const there = Boolean(session.value);
-  const over = ["ended", "failed"].includes(state.value?.status) || !session.value?.alive;
-  const idle = { run: !there || over, step: over, cycle: over, back: !session.value?.alive || !state.value?.time, stop: !session.value?.alive && !session.value?.loading };
+  const over = isOver();
+  const { alive, loading } = session.value ?? {};
+  const idle = { step: over, cycle: over, back: !alive || !state.value?.time, stop: !alive && !loading };
+  const text = goes ? "Pause" : there && over && !loading ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
-    <button id="run" class="primary" disabled=${idle.run} title="${goes ? "Pause" : "Run"} (Space)" onClick=${toggle}>
-      <${Icon} name=${goes ? "pause" : "run"} />${goes ? "Pause" : "Run"}
+    <button id="run" class="primary" disabled=${!there || loading} title="${text} (Space)" onClick=${toggle}>
+      <${Icon} name=${goes ? "pause" : "run"} />${text}
     </button>
     ${BUTTONS.map(
       ({ id, icon, text, key, what }) => html`<button
@@ -57,6 +69,7 @@ export function Transport() {
         <${Icon} name=${icon ?? id} />
       </button>`,
     )}
+    <button id="until" class="bare" disabled=${!there || over} title="Run until … (U)" aria-label="Run until" onClick=${runUntil}><${Icon} name="until" /></button>
     <select aria-label="Speed" title="How fast it goes at most, in times real time (+ and -)" value=${String(speedNumber())} onChange=${(event) => order({ type: "speed", factor: SPEEDS[event.currentTarget.value][1] })}>
       ${SPEEDS.map(([text], n) => html`<option value=${String(n)}>${text}</option>`)}
     </select>

@@ -1,3 +1,82 @@
-import { html } from "../vendor/preact.js";
+// What the mind holds: every buffer with its chunk, every module with its state, agent by agent; and the result of a run.
 
-export const buffers = { id: "buffers", title: "Buffers", View: () => html`<p class="empty">Buffers</p>` };
+import { html } from "../vendor/preact.js";
+import { agentOf, agentsOf, nameIn } from "../mind/agents.js";
+import { Flash, useTallest } from "../mind/flash.js";
+import { Module, Plain, useRequests } from "../mind/modules.js";
+import { Result } from "../mind/result.js";
+import { chunkText, slotsOf } from "../parts/chunk.js";
+import { session, state } from "../store.js";
+
+function Buffer({ path, name, chunk }) {
+  const slots = slotsOf(chunk);
+  const box = useTallest(chunkText(chunk));
+  return html`<tr data-path=${path}>
+    <th scope="row" class="mono" title=${path}>${name}</th>
+    <td>
+      <div class="chunk" ref=${box}>
+        <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
+        ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
+      </div>
+    </td>
+  </tr>`;
+}
+
+function Others({ agent = null, paths, parts }) {
+  return html`<div class="others">${paths.map((path) => html`<${Plain} key=${path} path=${path} name=${nameIn(agent, path)} part=${parts[path]} />`)}</div>`;
+}
+
+function Agent({ agent, paths, parts, requests, several }) {
+  const of = (...kinds) => paths.filter((path) => kinds.includes(parts[path].is));
+  const buffers = of("buffer");
+  const modules = of("module", "memory", "system");
+  const rest = of("part");
+  const title = agent ?? "Other parts";
+  return html`<section class="agent" aria-label=${title}>
+    ${several ? html`<h2>${title}${agent ? html` <span class="quiet">${parts[agent].class}</span>` : null}</h2>` : null}
+    ${buffers.length
+      ? html`<table class="buffers" aria-label="Buffers of ${title}">
+          <colgroup><col class="names" /><col /></colgroup>
+          <tbody>
+            ${buffers.map((path) => html`<${Buffer} key=${path} path=${path} name=${nameIn(agent, path)} chunk=${parts[path].chunk} />`)}
+          </tbody>
+        </table>`
+      : agent ? html`<p class="empty">This agent has no buffers.</p>` : null}
+    ${modules.length ? html`<h3>Modules</h3>` : null}
+    ${modules.map((path) => html`<${Module} key=${path} path=${path} name=${path === agent ? "productions" : nameIn(agent, path)} part=${parts[path]} request=${requests.get(path)} />`)}
+    ${rest.length && agent === null ? html`<${Others} paths=${rest} parts=${parts} />` : null}
+    ${rest.length && agent !== null
+      ? html`<details class="plain">
+          <summary><h3>Other parts <span class="quiet">${rest.length}</span></h3></summary>
+          <${Others} agent=${agent} paths=${rest} parts=${parts} />
+        </details>`
+      : null}
+  </section>`;
+}
+
+function Buffers() {
+  const parts = state.value?.parts ?? {};
+  const paths = Object.keys(parts);
+  const busy = paths.filter((path) => parts[path].state?.busy === true);
+  const requests = useRequests(busy);
+  if (paths.length === 0) return html`<p class="empty">${nothing()}</p>`;
+  const agents = agentsOf(parts);
+  const groups = [...agents, null]
+    .map((agent) => [agent, paths.filter((path) => agentOf(path, agents) === agent)])
+    .filter(([, own]) => own.length > 0);
+  const run = `${session.value?.id} ${session.value?.run}`;
+  return html`<div class="mind" key=${run}>
+    ${state.value.result ? html`<${Result} result=${state.value.result} />` : null}
+    ${groups.map(([agent, own]) => html`<${Agent} key=${agent} agent=${agent} paths=${own} parts=${parts} requests=${requests} several=${groups.length > 1} />`)}
+  </div>`;
+}
+
+function nothing() {
+  const { loading, kind, ending } = session.value ?? {};
+  if (loading) return "The model is being loaded …";
+  if (!session.value) return "Choose a model above to see what its mind holds.";
+  if (kind === "program") return "The program has not made a model yet. Run it: it does so as it goes.";
+  return ending ? `There is no run: ${ending}. Restart it.` : "This model has no mind to look into.";
+}
+
+export const buffers = { id: "buffers", title: "Buffers", View: Buffers };

@@ -1,3 +1,139 @@
-import { html } from "../vendor/preact.js";
+// The editor: any model file of the folder, what is wrong with it, and whether the run that is shown is one of this text.
 
-export const editor = { id: "editor", title: "Editor", View: () => html`<p class="empty">Editor</p>` };
+import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { folder, listModels, model, models } from "../bar/models.js";
+import { checkByLoading } from "../editor/checks.js";
+import { focusText, goTo, keys, leaveText, showText } from "../editor/code.js";
+import { Conflict } from "../editor/conflict.js";
+import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
+import { duplicate, makeNew, remove, rename } from "../editor/files.js";
+import { Problems } from "../editor/problems.js";
+import { saveAndRun } from "../editor/running.js";
+import { Strip } from "../editor/strip.js";
+import { bindKey } from "../keys.js";
+import { Icon } from "../parts/icon.js";
+import { session } from "../store.js";
+
+const AGAIN = 3000; // how often it looks whether the file has changed on disk [ms]
+
+/** The text whose two versions are compared. */
+const comparing = signal(null);
+let followed = null;
+
+async function saveShown() {
+  const document = shownDocument();
+  if (!document) return;
+  if (!(await save(document)) && document.theirs.value?.text != null) comparing.value = document;
+}
+
+async function runShown() {
+  const document = shownDocument();
+  if (!document) return;
+  await saveAndRun(document);
+  if (document.theirs.value?.text != null) comparing.value = document;
+}
+
+Object.assign(keys, { run: runShown, save: saveShown });
+bindKey("Mod+s", "Save the text in the editor", saveShown);
+bindKey("Mod+Enter", "Save the text in the editor, and run it", runShown);
+bindKey("Escape+Tab", "One after the other: leave the text in the editor, where Tab alone indents", () => {});
+
+/** Does what the user has chosen of two texts. */
+async function choose(document, which) {
+  comparing.value = null;
+  const theirs = document.theirs.value;
+  if (which === "mine" && !(await save(document, theirs.version)) && document.theirs.value) comparing.value = document;
+  if (which === "theirs") take(document, theirs);
+  focusText();
+}
+
+/** Looks again and again whether files have changed on disk, while the editor is seen. */
+function useLooking() {
+  useEffect(() => {
+    function lookAt(list) {
+      if (document.visibilityState === "hidden") return;
+      for (const one of list) look(one).catch(() => {}); // whoever cannot be asked now is asked again
+    }
+    function returned() {
+      lookAt(documents.peek().values());
+      listModels().catch(() => {});
+    }
+    const timer = setInterval(() => lookAt([shownDocument()].filter(Boolean)), AGAIN);
+    addEventListener("focus", returned);
+    return () => {
+      clearInterval(timer);
+      removeEventListener("focus", returned);
+    };
+  }, []);
+}
+
+function Files({ path, document }) {
+  const waiting = unsaved();
+  const known = models.value.some((one) => one.path === path);
+  const option = (one) => html`<option key=${one} value=${one}>${waiting.includes(one) ? "● " : ""}${one}</option>`;
+  const tool = (name, text, work, off = !document) =>
+    html`<button class="bare" title=${text} aria-label=${text} disabled=${off} onClick=${work}><${Icon} name=${name} /></button>`;
+  return html`<div class="tools" role="toolbar" aria-label="Files">
+    <select class="file" aria-label="File" title="${folder.value}/${path ?? ""}" value=${path ?? ""} onChange=${(event) => open(event.currentTarget.value)}>
+      ${path ? null : html`<option value="">no file</option>`}
+      ${path && !known ? option(path) : null}${models.value.map((one) => option(one.path))}
+    </select>
+    ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
+    ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
+    ${tool("check", "Load it without running it, and tell what is wrong (this carries out its top level)", () => checkByLoading(document))}
+  </div>`;
+}
+
+function Standing({ document }) {
+  const dirty = document.dirty.value;
+  return html`<div class="standing">
+    <span class="path" title="${folder.value}/${document.path}">${folder.value}/</span>
+    <span class=${dirty ? "state unsaved" : "state quiet"} role="status">
+      ${document.saving.value ? "saving …" : dirty ? `● unsaved${document.note.value && document.note.value !== "saved" ? `: ${document.note.value}` : ""}` : document.note.value}
+    </span>
+    <button disabled=${!dirty} title="Save (Ctrl S)" onClick=${saveShown}>Save</button>
+    <button class="primary" title="Save, and run from the start (Ctrl Enter)" onClick=${runShown}>Save and run</button>
+  </div>`;
+}
+
+function Editor() {
+  const place = useRef(null);
+  const { path, error } = shown.value;
+  const document = shownDocument();
+  const compares = document && comparing.value === document && document.theirs.value?.text != null;
+  const chosen = session.value?.model ?? model.value;
+  useLooking();
+  useEffect(() => {
+    if (!chosen || chosen === followed || wanted.value) return;
+    followed = chosen;
+    open(chosen);
+  }, [chosen]);
+  useLayoutEffect(() => {
+    if (document && !compares) showText(place.current, document);
+    return leaveText;
+  }, [document, compares]);
+  useEffect(() => {
+    if (!document || wanted.value?.path !== document.path) return;
+    goTo(wanted.value.line);
+    wanted.value = null;
+  }, [document, wanted.value]);
+  return html`<div class="editor">
+    <${Files} path=${path} document=${document} />
+    ${document ? html`<${Standing} document=${document} />` : null}
+    ${compares ? html`<${Conflict} document=${document} choose=${(which) => choose(document, which)} />` : null}
+    <div class="code" ref=${place} hidden=${!document || compares}></div>
+    ${document
+      ? html`${compares ? null : html`<${Strip} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
+      : html`<div class="empty">
+          <p class=${error ? "bad" : ""}>${error ?? "No file is open. Choose one above, or make a new model."}</p>
+          <button onClick=${makeNew}>New model</button>
+        </div>`}
+  </div>`;
+}
+
+export const editor = {
+  id: "editor",
+  title: "Editor",
+  View: Editor,
+  badge: () => (unsaved().length > 0 ? { text: "●", title: "unsaved" } : null),
+};

@@ -1,3 +1,101 @@
-import { html } from "../vendor/preact.js";
+// Declarative memory: its chunks with their activations, the body schema in it, and what the eyes have last found.
 
-export const memory = { id: "memory", title: "Memory", View: () => html`<p class="empty">Memory</p>` };
+import { html, signal, useEffect, useState } from "../vendor/preact.js";
+import { MemoryTable } from "../mind/memory_table.js";
+import { Search } from "../mind/retrievals.js";
+import { postures, SchemaTable } from "../mind/schema_table.js";
+import { Waiting } from "../mind/waiting.js";
+import { useAnswer } from "../parts/answer.js";
+import { valueText } from "../parts/chunk.js";
+import { remembered } from "../remembered.js";
+import { running, session, state } from "../store.js";
+
+const MOST = 5000; // so many chunks are asked for
+const LIVE = 150; // a memory with no more chunks than these is shown while the run goes on, too
+const TYPED = 200; // so long after the last key the search begins [ms]
+
+const view = remembered("memory view", "chunks");
+const wanted = signal(""); // which memory
+
+function Seen() {
+  const told = useAnswer({ type: "explain" });
+  const searches = (told.answer ?? []).flatMap((one) => one.searches);
+  return html`<div class="reasons-text">
+    <${Waiting} told=${told} />
+    ${told.answer && searches.length === 0 ? html`<p class="empty">The eyes have not looked for anything yet.</p>` : null}
+    ${searches.map((reason) => html`<${Search} key="${reason.module} ${reason.bottom_up}" reason=${reason} />`)}
+  </div>`;
+}
+
+function Note({ told, schema }) {
+  if (!told.answer) return null;
+  const { rows, size, threshold } = told.answer;
+  const found = rows.length === size ? `${size} chunks` : `${rows.length} of ${size} chunks`;
+  const cut = rows.length === MOST ? "; search for fewer" : "";
+  return html`<span class="quiet">${schema ? `${schema.length} postures` : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
+}
+
+function Chunks({ memory, schema }) {
+  const [typed, setTyped] = useState("");
+  const [words, setWords] = useState("");
+  useEffect(() => {
+    const timer = setTimeout(() => setWords(typed.trim()), TYPED);
+    return () => clearTimeout(timer);
+  }, [typed]);
+  const size = state.value?.parts[memory]?.state.size ?? 0;
+  const live = size <= LIVE;
+  const told = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MOST }, { live });
+  const mine = told.answer?.memory === memory ? told.answer : null;
+  const found = schema && mine ? postures(mine.rows) : null;
+  return html`<div class="tools">
+      <input type="search" aria-label="Search the memory" placeholder="Search" value=${typed} onInput=${(event) => setTyped(event.currentTarget.value)} />
+      <${Note} told=${told} schema=${found} />
+      ${running.value && !live ? html`<span class="quiet" role="status">as at the last pause</span>` : null}
+    </div>
+    <${Waiting} told=${mine ? { ...told, waiting: false } : told} />
+    ${mine && !schema ? html`<${MemoryTable} answer=${mine} words=${words} />` : null}
+    ${found?.length ? html`<${SchemaTable} rows=${found} />` : null}
+    ${found && found.length === 0 ? html`<p class="empty">${words ? "No posture has all of these words." : "No posture has been felt yet: the body schema grows as the body moves."}</p>` : null}`;
+}
+
+function Memory() {
+  const parts = state.value?.parts ?? {};
+  const memories = Object.keys(parts).filter((path) => parts[path].is === "memory");
+  const eyes = Object.values(parts).some((part) => part.is === "module" && "watching" in (part.state ?? {}));
+  const moves = Object.values(parts).some((part) => part.is === "module" && "size_grid" in (part.state ?? {}));
+  if (memories.length === 0 && !eyes) return html`<p class="empty">${nothing()}</p>`;
+  const views = [
+    ...(memories.length ? [{ id: "chunks", text: "Chunks" }] : []),
+    ...(memories.length && moves ? [{ id: "schema", text: "Body schema" }] : []),
+    ...(eyes ? [{ id: "seen", text: "Seen" }] : []),
+  ];
+  const shown = views.some(({ id }) => id === view.value) ? view.value : views[0].id;
+  const memory = memories.includes(wanted.value) ? wanted.value : memories[0];
+  return html`<div class="memory" key="${session.value?.id} ${session.value?.run}">
+    ${views.length > 1 || memories.length > 1
+      ? html`<div class="tools heads">
+          ${views.length > 1
+            ? html`<div class="choices" role="group" aria-label="What is shown">
+                ${views.map(({ id, text }) => html`<button key=${id} aria-pressed=${shown === id} onClick=${() => (view.value = id)}>${text}</button>`)}
+              </div>`
+            : null}
+          ${memories.length > 1 && shown !== "seen"
+            ? html`<select aria-label="Memory" value=${memory} onChange=${(event) => (wanted.value = event.currentTarget.value)}>
+                ${memories.map((path) => html`<option key=${path} value=${path}>${path}</option>`)}
+              </select>`
+            : null}
+        </div>`
+      : null}
+    ${shown === "seen" ? html`<${Seen} />` : html`<${Chunks} key=${memory} memory=${memory} schema=${shown === "schema"} />`}
+  </div>`;
+}
+
+function nothing() {
+  const { loading, kind } = session.value ?? {};
+  if (loading) return "The model is being loaded …";
+  if (!session.value) return "Choose a model above to see what it remembers.";
+  if (kind === "program" && Object.keys(state.value?.parts ?? {}).length === 0) return "The program has not made a model yet. Run it: it does so as it goes.";
+  return "This model has no declarative memory.";
+}
+
+export const memory = { id: "memory", title: "Memory", View: Memory };

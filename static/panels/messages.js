@@ -1,26 +1,72 @@
 // What the user is told: errors with their lines, warnings, what the model's process prints.
 
-import { html, signal, useEffect } from "../vendor/preact.js";
-import { notices } from "../store.js";
+import { computed, html, signal, useEffect } from "../vendor/preact.js";
+import { hasMore } from "../editor/marks.js";
+import { Place, Traceback } from "../parts/place.js";
+import { remembered } from "../remembered.js";
+import { notices, session } from "../store.js";
 
+const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
+const MOST = 300; // more are not drawn
+
+const hidden = remembered("messages hidden", []);
 const seen = signal(0); // how many errors had been told when the tab was last open
+/** The messages that the user has cleared away on this page. */
+const cleared = signal(new Set());
+
+const kept = computed(() => notices.value.filter(({ number }) => !cleared.value.has(key(number))));
+
+function key(number) {
+  return `${session.value?.id} ${number}`;
+}
 
 function errors() {
-  return notices.value.filter(({ level }) => level === "error").length;
+  return kept.value.filter(({ level }) => level === "error").length;
+}
+
+function clear() {
+  cleared.value = new Set(notices.value.map(({ number }) => key(number)));
+}
+
+function toggle(level) {
+  hidden.value = hidden.value.includes(level) ? hidden.value.filter((other) => other !== level) : [...hidden.value, level];
+}
+
+function Filter() {
+  const count = (level) => kept.value.filter((notice) => notice.level === level).length;
+  return html`<div class="tools" role="toolbar" aria-label="Messages">
+    ${Object.entries(LEVELS).map(
+      ([level, text]) => html`<label key=${level}>
+        <input type="checkbox" checked=${!hidden.value.includes(level)} onChange=${() => toggle(level)} />
+        ${text} <span class="count">${count(level)}</span>
+      </label>`,
+    )}
+    <span class="stretch"></span>
+    <button disabled=${kept.value.length === 0} title="Clear them on this page" onClick=${clear}>Clear</button>
+  </div>`;
+}
+
+function Message({ notice: { level, text, file, line, detail } }) {
+  return html`<li class=${level}>
+    ${file ? html`<${Place} file=${file} line=${line} />` : null}
+    <span class="text">${text}</span>
+    ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
+  </li>`;
 }
 
 function Messages() {
   useEffect(() => void (seen.value = errors()));
-  if (notices.value.length === 0) return html`<p class="empty">No messages. What goes wrong in a model is told here, with its line.</p>`;
-  return html`<ol id="log" class="log" aria-live="polite">
-    ${notices.value.toReversed().map(
-      ({ number, level, text, file, line, detail }) => html`<li key=${number} class=${level}>
-        ${file ? html`<span class="place">${file}:${line}</span>` : null}
-        <span class="text">${text}</span>
-        ${detail && detail.trim() !== text ? html`<details><summary>Traceback</summary><pre>${detail}</pre></details>` : null}
-      </li>`,
-    )}
-  </ol>`;
+  const all = kept.value;
+  const list = all.filter(({ level }) => !hidden.value.includes(level)).toReversed();
+  const none = all.length === 0 ? "No messages. What goes wrong in a model is told here, with its line." : "All messages are filtered out.";
+  return html`<div class="messages">
+    <${Filter} />
+    ${list.length === 0 ? html`<p class="empty">${none}</p>` : null}
+    <ol id="log" class="log" aria-live="polite" hidden=${list.length === 0}>
+      ${list.slice(0, MOST).map((notice) => html`<${Message} key=${notice.number} notice=${notice} />`)}
+    </ol>
+    ${list.length > MOST ? html`<p class="empty">${list.length - MOST} older ones are not shown.</p>` : null}
+  </div>`;
 }
 
 export const messages = {

@@ -1,3 +1,152 @@
-import { html } from "../vendor/preact.js";
+// The model's parameters, as its class declares them: live ones act at once, the others with the next run.
 
-export const parameters = { id: "parameters", title: "Parameters", View: () => html`<p class="empty">Parameters</p>` };
+import { html, signal, useEffect } from "../vendor/preact.js";
+import { boundsText, read, written } from "../parameters/values.js";
+import { call, order, say } from "../server.js";
+import { complain, session, state } from "../store.js";
+
+const listing = signal(null); // what the model's text says of itself
+const drafts = signal({}); // what is written in fields and not yet in force, by name
+const told = signal({}); // what live parameters have been set to in this run, by name
+const seed = signal("");
+let of = {};
+
+/** Reads the parameters of the model anew, where it is another one, another run or another text. What is written in fields stays,
+ * but for what is in force now. */
+async function follow({ id, model, run, stale }) {
+  if (of.id === id && of.run === run && of.stale === stale) return;
+  const other = of.id !== id;
+  of = { id, run, stale };
+  told.value = {};
+  if (other) {
+    drafts.value = {};
+    seed.value = "";
+  } else {
+    drafts.value = Object.fromEntries(Object.entries(drafts.value).filter(([name, text]) => text !== written(session.value.parameters?.[name])));
+  }
+  try {
+    const answer = await call("GET", `/api/model?path=${encodeURIComponent(model)}`);
+    if (of.id === id) listing.value = answer.listing;
+  } catch (error) {
+    listing.value = null;
+    complain(error.message);
+  }
+}
+
+/** Returns the value that a parameter has in the run. */
+function inForce({ name, default: otherwise }) {
+  const value = told.value[name] ?? session.value?.parameters?.[name];
+  return value === undefined ? otherwise : value;
+}
+
+function known() {
+  return (listing.value?.parameters ?? []).filter((parameter) => parameter.known);
+}
+
+function problems() {
+  return known().some((parameter) => parameter.name in drafts.value && read(parameter, drafts.value[parameter.name]).problem);
+}
+
+function waiting() {
+  return known().filter((parameter) => {
+    if (!(parameter.name in drafts.value)) return false;
+    const { value, problem } = read(parameter, drafts.value[parameter.name]);
+    return !problem && value !== inForce(parameter);
+  });
+}
+
+/** Takes what is written in a field; a live parameter acts at once. */
+async function write(parameter, text, whole) {
+  const { value, problem } = read(parameter, text);
+  const { [parameter.name]: before, ...others } = drafts.value;
+  drafts.value = !problem && value === inForce(parameter) ? others : { ...drafts.value, [parameter.name]: text };
+  if (!parameter.live || problem || !whole || !session.value?.alive || value === inForce(parameter)) return;
+  try {
+    await say({ type: "set", name: parameter.name, value });
+    told.value = { ...told.value, [parameter.name]: value };
+    drafts.value = others;
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
+function restart(event) {
+  event.preventDefault();
+  if (problems()) return;
+  const settings = {};
+  for (const parameter of known()) {
+    const value = parameter.name in drafts.value ? read(parameter, drafts.value[parameter.name]).value : inForce(parameter);
+    if (value !== parameter.default) settings[parameter.name] = value;
+  }
+  const wanted = seed.value.trim();
+  order({ type: "restart", settings, ...(wanted ? { seed: Number(wanted) } : {}) });
+}
+
+function reset() {
+  drafts.value = Object.fromEntries(known().map((parameter) => [parameter.name, written(parameter.default)]));
+}
+
+function Control({ parameter, id, text, problem }) {
+  const { takes, choices, optional } = parameter;
+  const shared = { id, "aria-describedby": `${id}-help`, "aria-invalid": Boolean(problem) };
+  const change = (event) => write(parameter, event.currentTarget.value, true);
+  if (takes === "switch") return html`<input ...${shared} type="checkbox" checked=${text === "true"} onChange=${(event) => write(parameter, String(event.currentTarget.checked), true)} />`;
+  if (takes === "choice") {
+    return html`<select ...${shared} value=${text} onChange=${change}>
+      ${optional ? html`<option value="">none</option>` : null}
+      ${choices.map((choice) => html`<option key=${choice} value=${String(choice)}>${String(choice)}</option>`)}
+    </select>`;
+  }
+  return html`<input ...${shared} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck="false" autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
+}
+
+function Field({ parameter }) {
+  const { name, unit, help, live } = parameter;
+  const id = `parameter-${name}`;
+  const draft = drafts.value[name];
+  const text = draft ?? written(inForce(parameter));
+  const problem = draft === undefined ? null : read(parameter, draft).problem;
+  const changed = draft !== undefined && !problem;
+  return html`<div class="parameter ${changed ? "waits" : ""}">
+    <label for=${id}>${name}</label>
+    <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
+    <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="In force with the next run">next run</span>` : null}</span>
+    <p id="${id}-help" class="help">
+      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help}${help ? " " : ""}<span class="quiet">${boundsText(parameter)}${parameter.default === null ? "" : `${boundsText(parameter) ? "; " : ""}default ${written(parameter.default)}`}</span>
+    </p>
+  </div>`;
+}
+
+function Parameters() {
+  const shown = session.value;
+  useEffect(() => void (shown && follow(shown)));
+  if (!shown) return html`<p class="empty">Choose a model above: its parameters are shown here.</p>`;
+  if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
+  const fields = known();
+  const changed = waiting().length;
+  const problem = seed.value.trim() !== "" && !/^\d{1,15}$/.test(seed.value.trim());
+  return html`<form class="parameters" onSubmit=${restart}>
+    ${shown.stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
+    ${changed ? html`<p class="note">${changed === 1 ? "One value is" : `${changed} values are`} not in force yet: restart to use ${changed === 1 ? "it" : "them"}.</p>` : null}
+    ${fields.length === 0 ? html`<p class="empty">This model declares no parameters. A frozen dataclass that \`build\` takes, or numbers at the top of the file, become controls here.</p>` : null}
+    ${fields.map((parameter) => html`<${Field} key=${parameter.name} parameter=${parameter} />`)}
+    <div class="parameter">
+      <label for="parameter-seed-of-run">seed</label>
+      <span class="control"><input id="parameter-seed-of-run" aria-invalid=${problem} inputmode="numeric" placeholder=${String(shown.seed ?? "")} value=${seed.value} onInput=${(event) => (seed.value = event.currentTarget.value)} /></span>
+      <span class="mark"></span>
+      <p class="help">${problem ? html`<span class="bad" role="alert">a whole number is wanted </span>` : null}What all chance comes from; empty: as in the present run.</p>
+    </div>
+    <footer>
+      <button class="primary" disabled=${problems() || problem || (shown.loading && state.value === null)}>Restart with these</button>
+      <button type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults</button>
+      <button type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo</button>
+    </footer>
+  </form>`;
+}
+
+export const parameters = {
+  id: "parameters",
+  title: "Parameters",
+  View: Parameters,
+  badge: () => (session.value?.stale || Object.keys(drafts.value).length ? { text: "", title: "not in force yet" } : null),
+};

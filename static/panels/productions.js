@@ -1,3 +1,96 @@
-import { html } from "../vendor/preact.js";
+// The productions: the firing trace above, and below it why: conditions, the conflict set, retrievals.
 
-export const productions = { id: "productions", title: "Productions", View: () => html`<p class="empty">Productions</p>` };
+import { html, useEffect, useState } from "../vendor/preact.js";
+import { at, production, question, shownReasons } from "../mind/asked.js";
+import { HeldNote, held } from "../mind/breakpoints.js";
+import { ConflictSets } from "../mind/conflict.js";
+import { explained, ProductionList, productionsOf } from "../mind/list.js";
+import { Retrievals } from "../mind/retrievals.js";
+import { FiringTrace } from "../mind/trace.js";
+import { Waiting } from "../mind/waiting.js";
+import { Why } from "../mind/why.js";
+import { useAnswer } from "../parts/answer.js";
+import { Splitter } from "../parts/splitter.js";
+import { remembered } from "../remembered.js";
+import { running, state } from "../store.js";
+
+const below = remembered("reasons height", 270);
+
+function Moment({ told }) {
+  const [text, setText] = useState("");
+  useEffect(() => setText(at.value === null ? "" : String(Number(at.value.toFixed(6)))), [at.value]);
+  const wrong = text.trim() !== "" && !(Number(text) >= 0);
+
+  function take(event) {
+    if (event.type === "keydown" && event.key !== "Enter") return;
+    if (!wrong) at.value = text.trim() === "" ? null : Number(text);
+  }
+
+  const time = told.answer?.[0]?.time;
+  return html`<label class="moment" title="The moment that is explained; nothing for the present one">
+      at <input aria-label="Explain the time [s]" aria-invalid=${wrong} inputmode="decimal" placeholder=${(time ?? state.value?.time ?? 0).toFixed(3)} value=${text} onInput=${(event) => setText(event.currentTarget.value)} onKeyDown=${take} onBlur=${take} /> s
+    </label>
+    <button aria-pressed=${at.value === null} title="Explain the present moment" onClick=${() => (at.value = null)}>Now</button>`;
+}
+
+const VIEWS = [
+  { id: "why", text: "Why" },
+  { id: "conflict", text: "Conflict set" },
+  { id: "retrievals", text: "Retrievals" },
+];
+
+function Reasons() {
+  const told = useAnswer(question.value);
+  const explanations = told.answer ?? [];
+  const shown = VIEWS.some(({ id }) => id === shownReasons.value) ? shownReasons.value : "why";
+  const all = productionsOf(
+    state.value?.parts,
+    explanations.flatMap((one) => one.productions),
+  );
+  const chosen = explained(all);
+  const time = explanations[0]?.time;
+  const old = running.value && at.value === null && time !== undefined;
+  const choose = (event, id) => {
+    const n = VIEWS.findIndex((view) => view.id === id) + ({ ArrowRight: 1, ArrowLeft: -1 }[event.key] ?? 0);
+    shownReasons.value = VIEWS[(n + VIEWS.length) % VIEWS.length].id;
+    event.currentTarget.parentElement.children[(n + VIEWS.length) % VIEWS.length].focus();
+    event.preventDefault();
+  };
+  return html`<section class="reasons" aria-label="Explanations">
+    <div class="tools">
+      <div class="choices" role="tablist" aria-label="Explanations">
+        ${VIEWS.map(
+          ({ id, text }) => html`<button key=${id} role="tab" id="reasons-${id}" aria-controls="reasons-panel" aria-selected=${shown === id} tabindex=${shown === id ? 0 : -1} onClick=${(event) => choose(event, id)} onKeyDown=${(event) => ["ArrowLeft", "ArrowRight"].includes(event.key) && choose(event, id)}>${text}</button>`,
+        )}
+      </div>
+      <span class="stretch"></span>
+      ${old && shown !== "conflict" ? html`<span class="quiet" role="status">as it was at ${time.toFixed(3)} s</span>` : null}
+      <${Moment} told=${told} />
+    </div>
+    <div class="reasons-body ${shown}" role="tabpanel" id="reasons-panel" aria-labelledby="reasons-${shown}">
+      ${shown === "why" ? html`<${ProductionList} all=${all} chosen=${chosen} />` : null}
+      <div class="reasons-text" tabindex="0" role="region" aria-label="Explanation">
+        <${Waiting} told=${told} />
+        ${shown === "why" ? html`<div id="why-text">${told.error ? null : html`<${Why} item=${chosen} />`}</div>` : null}
+        ${shown === "conflict" ? html`<${ConflictSets} />` : null}
+        ${shown === "retrievals" && told.answer ? html`<${Retrievals} explanations=${explanations} />` : null}
+      </div>
+    </div>
+  </section>`;
+}
+
+function Productions() {
+  return html`<div class="productions">
+    <${HeldNote} />
+    <${FiringTrace} />
+    <${Splitter} size=${below} along="rows" label="Height of the explanations" least=${120} most=${() => Math.max(160, innerHeight - 420)} />
+    <div class="reasons-place" style=${{ height: `${below.value}px` }}><${Reasons} /></div>
+  </div>`;
+}
+
+export const productions = {
+  id: "productions",
+  title: "Productions",
+  View: Productions,
+  badge: () => (held.value === null ? null : { text: "paused", level: "bad" }),
+};

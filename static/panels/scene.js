@@ -1,17 +1,51 @@
-// The 3D view: viser's page in a frame that never moves, for moving it would load it again.
+// The 3D view: viser's page in a frame that never moves, for moving it would load it again; and a strip of switches on its edge.
 
 import { html, useRef } from "../vendor/preact.js";
+import { RetinaInset } from "../eye/inset.js";
+import { Icon } from "../parts/icon.js";
+import { remembered } from "../remembered.js";
+import { order } from "../server.js";
 import { session } from "../store.js";
 import { dark } from "../theme.js";
+
+const open = remembered("scene switches", true);
+const CAMERAS = { free: "free", follow: "follow", eye: "through the eye", top: "from above" };
+
+/** The switches of what is drawn over the scene, and from where it is seen; the same for all who watch. */
+function Switches() {
+  const { overlays, camera, cameras } = session.value;
+  if (!open.value) return html`<button class="switches-closed" title="What is drawn over the scene" onClick=${() => (open.value = true)}>Overlays</button>`;
+  return html`<div class="switches" role="toolbar" aria-label="3D view">
+    <label>Camera
+      <select value=${camera} onChange=${(event) => order({ type: "camera", view: event.currentTarget.value })}>
+        ${cameras.map((view) => html`<option key=${view} value=${view}>${CAMERAS[view] ?? view}</option>`)}
+      </select>
+    </label>
+    ${overlays.map(
+      ({ name, title, shown }) => html`<label key=${name}>
+        <input type="checkbox" checked=${shown} onChange=${(event) => order({ type: "overlay", name, shown: event.currentTarget.checked })} />${title}
+      </label>`,
+    )}
+    <button class="bare" aria-label="Hide the switches" title="Hide" onClick=${() => (open.value = false)}><${Icon} name="close" /></button>
+  </div>`;
+}
+
+/** Says why there is nothing to see yet. */
+function missing(told) {
+  if (!told) return "";
+  if (told.world) return "The 3D view is being made …";
+  if (told.loading) return "The model is being loaded …";
+  return told.kind ? "This model has no world: there is nothing to see. Its buffers, productions and memory stand beside." : "";
+}
 
 export function Scene() {
   const told = session.value;
   const shown = Boolean(told?.world && told.scene);
   const address = useRef("about:blank");
-  if (shown) address.current = `/viser/${told.id}/${dark.value ? "?darkMode" : ""}`;
-  const text = !told ? "" : told.world ? "The 3D view is being made …" : told.loading ? "The model is being loaded …" : told.kind ? "This model has no world to show." : "";
+  if (shown) address.current = `/viser/${told.id}/?panel=hidden${dark.value ? "&darkMode" : ""}`;
   return html`<section id="scene" class="scene" aria-label="3D view">
     <iframe title="3D view" src=${address.current} hidden=${!shown}></iframe>
-    ${shown ? null : html`<p class="empty">${text}</p>`}
+    ${shown ? html`<${Switches} />` : html`<p class="empty">${missing(told)}</p>`}
+    <${RetinaInset} />
   </section>`;
 }

@@ -5,7 +5,8 @@ import { html, signal, useEffect, useRef } from "../vendor/preact.js";
 const open = signal(null);
 
 /** Shows a dialog: `title`, `body` (what `html` makes) and `actions` [{text, kind, value}]. Returns the value of the one that is
- * chosen; null where it is closed. With `ask` there is a line to write in, and what was written is returned. */
+ * chosen; null where it is closed. With `ask` {label, value, problem?, choices?}
+ * there is a line to write in, and what was written is returned; with choices [{value, text}] {text, choice}. */
 export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined }) {
   return new Promise((resolve) => (open.value = { title, body, actions, ask, resolve }));
 }
@@ -16,9 +17,9 @@ export function confirmed(title, text, action) {
   return dialog({ title, body: html`<p>${text}</p>`, actions }).then(Boolean);
 }
 
-/** Asks for a text; returns it, or null. */
-export function asked(title, label, value, action) {
-  return dialog({ title, ask: { label, value }, actions: [{ text: "Cancel", value: null }, { text: action, value: true, kind: "primary" }] });
+/** Asks for a text; returns it, or null. `more` may have `problem`, why the text is not right, and `choices`; see `dialog`. */
+export function asked(title, label, value, action, more = {}) {
+  return dialog({ title, ask: { label, value, ...more }, actions: [{ text: "Cancel", value: null }, { text: action, value: true, kind: "primary" }] });
 }
 
 /** The place of the dialogs. */
@@ -34,9 +35,14 @@ export function Dialogs() {
   if (!shown) return null;
 
   function done(value) {
-    const result = shown.ask && value ? line.current.value.trim() : value;
+    const result = shown.ask && value ? written() : value;
     open.value = null;
     shown.resolve(result);
+  }
+
+  function written() {
+    const text = line.current.value.trim();
+    return shown.ask.choices ? { text, choice: box.current.querySelector("[name=choice]:checked").value } : text;
   }
 
   function press(event) {
@@ -48,7 +54,16 @@ export function Dialogs() {
   return html`<dialog ref=${box} aria-labelledby="dialog-title" onClose=${() => open.value === shown && done(null)} onKeyDown=${press}>
     <h2 id="dialog-title">${shown.title}</h2>
     ${shown.body}
-    ${shown.ask ? html`<label class="field">${shown.ask.label}<input ref=${line} value=${shown.ask.value} spellcheck="false" /></label>` : null}
+    ${shown.ask
+      ? html`<label class="field">
+          ${shown.ask.label}
+          <input ref=${line} value=${shown.ask.value} spellcheck="false" aria-invalid=${Boolean(shown.ask.problem)} />
+          ${shown.ask.problem ? html`<span class="bad" role="alert">${shown.ask.problem}</span>` : null}
+        </label>`
+      : null}
+    ${shown.ask?.choices?.map(
+      ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
+    )}
     <footer>
       ${shown.actions.map(({ text, value, kind }) => html`<button class=${kind ?? ""} onClick=${() => done(value)}>${text}</button>`)}
     </footer>

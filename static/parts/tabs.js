@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 
 /**
  * @param label What the tabs are.
- * @param tabs [{id, title, View, badge?}]; `badge` returns a short text beside the title, or nothing.
+ * @param tabs [{id, title, View, badge?}]; `badge` returns {text, title?, level?} for a mark beside the title (a dot, where the text is empty), or nothing.
  * @param shown A signal with the id of the one that is shown.
  */
 export function Tabs({ label, tabs, shown }) {
@@ -32,7 +32,7 @@ export function Tabs({ label, tabs, shown }) {
           tabindex=${open.id === id ? 0 : -1}
           onClick=${() => (shown.value = id)}
         >
-          ${title}${more ? html`<span class="badge ${more.level ?? ""}">${more.text}</span>` : null}
+          ${title}${more ? html`<span class="badge ${more.level ?? ""} ${more.text ? "" : "dot"}" title=${more.title}>${more.text}</span>` : null}
         </button>`;
       })}
     </div>

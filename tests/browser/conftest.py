@@ -41,6 +41,9 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
         if message.type == "error":
             complaints.append(message.text)
 
+    def fault(error: Any) -> None:
+        complaints.append(str(error))
+
     contexts: list[Any] = []
 
     def opened(model: str = "doorway.py", width: int = 1280, height: int = 800, theme: Any = "light") -> Page:
@@ -48,7 +51,7 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
         page = contexts[-1].new_page()
         page.set_default_timeout(PATIENCE)
         page.on("console", note)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("pageerror", fault)
         page.goto(f"{workbench.address}&model={model}")
         assert "token" not in page.url
         return page

@@ -33,6 +33,9 @@ class Served:
     def get(self, path: str, **more: Any) -> httpx.Response:
         return httpx.get(self.url + path, headers=self.headers, timeout=60, **more)
 
+    def put(self, path: str, body: Any) -> httpx.Response:
+        return httpx.put(self.url + path, headers=self.headers, json=body, timeout=60)
+
     def post(self, path: str, body: Any = None) -> httpx.Response:
         return httpx.post(self.url + path, headers=self.headers, json={} if body is None else body, timeout=60)
 

@@ -169,3 +169,14 @@ def test_where_the_models_are(tmp_path: Path) -> None:
     assert models_folder(None, present, home) == present / "models"
     assert models_folder(tmp_path / "named", present, home) == tmp_path / "named"
     assert (tmp_path / "named").is_dir()
+
+
+def test_a_file_keeps_its_encoding_and_its_line_ends(folder: ModelFolder) -> None:
+    (folder.root / "old.py").write_bytes(b"# -*- coding: latin-1 -*-\r\nname = '\xe4'\r\n")
+    file = folder.read("old.py")
+    folder.save("old.py", file.text + "other = 'ö'\n", file.version)
+    assert (folder.root / "old.py").read_bytes() == b"# -*- coding: latin-1 -*-\r\nname = '\xe4'\r\nother = '\xf6'\r\n"
+    with pytest.raises(FileError, match="'€' is not in the encoding"):
+        folder.save("new.py", "# coding: latin-1\nprice = '€'\n", None)
+    with pytest.raises(FileError, match="cannot be used"):
+        folder.save("new.py", "# coding: klingon\n", None)

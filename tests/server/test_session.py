@@ -13,6 +13,7 @@ from actr3d.running.building import build
 from actr3d.running.printed import ProgramOutput
 from actr3d.trace import Trace
 from tests.server.desk import Desk, RefusedError, Talk
+from workbench.files import ModelFolder
 
 MODELS = Path(__file__).parents[2] / "models"
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
@@ -383,3 +384,31 @@ def test_a_check_takes_no_longer_than_it_may(desk: Desk, tmp_path: Path, monkeyp
     monkeypatch.setattr("workbench.sessions.CHECK_TIME", 0.5)
     (problem,) = desk.do(desk.sessions(tmp_path).check(tmp_path / "m.py", "while True: pass\ndef build() -> Simulation: ..."))
     assert "longer than 0.5 s" in problem["message"]
+
+
+def test_a_notice_says_which_text_it_is_about(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("def fail():\n    raise ValueError('no')\n", encoding="utf-8")
+    talk = desk.begin(tmp_path, "import helper\nhelper.fail()\n")
+    talk.say("run")
+    notice = talk.wait_for_notice("ValueError: no")
+    assert (notice["file"], notice["line"], notice["attempt"]) == ("helper.py", 2, 1)
+    assert notice["version"] == ModelFolder.version(tmp_path / "model.py")
+    (tmp_path / "model.py").write_text("print(\n", encoding="utf-8")
+    talk.say("restart")
+    notice = talk.wait_for_notice("never closed")
+    assert (notice["file"], notice["line"], notice["attempt"]) == ("model.py", 1, 2)
+    assert notice["version"] == ModelFolder.version(tmp_path / "model.py") != talk.facts["version"]
+    assert talk.facts["attempt"] == 2
+    assert talk.facts["run"] == 1
+
+
+def test_a_session_goes_on_with_a_file_that_is_renamed_or_gone(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING)
+    (tmp_path / "model.py").rename(tmp_path / "other.py")
+    assert talk.facts["gone"]
+    assert talk.facts["stale"]
+    talk.sessions.renamed(tmp_path / "model.py", tmp_path / "other.py", "other.py")
+    assert (talk.facts["model"], talk.facts["gone"], talk.facts["stale"]) == ("other.py", False, False)
+    talk.say("restart", run=True)
+    talk.wait(lambda: talk.facts["run"] == 2)
+    talk.until("ended")

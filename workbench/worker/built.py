@@ -15,7 +15,7 @@ from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.picture import picture_of
 from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, microseconds, seconds
-from actr3d.errors import SimulationError
+from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
 from actr3d.running.building import build
 from actr3d.running.printed import BuiltOutput
@@ -30,6 +30,7 @@ from workbench.curves import Curves
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor
+from workbench.worker.drawings import Drawings
 from workbench.worker.messages import Facts
 from workbench.worker.past import Past
 from workbench.worker.surroundings import surroundings
@@ -158,6 +159,11 @@ class BuiltRun:
         model = loaded(saved(self._simulation.world.mj_model))
         return Curves(model, surroundings(self._simulation.world))
 
+    @cached_property
+    def _drawings(self) -> Drawings:
+        """What tells what overlays show, once somebody looks."""
+        return Drawings(self._simulation, self._past)
+
     # -- what the conductor asks
 
     @property
@@ -213,6 +219,7 @@ class BuiltRun:
         before = 0 if trace is None else len(trace)
         self._simulation.command(word, *values, body=body, **named)
         self._past.cut(self._simulation.ticks)
+        self._drawings.cut(self._simulation.ticks)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
@@ -247,6 +254,12 @@ class BuiltRun:
         world = self._simulation.world
         names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
         return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+
+    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+        """Returns what overlays show of the present, by kind; nothing of what cannot be told, as after a physics that diverged."""
+        with suppress(Actr3dError):
+            return self._drawings.told(kinds)
+        return {}
 
     def result(self) -> dict[str, Any] | None:
         """Returns what was measured of the run, if anything was."""

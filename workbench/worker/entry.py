@@ -19,10 +19,10 @@ from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.conductor import Conductor
 from workbench.worker.link import Link
+from workbench.worker.memory import watch_memory
 from workbench.worker.messages import Over, Reply, notice
+from workbench.worker.orphans import adopt
 from workbench.worker.trouble import notice_of
-
-MEGABYTE = 1 << 20
 
 
 def main(wire: socket.socket, output: int, memory: int) -> None:
@@ -34,8 +34,10 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
         memory: How much memory the model may take beyond what the worker has [MB]; 0 for no limit.
     """
     _settle(output)
-    _limit_memory(memory)
+    adopt()
+    watch_memory(memory)
     link = Link(wire)
+    os.register_at_fork(after_in_child=link.leave)
     conductor = Conductor(link)
     warnings.simplefilter("default")
     warnings.showwarning = _told_to(link)
@@ -99,16 +101,6 @@ class _Nothing(io.RawIOBase):
 
     def write(self, data: Any, /) -> int:
         return len(data)
-
-
-def _limit_memory(megabytes: int) -> None:
-    if not megabytes or sys.platform != "linux":
-        return
-    import resource
-
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-    most = pages * resource.getpagesize() + megabytes * MEGABYTE
-    resource.setrlimit(resource.RLIMIT_AS, (most, most))
 
 
 def _told_to(link: Link) -> Any:

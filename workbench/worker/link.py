@@ -13,12 +13,34 @@ from collections.abc import Sequence
 from time import perf_counter
 from types import FrameType
 
-from workbench.worker.messages import LENGTH, TO_WORKER, At, Do, Leave, Message, News, Start, State, Where, framed, whole
+from workbench.worker.messages import (
+    LENGTH,
+    LONGEST,
+    LONGEST_ANSWER,
+    TO_WORKER,
+    At,
+    Do,
+    Draw,
+    Leave,
+    Message,
+    News,
+    Notice,
+    Reply,
+    Start,
+    State,
+    Where,
+    framed,
+    whole,
+)
 
 MOST_EVENTS = 50_000
 """So many events may wait to be sent; beyond that the oldest are left out, and the numbers tell so."""
+MOST_BYTES = 50_000_000
+"""And no more than so many bytes of them."""
 AT_ONCE = 2_000
 """So many events go in one message."""
+MOST_TOLD = 1_000
+"""So many things that a run has to say wait to be sent; then warnings are left out."""
 
 
 class Link:
@@ -30,23 +52,29 @@ class Link:
 
     def __init__(self, wire: socket.socket) -> None:
         self._wire = wire
-        self.inbox: queue.SimpleQueue[Do | Leave] = queue.SimpleQueue()
+        self.inbox: queue.SimpleQueue[Do | Draw | Leave] = queue.SimpleQueue()
         self._messages: deque[Message] = deque()
         self._events: deque[bytes] = deque()
+        self._size = 0
+        """How many bytes they have."""
         self._first = 0
         """The number of the first event that waits."""
         self._state: State | None = None
         self._something = threading.Condition()
         self._sending = False
         self._main = threading.main_thread().ident
+        self._left = False
+        """Whether this is a copy of the process, which has nothing to do with the server."""
         self.start: Start = self._read_start()
         threading.Thread(target=self._read, name="reader", daemon=True).start()
         threading.Thread(target=self._write, name="writer", daemon=True).start()
 
     # -- what comes
 
-    def receive(self, timeout: float | None = None) -> Do | Leave | None:
+    def receive(self, timeout: float | None = None) -> Do | Draw | Leave | None:
         """Returns the next command; waits for it for so long [s], or for ever. None where there is none by then."""
+        if self._left:
+            os._exit(0)  # a copy of the process that the model has made: the run goes on in one only
         try:
             return self.inbox.get(timeout=timeout) if timeout is None or timeout > 0 else self.inbox.get_nowait()
         except queue.Empty:
@@ -57,7 +85,7 @@ class Link:
         assert isinstance(message, Start)
         return message
 
-    def _next(self) -> Start | Do | Leave | Where | None:
+    def _next(self) -> Start | Do | Draw | Leave | Where | None:
         head = self._exactly(LENGTH)
         data = None if head is None else self._exactly(int.from_bytes(head, "big"))
         return None if data is None else TO_WORKER.decode(data)
@@ -81,7 +109,7 @@ class Link:
                 os._exit(0)  # the server is gone; nobody is left to be told anything
             if isinstance(message, Where):
                 self.post(self._where())
-            elif isinstance(message, (Do, Leave)):
+            elif isinstance(message, (Do, Draw, Leave)):
                 self.inbox.put(message)
 
     def _where(self) -> At:
@@ -95,8 +123,10 @@ class Link:
     # -- what goes
 
     def post(self, message: Message) -> None:
-        """Sends a message, after all that came before it."""
+        """Sends a message, after all that came before it; but no notice where very many wait already."""
         with self._something:
+            if isinstance(message, Notice) and len(self._messages) >= MOST_TOLD and message.level != "error":
+                return
             self._messages.append(message)
             self._something.notify()
 
@@ -106,8 +136,9 @@ class Link:
             if not self._events:
                 self._first = first
             self._events.extend(events)
-            while len(self._events) > MOST_EVENTS:
-                self._events.popleft()
+            self._size += sum(map(len, events))
+            while len(self._events) > MOST_EVENTS or self._size > MOST_BYTES:
+                self._size -= len(self._events.popleft())
                 self._first += 1
             self._state = state
             self._something.notify()
@@ -116,7 +147,7 @@ class Link:
         """Takes back events from a number on, as the message tells."""
         with self._something:
             while self._events and self._first + len(self._events) > events:
-                self._events.pop()
+                self._size -= len(self._events.pop())
             self._flush_events()
             self._messages.append(message)
             self._something.notify()
@@ -126,8 +157,16 @@ class Link:
         """Whether the latest state has been sent, so that a new one is worth making."""
         return self._state is None and not self._sending
 
+    def leave(self) -> None:
+        """Lets go of the wire, in a copy of the process that the model has made."""
+        self._left = True
+        self._something = threading.Condition()  # another thread of the model's process may have held it
+        os.close(self._wire.detach())
+
     def flush(self, timeout: float = 2.0) -> None:
         """Waits until everything is sent, but not for ever."""
+        if self._left:
+            os._exit(0)
         end = perf_counter() + timeout
         with self._something:
             while (self._messages or self._events or self._state is not None or self._sending) and perf_counter() < end:
@@ -139,6 +178,7 @@ class Link:
             some = [self._events.popleft() for _ in range(min(AT_ONCE, len(self._events)))]
             self._messages.append(News(first=self._first, events=some))
             self._first += len(some)
+        self._size = 0
 
     def _write(self) -> None:
         while True:
@@ -156,6 +196,16 @@ class Link:
                 self._sending = True
             try:
                 for message in messages:
-                    self._wire.sendall(framed(message))
+                    self._wire.sendall(_bounded(message))
             except OSError:
                 os._exit(0)
+
+
+def _bounded(message: Message) -> bytes:
+    """Returns a message as it goes over the wire, or in place of one that is too long another that says so."""
+    if isinstance(message, Reply) and len(message.result) > LONGEST_ANSWER:
+        return framed(Reply(id=message.id, error=f"the answer is too long ({len(message.result):,} bytes); ask for less"))
+    data = framed(message)
+    if len(data) > LONGEST:
+        return framed(Notice(level="error", text=f"what the workbench has to say of this run is too long ({len(data):,} bytes)"))
+    return data

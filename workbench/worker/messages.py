@@ -13,9 +13,12 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_fiel
     """The base of all messages."""
 
 
-def whole(text: str) -> str:
-    """Returns a text that can be sent: half characters, which no encoding has, are written as escapes."""
-    return str(text).encode("utf-8", "backslashreplace").decode("utf-8")
+def whole(text: str, most: int = 10_000) -> str:
+    """Returns a text that can be sent: half characters, which no encoding has, as escapes, and a long one without its middle."""
+    told = str(text)
+    if len(told) > most:
+        told = f"{told[: most // 2]}\n… ({len(told) - most:,} more characters) …\n{told[-(most // 2) :]}"
+    return told.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 # -- to the worker
@@ -39,6 +42,10 @@ class Start(Message, frozen=True, kw_only=True):
     factor: float | None = None
     breakpoints: tuple[str, ...] = ()
     run: bool = False
+    attempt: int = 0
+    """Which of its session's attempts to begin a run this is, from 1."""
+    version: str = ""
+    """Tells the model's text from others; see `ModelFile.version`."""
 
 
 class Do(Message, frozen=True, kw_only=True):
@@ -51,6 +58,12 @@ class Do(Message, frozen=True, kw_only=True):
 
 class Leave(Message, frozen=True, kw_only=True):
     """Asks the worker to end in good order."""
+
+
+class Draw(Message, frozen=True, kw_only=True):
+    """Says of which kinds of overlays every state is to tell from now on; see `worker.drawings`."""
+
+    kinds: tuple[str, ...]
 
 
 class Where(Message, frozen=True, kw_only=True):
@@ -99,6 +112,8 @@ class State(Message, frozen=True, kw_only=True):
     """JSON: what was measured of a run that has ended; null where nothing was, or it goes on."""
     physics: bytes | None
     """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
+    drawn: dict[str, Any] = {}
+    """What overlays show of it, by kind: what a `Draw` has asked for."""
 
 
 class News(Message, frozen=True, kw_only=True):
@@ -130,7 +145,7 @@ def notice(
     level: Literal["info", "warning", "error"], text: str, file: str | None = None, line: int | None = None, detail: str = ""
 ) -> Notice:
     """Returns a notice of any texts, such as models make."""
-    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail))
+    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail, 100_000))
 
 
 class Reply(Message, frozen=True, kw_only=True):
@@ -154,7 +169,7 @@ class Over(Message, frozen=True, kw_only=True):
     """The worker ends in good order."""
 
 
-ToWorker = Start | Do | Leave | Where
+ToWorker = Start | Do | Draw | Leave | Where
 FromWorker = Facts | State | News | Cut | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()
@@ -164,6 +179,8 @@ LENGTH = 4
 """How many bytes tell a message's length."""
 LONGEST = 200_000_000
 """No message is longer [bytes]; a compiled scene with large meshes is the largest."""
+LONGEST_ANSWER = 20_000_000
+"""No answer to a question is longer [bytes]."""
 
 
 def framed(message: Message) -> bytes:

@@ -226,6 +226,10 @@ class ProgramRun:
         """Returns nothing: a program has no world that is shown."""
         return None, {}
 
+    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+        """Returns nothing: there is nothing to draw on."""
+        return {}
+
     def result(self) -> dict[str, Any] | None:
         """Returns nothing: a program is not measured."""
         return None

@@ -17,11 +17,18 @@ def told_of(error: BaseException) -> str:
         return "the model used more memory than it may"
     if isinstance(error, SystemExit):
         return f"the model ended its process (SystemExit: {error.code})"
-    text = str(error) if isinstance(error, Actr3dError) else complaint(error, _HERE).message
-    return whole(text) or type(error).__name__
+    try:
+        text = str(error) if isinstance(error, Actr3dError) else complaint(error, _HERE).message
+        return whole(text) or type(error).__name__
+    except MemoryError:
+        return f"{type(error).__name__}, and not enough memory is left to tell more"
 
 
 def notice_of(error: BaseException) -> Notice:
     """Returns what the user is told of an error, with the line of the model where it was."""
-    told = complaint(error, _HERE)
-    return notice("error", told_of(error), told.file, told.line, told.text)
+    try:
+        told = complaint(error, _HERE)
+        text = told_of(error).removeprefix(f"{told.file}:{told.line}: ")  # where it is, is told beside it
+        return notice("error", text, told.file, told.line, told.text)
+    except MemoryError:
+        return notice("error", told_of(error))

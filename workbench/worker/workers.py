@@ -6,11 +6,10 @@ import asyncio
 import os
 import signal
 import socket
-import subprocess
-import sys
 from contextlib import suppress
 
 from workbench.worker.messages import FROM_WORKER, LENGTH, LONGEST, FromWorker, Leave, Message, framed
+from workbench.worker.spawn import Zygote, spawn
 from workbench.worker.zygote import ANSWER, ASK, BORN, READY
 
 GRACE = 0.7
@@ -19,6 +18,9 @@ MORE_GRACE = 0.4
 """How long after that until it is killed [s]: in all less than the 2 s that a user is promised."""
 PRINTED = 8192
 """So much of what a worker prints past its model's `print` is read at once [bytes]."""
+LOST = 1000
+"""How a worker ended of which that is not known: the process from which it was forked has been ended."""
+NO_MORE = "no worker can be started: the process that starts them has ended"
 
 
 Output = tuple[asyncio.StreamReader, asyncio.BaseTransport]
@@ -96,11 +98,12 @@ class Workers:
 
     Args:
         memory: How much memory each may take [MB]; 0 for no limit.
+        zygote: The process from which they are forked, where it has been started already.
     """
 
-    def __init__(self, memory: int = 0) -> None:
+    def __init__(self, memory: int = 0, zygote: Zygote | None = None) -> None:
         self.memory = memory
-        self._zygote: subprocess.Popen[bytes] | None = None
+        self._zygote = zygote
         self._control: socket.socket | None = None
         self._alive: dict[int, Worker] = {}
         self._early: dict[int, int] = {}
@@ -111,40 +114,30 @@ class Workers:
         self._listening: asyncio.Task[None] | None = None
 
     def begin(self) -> None:
-        """Starts the process from which workers are forked; it loads meanwhile."""
-        ours, theirs = socket.socketpair()
-        # Whoever is started by it goes through sets in the same order each time, as `actr3d run` does; numpy's threads would
-        # not outlive a fork, and are of no use here.
-        environment = {**os.environ, "PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}
-        command = [sys.executable, "-m", "workbench.worker.zygote", str(theirs.fileno())]
-        self._zygote = subprocess.Popen(command, pass_fds=[theirs.fileno()], env=environment, stdin=subprocess.DEVNULL)
-        theirs.close()
-        ours.setblocking(False)
-        self._control = ours
-        self._listening = asyncio.create_task(self._listen(ours))
+        """Begins to listen to the process from which workers are forked, and starts it where that has not been done."""
+        if self._zygote is None:
+            self._zygote = spawn()
+        self._control = self._zygote.control
+        self._ready = asyncio.Event()
+        self._born = asyncio.Queue()
+        self._listening = asyncio.create_task(self._listen(self._zygote))
 
     async def launch(self) -> Worker:
         """Returns a new worker.
 
         Raises:
-            OSError: If the system has no more processes or files to give.
+            OSError: If the system has no more processes or files to give, or workers are to come no more.
         """
-        await self._ready.wait()
-        if self._control is None:
-            raise OSError("no worker can be started: the process that starts them has ended")
         ours, theirs = socket.socketpair()
         reading, writing = os.pipe()
+        # Who waits may leave; the process that is being born is heard of all the same, and ends where its wire is closed.
+        birth = asyncio.create_task(self._birth(theirs, writing))
         try:
-            async with self._launching:
-                socket.send_fds(self._control, [ASK.pack(self.memory)], [theirs.fileno(), writing])
-                pid = await self._born.get()
-        finally:
-            theirs.close()
-            os.close(writing)
-        if pid < 0:
+            pid = await asyncio.shield(birth)
+        except BaseException:
             ours.close()
             os.close(reading)
-            raise OSError("no worker can be started: the process that starts them has ended")
+            raise
         ours.setblocking(False)
         reader, writer = await asyncio.open_connection(sock=ours, limit=1 << 20)
         worker = Worker(pid, reader, writer, await _stream(reading))
@@ -153,10 +146,26 @@ class Workers:
             worker.exit.set_result(self._early.pop(pid))
         return worker
 
-    async def _listen(self, control: socket.socket) -> None:
+    async def _birth(self, wire: socket.socket, output: int) -> int:
+        """Lets a worker be born that has these; returns its process number."""
+        try:
+            await self._ready.wait()
+            async with self._launching:
+                if self._control is None:
+                    raise OSError(NO_MORE)
+                socket.send_fds(self._control, [ASK.pack(self.memory)], [wire.fileno(), output])
+                pid = await self._born.get()
+        finally:
+            wire.close()
+            os.close(output)
+        if pid < 0:
+            raise OSError(NO_MORE)
+        return pid
+
+    async def _listen(self, zygote: Zygote) -> None:
         loop = asyncio.get_running_loop()
         rest = b""
-        while data := await loop.sock_recv(control, 4096):
+        while data := await loop.sock_recv(zygote.control, 4096):
             rest += data
             while len(rest) >= ANSWER.size:
                 what, pid, status = ANSWER.unpack(rest[: ANSWER.size])
@@ -170,12 +179,28 @@ class Workers:
                         worker.exit.set_result(status)
                 else:
                     self._early[pid] = status
+        await self._begin_again(zygote)
+
+    async def _begin_again(self, zygote: Zygote) -> None:
+        """Starts another process from which workers are forked, as a model has ended this one; runs end with it."""
+        useful = self._ready.is_set()
+        self._say_ended()
+        workers = list(self._alive.values())
+        self._alive.clear()
+        for worker in workers:
+            worker.kill()
+            if not worker.exit.done():
+                worker.exit.set_result(LOST)
+        await asyncio.to_thread(zygote.end)
+        if useful:  # one that cannot even load would not load again
+            self._zygote = None
+            self.begin()
+
+    def _say_ended(self) -> None:
+        """Lets those know who wait for a worker that none will come."""
         self._control = None
         self._ready.set()
         self._born.put_nowait(-1)
-        for worker in self._alive.values():
-            if not worker.exit.done():
-                worker.exit.set_result(-signal.SIGKILL)
 
     async def close(self) -> None:
         """Ends all workers, and the process that has started them."""
@@ -183,14 +208,9 @@ class Workers:
             self._listening.cancel()
         for worker in list(self._alive.values()):
             worker.kill()
-        if self._control is not None:
-            self._control.close()
+        self._say_ended()
         if self._zygote is not None:
-            with suppress(subprocess.TimeoutExpired):
-                await asyncio.to_thread(self._zygote.wait, 3)
-            if self._zygote.poll() is None:
-                self._zygote.kill()
-                await asyncio.to_thread(self._zygote.wait)
+            await asyncio.to_thread(self._zygote.end)
 
 
 async def _stream(descriptor: int) -> Output:

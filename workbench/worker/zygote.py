@@ -14,13 +14,18 @@ import signal
 import socket
 import struct
 import sys
+import time
 from contextlib import suppress
+
+from workbench.worker.orphans import adopt, end_orphans
 
 ANSWER = struct.Struct("!Bqi")
 """What is told (BORN or DEAD), the process number, and for a dead one its status as `os.waitstatus_to_exitcode` gives it."""
 BORN, DEAD, READY = 1, 2, 3
 ASK = struct.Struct("!i")
 """How much memory a new worker may take [MB]."""
+FAREWELL = 1.0
+"""So long it takes at most to see its workers end [s]."""
 
 
 def main(number: int) -> None:
@@ -29,8 +34,11 @@ def main(number: int) -> None:
     Args:
         number: The file descriptor of the socket to the server.
     """
+    gc.disable()  # nothing that is loaded is garbage
     import workbench.worker.preload  # pyright: ignore[reportUnusedImport] # noqa: F401
 
+    gc.enable()
+    adopt()
     control = socket.socket(fileno=number)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     woken, wake = os.pipe()
@@ -59,9 +67,22 @@ def main(number: int) -> None:
         pid = _born(control, (woken, wake), descriptors, ASK.unpack(data)[0])
         children.add(pid)
         _answer(control, BORN, pid, 0)
+    _end_all(control, children)
+
+
+def _end_all(control: socket.socket, children: set[int]) -> None:
+    """Ends all workers, and what they leave behind; for a moment only, as nobody is left who waits for it."""
     for pid in children:
         with suppress(OSError):
             os.killpg(pid, signal.SIGKILL)
+    end = time.monotonic() + FAREWELL
+    while time.monotonic() < end:
+        _bury(control, children)
+        if not children:
+            time.sleep(0.01)  # for those whom the last one has left
+            end_orphans(children)
+            return
+        time.sleep(0.005)
 
 
 def _answer(control: socket.socket, *what: int) -> None:
@@ -100,7 +121,10 @@ def _bury(control: socket.socket, children: set[int]) -> None:
             done, status = os.waitpid(pid, os.WNOHANG)
             if done:
                 children.discard(pid)
+                with suppress(OSError):
+                    os.killpg(pid, signal.SIGKILL)  # whom it has left in its group
                 _answer(control, DEAD, pid, os.waitstatus_to_exitcode(status))
+    end_orphans(children)
 
 
 if __name__ == "__main__":

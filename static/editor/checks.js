@@ -1,0 +1,108 @@
+// What is wrong with a text: checked while one types, which runs nothing; loaded on the user's word; and what a run has said of it.
+
+import { effect, untracked } from "../vendor/preact.js";
+import { folder } from "../bar/models.js";
+import { call } from "../server.js";
+import { complain, notices, session } from "../store.js";
+import { documents, LARGEST, watching } from "./documents.js";
+import { markAt, marking, withMarks } from "./marks.js";
+
+const AFTER = 350; // how long it waits after a change [ms]
+const timers = new Map();
+const checked = new WeakMap();
+
+/** Checks a text that has changed, after a while in which nothing is typed. */
+watching.changed = (document) => {
+  if (checked.get(document) === document.state.doc) return;
+  clearTimeout(timers.get(document));
+  timers.set(document, setTimeout(check, AFTER, document));
+};
+
+async function check(document) {
+  const { doc } = document.state;
+  if (doc.length > LARGEST) return;
+  try {
+    const { problems } = await call("POST", "/api/check", { path: document.path, text: doc.toString() });
+    mark(document, doc, problems);
+  } catch (error) {
+    if (error.status !== 0) mark(document, doc, [{ level: "error", message: error.message, line: null }]);
+  }
+}
+
+/** Loads a text in a process of its own, which runs its top level; returns whether nothing was wrong. */
+export async function checkByLoading(document) {
+  const { doc } = document.state;
+  document.note.value = "being loaded …";
+  try {
+    const { problems } = await call("POST", "/api/check", { path: document.path, text: doc.toString(), load: true });
+    mark(document, doc, problems);
+    document.note.value = problems.length === 0 ? "it loads, and nothing is wrong" : "";
+  } catch (error) {
+    document.note.value = "";
+    complain(error.message);
+  }
+}
+
+/** Shows what a check said, where the text still is what was checked. */
+function mark(document, doc, problems) {
+  if (document.state.doc !== doc) return;
+  checked.set(document, doc);
+  const marks = problems.map((problem) => markAt(doc, "check", problem));
+  document.change(withMarks(document.state, "check", marks));
+}
+
+// -- what a run says
+
+/** Up to which notice of which attempt the open texts have their marks. */
+let upTo = { session: null, attempt: null };
+const taken = new WeakMap();
+
+/** Marks what the newest run has said of open texts; forgets what the one before said. */
+export const ending = effect(() => {
+  const { id = null, attempt = null } = session.value ?? {};
+  const told = notices.value;
+  const open = [...documents.value.values()];
+  untracked(() => {
+    if (upTo.session !== id || upTo.attempt !== attempt) {
+      upTo = { session: id, attempt };
+      for (const document of open) {
+        taken.delete(document);
+        if (document.marks.value.some(({ origin }) => origin === "run")) document.change(withMarks(document.state, "run", []));
+      }
+    }
+    for (const document of open) take(document, told, attempt);
+  });
+});
+
+function take(document, told, attempt) {
+  const after = taken.get(document) ?? -1;
+  const fresh = told.filter((notice) => notice.attempt === attempt && notice.number > after);
+  if (fresh.length === 0) return;
+  taken.set(document, fresh.at(-1).number);
+  const marks = document.state.field(marking).filter(({ origin }) => origin === "run");
+  for (const notice of fresh) {
+    const found = markOf(document, notice);
+    if (found && !marks.some((other) => other.from === found.from && other.message === found.message)) marks.push(found);
+  }
+  if (marks.length > 0) document.change(withMarks(document.state, "run", marks));
+}
+
+/** Returns the line of a file that a notice is about, or from which that was called; null where it has nothing to do with it. */
+function lineIn(path, { file, line, detail }) {
+  if (file === path) return line;
+  const start = `File "${folder.peek()}/${path}", line `;
+  const at = detail.lastIndexOf(start);
+  return at < 0 ? null : Number.parseInt(detail.slice(at + start.length), 10);
+}
+
+/** Returns the mark of a notice at its line as it is now; null where it is about another text, or that line was changed. */
+function markOf(document, { level, text, detail, version, ...place }) {
+  const line = lineIn(document.path, { ...place, detail });
+  const other = document.path === session.peek().model && version !== document.version;
+  if (line === null || document.base === null || other) return null;
+  const mark = markAt(document.base, "run", { level, message: text, detail, line });
+  if (mark.from === null) return mark;
+  if (document.since.touchesRange(mark.from, mark.to)) return null;
+  const at = document.state.doc.lineAt(document.since.mapPos(mark.from, 1));
+  return { ...mark, from: document.since.mapPos(mark.from, 1), to: at.to };
+}

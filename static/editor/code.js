@@ -1,0 +1,129 @@
+// CodeMirror as the page uses it: one view, in which the open texts take turns.
+
+import {
+  autocompletion,
+  bracketMatching,
+  closeBrackets,
+  closeBracketsKeymap,
+  completionKeymap,
+  defaultKeymap,
+  drawSelection,
+  dropCursor,
+  EditorSelection,
+  EditorState,
+  EditorView,
+  foldGutter,
+  foldKeymap,
+  highlightActiveLine,
+  highlightActiveLineGutter,
+  highlightSelectionMatches,
+  highlightSpecialChars,
+  history,
+  historyKeymap,
+  indentOnInput,
+  indentUnit,
+  indentWithTab,
+  keymap,
+  lineNumbers,
+  lintGutter,
+  lintKeymap,
+  Prec,
+  python,
+  search,
+  searchKeymap,
+} from "../vendor/codemirror.js";
+import { look } from "./look.js";
+import { marking } from "./marks.js";
+import { complete } from "./words.js";
+
+/** What the editor's own keys do; panels/editor.js fills it in. */
+export const keys = { run: () => {}, save: () => {} };
+
+let view = null;
+let inView = null;
+
+const language = python();
+const own = Prec.highest(
+  keymap.of([
+    { key: "Mod-Enter", run: () => (keys.run(), true) },
+    { key: "Mod-s", run: () => (keys.save(), true) },
+  ]),
+);
+
+const EXTENSIONS = [
+  own,
+  lineNumbers(),
+  foldGutter(),
+  lintGutter(),
+  marking,
+  history(),
+  highlightSpecialChars(),
+  drawSelection(),
+  dropCursor(),
+  EditorState.allowMultipleSelections.of(true),
+  EditorState.tabSize.of(4),
+  indentUnit.of("    "),
+  indentOnInput(),
+  language,
+  language.language.data.of({ autocomplete: complete }),
+  autocompletion(),
+  bracketMatching(),
+  closeBrackets(),
+  highlightActiveLine(),
+  highlightActiveLineGutter(),
+  highlightSelectionMatches(),
+  search({ top: true }),
+  look,
+  keymap.of([...closeBracketsKeymap, ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...foldKeymap, ...defaultKeymap, indentWithTab]),
+];
+
+/** Returns the state of a text that is opened. */
+export function freshState(text) {
+  return EditorState.create({ doc: text, extensions: EXTENSIONS });
+}
+
+/** Lets documents reach the view, where they are in it. */
+export const watchText = {
+  dispatch(document, spec) {
+    if (inView !== document || !view) return false;
+    view.dispatch(spec);
+    return true;
+  },
+};
+
+/** Shows a text in a place of the page. */
+export function showText(place, document) {
+  view ??= new EditorView({ state: document.state, dispatchTransactions: taken });
+  if (inView !== document) {
+    leaveText();
+    inView = document;
+    view.setState(document.state);
+    const name = `Text of ${document.path}. Escape, then Tab, leaves it.`;
+    view.contentDOM.setAttribute("aria-label", name);
+  }
+  if (view.dom.parentNode !== place) place.append(view.dom);
+  view.requestMeasure();
+  view.scrollDOM.scrollTop = document.scroll;
+}
+
+/** Keeps where a text was scrolled to, before it goes out of sight. */
+export function leaveText() {
+  if (inView && view?.dom.isConnected) inView.scroll = view.scrollDOM.scrollTop;
+}
+
+function taken(transactions) {
+  view.update(transactions);
+  inView.took(transactions);
+}
+
+/** Moves to a line of the text that is shown. */
+export function goTo(line) {
+  const place = view.state.doc.line(Math.max(1, Math.min(line, view.state.doc.lines)));
+  view.dispatch({ selection: EditorSelection.cursor(place.from), effects: EditorView.scrollIntoView(place.from, { y: "center" }) });
+  view.focus();
+}
+
+/** Moves into the text. */
+export function focusText() {
+  view?.focus();
+}

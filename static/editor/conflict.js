@@ -1,0 +1,43 @@
+// A file that has changed on disk while its text was changed here: both are shown, and the user chooses.
+
+import { html, useEffect, useRef } from "../vendor/preact.js";
+import { EditorState, EditorView, lineNumbers, python, unifiedMergeView } from "../vendor/codemirror.js";
+import { look as colours } from "./look.js";
+
+const FOLD = { margin: 3, minSize: 6 };
+
+/** @param document The text, with `theirs`. @param choose Is told "mine", "theirs" or "edit". */
+export function Conflict({ document, choose }) {
+  const place = useRef(null);
+  const first = useRef(null);
+  const theirs = document.theirs.value;
+  useEffect(() => {
+    const view = new EditorView({
+      parent: place.current,
+      doc: document.text,
+      extensions: [
+        lineNumbers(),
+        python(),
+        colours,
+        EditorState.readOnly.of(true),
+        EditorView.contentAttributes.of({ "aria-label": "Both texts" }),
+        unifiedMergeView({ original: theirs.text, mergeControls: false, collapseUnchanged: FOLD }),
+      ],
+    });
+    first.current.focus();
+    return () => view.destroy();
+  }, [theirs]);
+  return html`<div class="conflict" role="group" aria-label="Conflict">
+    <p>
+      <b>${document.path}</b> has changed on disk since it was read here. <span class="mine">Green lines</span> are yours,
+      <span class="theirs">red lines</span> are those on disk. Nothing is written until you choose.
+    </p>
+    <div class="code" ref=${place}></div>
+    <footer class="tools">
+      <button onClick=${() => choose("mine")}>Keep mine</button>
+      <button onClick=${() => choose("theirs")}>Take theirs</button>
+      <button ref=${first} onClick=${() => choose("edit")}>Keep editing</button>
+      <span class="quiet">«Keep mine» writes over what is on disk.</span>
+    </footer>
+  </div>`;
+}

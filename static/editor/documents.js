@@ -1,0 +1,247 @@
+// The texts that are open: each with its history, what the file had when it was read, and what is known of the file now.
+
+import { signal } from "../vendor/preact.js";
+import { call } from "../server.js";
+import { complain } from "../store.js";
+import { freshState, watchText } from "./code.js";
+import * as drafts from "./drafts.js";
+import { marksOf, sameMarks } from "./marks.js";
+
+/** No model file has more [bytes]; the server takes none that is larger. */
+export const LARGEST = 1_000_000;
+const KEPT_AFTER = 300; // how long it waits with a draft after a change [ms]
+
+/** The texts that are open, by path. */
+export const documents = signal(new Map());
+/** The one that is shown: its path, and why it cannot be, where it cannot. */
+export const shown = signal({ path: null, error: null });
+/** A line to be gone to as soon as its text is shown: {path, line}. */
+export const wanted = signal(null);
+
+/** Returns the text that is shown; null where there is none. */
+export function shownDocument() {
+  return documents.value.get(shown.value.path) ?? null;
+}
+
+/** Is told of each text that is opened or has changed. */
+export const watching = { changed: () => {} };
+
+/** One open text. */
+class Document {
+  constructor(path, text, base, version) {
+    this.path = path;
+    /** What the editor keeps: text, history, selection, marks. */
+    this.state = freshState(base ?? text);
+    /** The text of the file that this one began from, as the editor keeps it; null where it is not known. */
+    this.base = base === null ? null : this.state.doc;
+    this.version = version;
+    /** How the text came from `base`, so that lines of the file are found in it. */
+    this.since = this.state.changes([]);
+    this.scroll = 0;
+    this.saving = signal(false);
+    this.dirty = signal(base === null);
+    /** What the file has that this text did not begin from: {text, version}; {text: null} where there is no file any more. */
+    this.theirs = signal(null);
+    this.marks = signal([]);
+    /** What was done last: a few words. */
+    this.note = signal("");
+    if (base !== null && text !== base) this.change(minimal(this.state, text));
+  }
+
+  /** Takes note of what the editor did, or does it, where this text is not the one in the editor. */
+  took(transactions) {
+    const before = marksOf(this.state).length;
+    this.state = transactions.at(-1).state;
+    if (transactions.some(({ docChanged }) => docChanged)) {
+      for (const { changes } of transactions) this.since = this.since.compose(changes);
+      this.settle();
+      keepSoon(this);
+      watching.changed(this);
+      if (marksOf(this.state).length < before) return this.change(sameMarks(this.state));
+    }
+    this.marks.value = marksOf(this.state);
+  }
+
+  change(spec) {
+    if (!watchText.dispatch(this, spec)) this.took([this.state.update(spec)]);
+  }
+
+  settle() {
+    this.dirty.value = this.base === null || !this.state.doc.eq(this.base);
+  }
+
+  /** Takes a text as that of the file. */
+  based(text, version) {
+    this.base = this.state.toText(text);
+    this.version = version;
+    this.theirs.value = null;
+    this.settle();
+    keepSoon(this);
+  }
+
+  get text() {
+    return this.state.doc.toString();
+  }
+}
+
+/** Returns the change that makes another text of a state, which leaves alone what is the same at both ends. */
+export function minimal(state, text) {
+  const now = state.doc.toString();
+  let from = 0;
+  while (from < Math.min(now.length, text.length) && now[from] === text[from]) from += 1;
+  let same = 0;
+  while (same < Math.min(now.length, text.length) - from && now[now.length - 1 - same] === text[text.length - 1 - same]) same += 1;
+  return { changes: { from, to: now.length - same, insert: text.slice(from, text.length - same) } };
+}
+
+// -- unsaved work
+
+const timers = new Map();
+
+function keepSoon(document) {
+  clearTimeout(timers.get(document));
+  timers.set(document, setTimeout(keepNow, KEPT_AFTER, document));
+}
+
+function keepNow(document) {
+  clearTimeout(timers.get(document));
+  timers.delete(document);
+  if (documents.peek().get(document.path) !== document) return;
+  if (document.dirty.peek()) drafts.keep(document.path, document.text, document.version);
+  else drafts.forget(document.path);
+}
+
+function keepAll() {
+  for (const document of [...timers.keys()]) keepNow(document);
+}
+
+/** The files with unsaved work in this tab; also of those that were not opened since it was loaded again. */
+export function unsaved() {
+  const dirty = [...documents.value.values()].filter((document) => document.dirty.value).map(({ path }) => path);
+  return [...new Set([...dirty, ...drafts.drafted.value.filter((path) => !documents.value.has(path))])];
+}
+
+addEventListener("pagehide", keepAll);
+addEventListener("beforeunload", (event) => {
+  keepAll();
+  if ([...documents.peek().values()].some((document) => document.dirty.peek())) event.preventDefault();
+});
+
+// -- opening and closing
+
+/** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. Returns whether it could be. */
+export async function open(path, line = null) {
+  await drafts.ready;
+  if (line) wanted.value = { path, line };
+  if (documents.value.has(path)) {
+    shown.value = { path, error: null };
+    look(documents.value.get(path)).catch(() => {});
+    return true;
+  }
+  const draft = drafts.read(path);
+  let file = null;
+  let error = null;
+  try {
+    file = await call("GET", `/api/model?path=${encodeURIComponent(path)}`);
+  } catch (failed) {
+    error = failed;
+  }
+  if (!documents.value.has(path)) {
+    if (!file && !(draft && error.status === 404)) {
+      shown.value = { path, error: error.message };
+      return false;
+    }
+    put(made(path, file, draft));
+  }
+  shown.value = { path, error: null };
+  return true;
+}
+
+function made(path, file, draft) {
+  if (!draft) return new Document(path, file.text, file.text, file.version);
+  const same = file && (file.version === draft.version || file.text === draft.text);
+  if (same) return Object.assign(new Document(path, draft.text, file.text, file.version), { restored: true });
+  const document = new Document(path, draft.text, null, draft.version);
+  document.theirs.value = file ? { text: file.text, version: file.version } : { text: null, version: null };
+  return document;
+}
+
+function put(document) {
+  documents.value = new Map([...documents.value, [document.path, document]]);
+  document.note.value = document.restored ? "unsaved work of before, brought back" : "";
+  watching.changed(document);
+}
+
+/** Forgets a text: its file is gone, or has another name. */
+export function close(path) {
+  documents.value = new Map([...documents.value].filter(([other]) => other !== path));
+  drafts.forget(path);
+  if (shown.value.path === path) shown.value = { path: null, error: null };
+}
+
+/** Gives an open text the name that its file has now. */
+export function renamed(path, file) {
+  const document = documents.value.get(path);
+  if (!document) return;
+  drafts.forget(path);
+  Object.assign(document, { path: file.path, version: file.version });
+  documents.value = new Map([...documents.value].map(([, one]) => [one.path, one]));
+  if (shown.value.path === path) shown.value = { path: file.path, error: null };
+  keepSoon(document);
+}
+
+// -- the file
+
+/** Writes a text to its file; returns whether it is there now. Where the file has changed meanwhile, that is told and nothing is written.
+ * `over` is the version that is to be replaced; the one that the text began from, where none is given. */
+export async function save(document, over = document.version) {
+  const sent = document.state.doc;
+  const text = sent.toString();
+  if (new TextEncoder().encode(text).length > LARGEST) {
+    complain(`${document.path} was not saved: a model file has no more than ${LARGEST.toLocaleString("en")} bytes.`);
+    return false;
+  }
+  const before = document.since;
+  document.saving.value = true;
+  document.since = document.state.changes([]);
+  try {
+    const { version } = await call("PUT", "/api/model", { path: document.path, text, version: over });
+    Object.assign(document, { base: sent, version });
+    document.theirs.value = null;
+    document.note.value = "saved";
+    document.settle();
+    keepNow(document);
+    return true;
+  } catch (error) {
+    document.since = before.compose(document.since);
+    if (error.status === 409) await look(document, true).catch(() => {});
+    if (!document.theirs.value) complain(error.message);
+    return false;
+  } finally {
+    document.saving.value = false;
+  }
+}
+
+/** Looks what the file has now. A text that was not changed here becomes that of the file; one that was waits for its user to choose. */
+export async function look(document, again = false) {
+  if (document.saving.value && !again) return;
+  const known = document.version;
+  const path = document.path;
+  const query = `path=${encodeURIComponent(path)}`;
+  const { version } = await call("GET", `/api/model/version?${query}`);
+  const theirs = document.theirs.value;
+  if (version === (theirs ? theirs.version : known)) return;
+  const file = version === null ? { text: null, version: null } : await call("GET", `/api/model?${query}`);
+  if (document.version !== known || document.path !== path) return; // saved or renamed meanwhile
+  if (file.version === known) document.theirs.value = null;
+  else if (file.text !== null && (!document.dirty.value || file.text === document.text)) take(document, file);
+  else document.theirs.value = { text: file.text, version: file.version };
+}
+
+/** Puts the text of the file in place of the one here; it can be undone. */
+export function take(document, { text, version }) {
+  document.change(minimal(document.state, text));
+  document.based(text, version);
+  document.since = document.state.changes([]);
+  document.note.value = "read again: the file had changed";
+}

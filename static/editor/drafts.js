@@ -1,0 +1,116 @@
+// Unsaved work, kept by the browser so that it survives a reload: one draft a file and tab, with the version that it began from.
+
+import { signal } from "../vendor/preact.js";
+import { complain } from "../store.js";
+
+const PREFIX = "actr3d.draft.";
+const MOST = 20;
+const LARGEST = 2_000_000; // all drafts together [characters]; browsers keep about five million of a site
+const PATIENCE = 500; // how long it waits for the tab's own lock after a reload [ms]
+
+/** The files of which this tab has a draft. */
+export const drafted = signal([]);
+
+let tab = "";
+
+/** Settles whose drafts are this tab's: its own from before a reload, and those of tabs that are no more. */
+export const ready = settle();
+
+async function settle() {
+  tab = sessionStorage.getItem("tab") ?? crypto.getRandomValues(new Uint32Array(2)).join("");
+  // A tab that was duplicated has the same name as the other one, which holds its lock.
+  if (navigator.locks && !(await locked(tab))) {
+    tab = crypto.getRandomValues(new Uint32Array(2)).join("");
+    await locked(tab);
+  }
+  sessionStorage.setItem("tab", tab);
+  const held = navigator.locks ? (await navigator.locks.query()).held.map(({ name }) => name) : [];
+  for (const { key, draft } of all()) {
+    const owner = key.slice(PREFIX.length).split(" ", 1)[0];
+    if (owner === tab || held.includes(`actr3d.tab.${owner}`)) continue;
+    const own = read(draft.path);
+    localStorage.removeItem(key);
+    if (!own || own.at < draft.at) write(keyOf(draft.path), draft);
+  }
+  refresh();
+}
+
+function locked(name) {
+  return new Promise((resolve) => {
+    const signal = AbortSignal.timeout(PATIENCE);
+    navigator.locks
+      .request(`actr3d.tab.${name}`, { signal }, () => {
+        resolve(true);
+        return new Promise(() => {}); // as long as the tab is there
+      })
+      .catch(() => resolve(false));
+  });
+}
+
+const keyOf = (path) => `${PREFIX}${tab} ${path}`;
+
+/** All drafts of all tabs, the oldest first. */
+function all() {
+  const found = [];
+  for (const key of Object.keys(localStorage).filter((name) => name.startsWith(PREFIX))) {
+    try {
+      const draft = JSON.parse(localStorage.getItem(key));
+      if (typeof draft.path === "string" && typeof draft.text === "string") found.push({ key, draft });
+    } catch {
+      localStorage.removeItem(key);
+    }
+  }
+  return found.sort((one, other) => one.draft.at - other.draft.at);
+}
+
+function refresh() {
+  drafted.value = all().filter(({ key, draft }) => key === keyOf(draft.path)).map(({ draft }) => draft.path);
+}
+
+/** Returns the draft of a file: {path, text, base (the text that it began from), version}; null where there is none. */
+export function read(path) {
+  try {
+    return JSON.parse(localStorage.getItem(keyOf(path)));
+  } catch {
+    return null;
+  }
+}
+
+let told = false;
+
+/** Keeps a draft. The oldest ones go where there are too many. */
+export function keep(path, text, version) {
+  if (!tab) return;
+  if (!write(keyOf(path), { path, text, version, at: Date.now() }) && !told) {
+    told = true;
+    complain(`The browser has no room to keep the unsaved text of ${path}: save it before you leave the page.`, "warning");
+  }
+  refresh();
+}
+
+function write(key, draft) {
+  const others = all().filter((one) => one.key !== key);
+  let size = others.reduce((sum, one) => sum + one.draft.text.length, draft.text.length);
+  while (others.length >= MOST || (size > LARGEST && others.length > 0)) size -= drop(others);
+  for (;;) {
+    try {
+      localStorage.setItem(key, JSON.stringify(draft));
+      return true;
+    } catch {
+      if (others.length === 0) return false;
+      drop(others);
+    }
+  }
+}
+
+function drop(others) {
+  const { key, draft } = others.shift();
+  localStorage.removeItem(key);
+  return draft.text.length;
+}
+
+/** Forgets a draft: it is saved, or thrown away. */
+export function forget(path) {
+  localStorage.removeItem(keyOf(path));
+  refresh();
+}

@@ -1,0 +1,71 @@
+// New, duplicate, rename, delete: asks for a name, and says what is wrong with it.
+
+import { listModels, note } from "../bar/models.js";
+import { asked, confirmed } from "../parts/dialog.js";
+import { call } from "../server.js";
+import { complain, session } from "../store.js";
+import { close, open, renamed, save } from "./documents.js";
+import { TEMPLATES } from "./templates.js";
+
+/** Begins a new model file. It is opened here; it runs when it is told to. */
+export async function makeNew() {
+  const choices = TEMPLATES.map(({ value, text }) => ({ value, text }));
+  const file = await named("New model", "Name of the file", "my_model.py", "Create", { choices }, (path, choice) => {
+    const { source } = TEMPLATES.find(({ value }) => value === choice);
+    return call("PUT", "/api/model", { path, text: source, version: null });
+  });
+  if (file) await open(file.path);
+}
+
+/** Copies a model file, as it is saved. */
+export async function duplicate(path) {
+  const to = path.replace(/\.py$/, "_copy.py");
+  const file = await named(`Duplicate ${path}`, "Name of the copy", to, "Duplicate", {}, (name) => call("POST", "/api/model/duplicate", { path, to: name }));
+  if (file) await open(file.path);
+}
+
+/** Gives a model file another name; a run of it goes on. */
+export async function rename(path) {
+  const file = await named(`Rename ${path}`, "New name", path, "Rename", {}, (to) => (to === path ? null : call("POST", "/api/model/rename", { path, to })));
+  if (!file) return;
+  renamed(path, file);
+  if (session.value?.model === path || session.value?.model === file.path) note(file.path);
+}
+
+/** Puts a model file into the trash folder, after asking. */
+export async function remove(path, unsaved) {
+  const text = `It is moved to the trash folder inside the models folder.${unsaved ? " Its unsaved changes are lost." : ""}`;
+  if (!(await confirmed(`Delete ${path}?`, text, "Delete"))) return;
+  try {
+    const { trash } = await call("POST", "/api/model/delete", { path });
+    close(path);
+    complain(`${path} was deleted; it lies in ${trash} of the models folder.`, "info");
+    await listModels();
+    return trash;
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
+/** Saves a text whose file is gone as a new file. */
+export function saveAgain(document) {
+  return save(document, null).then(listModels);
+}
+
+/** Asks for a name until it is one that can be used, or the user gives up; returns the file. */
+async function named(title, label, name, action, more, work) {
+  let problem = null;
+  for (;;) {
+    const told = await asked(title, label, name, action, { ...more, problem });
+    const { text, choice } = typeof told === "string" ? { text: told } : told ?? {};
+    if (!text) return null;
+    name = text.endsWith(".py") ? text : `${text}.py`;
+    try {
+      const file = await work(name, choice);
+      await listModels();
+      return file;
+    } catch (error) {
+      problem = error.message;
+    }
+  }
+}

@@ -1,0 +1,43 @@
+// Save and run, and whether what is shown is a run of the present text.
+
+import { computed, html } from "../vendor/preact.js";
+import { runModel } from "../bar/models.js";
+import { complain, notices, session } from "../store.js";
+import { documents, save, shown } from "./documents.js";
+import { openTab } from "../tabs.js";
+
+/** Saves a text, where it is to be saved, and runs it from its start. */
+export async function saveAndRun(document) {
+  if ((document.dirty.value || document.theirs.value) && !(await save(document))) return;
+  await runModel(document.path).catch((error) => complain(error.message));
+}
+
+/** What to say of the run that is shown, where it is not that of the file: {text, failed, gone, path}; null where all is well. */
+export const former = computed(() => {
+  const told = session.value;
+  if (!told) return null;
+  if (told.gone) return { text: "The file of this run is gone from the folder: the run can go on, but not begin again.", gone: true, path: told.model };
+  if (told.loading) return null;
+  if (!told.stale) return null;
+  // The newest attempt to begin a run has not become the run that is shown.
+  const failed = told.attempt !== told.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === told.attempt);
+  const text = `What is shown is the run of the former text${failed ? "; the new one does not load" : ""}.`;
+  return { text, failed, path: told.model };
+});
+
+/** Runs the new text of the file of the run that is shown. */
+export function runNew(path) {
+  const open = documents.value.get(path);
+  return open ? saveAndRun(open) : runModel(path).catch((error) => complain(error.message));
+}
+
+/** Says in the line below that what is shown is the run of a former text, with what to do. */
+export function Former() {
+  const told = former.value;
+  // The editor says it itself, beside the text.
+  if (!told || (openTab.value === "editor" && shown.value.path === told.path)) return null;
+  return html`<span class="former" role="status">
+    ${told.text}
+    ${told.gone ? null : html`<button onClick=${() => runNew(told.path)}>Run the new one</button>`}
+  </span>`;
+}

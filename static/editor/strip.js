@@ -1,0 +1,30 @@
+// One line between the text and its problems, where something is to be decided: the file has changed, or the run is of a former text.
+
+import { html } from "../vendor/preact.js";
+import { close } from "./documents.js";
+import { saveAgain } from "./files.js";
+import { former, runNew } from "./running.js";
+
+/** @param document The text that is shown. @param compare Shows both texts, where the file has another one. */
+export function Strip({ document, compare }) {
+  const theirs = document.theirs.value;
+  const run = former.value;
+  if (theirs?.text === null) {
+    return html`<div class="strip bad" role="alert">
+      <span>The file is gone from the folder.</span>
+      <button onClick=${() => saveAgain(document)}>Save it again</button>
+      <button onClick=${() => close(document.path)}>Close</button>
+    </div>`;
+  }
+  if (theirs) {
+    return html`<div class="strip bad" role="alert">
+      <span>The file has changed on disk.</span>
+      <button onClick=${compare}>Compare and choose</button>
+    </div>`;
+  }
+  if (!run || run.path !== document.path) return null;
+  return html`<div class="strip" role="status">
+    <span>${run.text}</span>
+    ${run.gone ? null : html`<button onClick=${() => runNew(run.path)}>Run the new one</button>`}
+  </div>`;
+}

@@ -1,0 +1,92 @@
+// What a new model begins with: short, and it runs.
+
+const MIND = `"""Says in a line what this model is about."""
+
+from actr3d.actr import *
+
+
+class Agent(ACTR):
+    goal = Buffer()
+
+    def init():
+        goal.set("count number:1 last:5")
+
+    def count_on(goal="count number:?number last:!?number"):
+        print(number)
+        goal.modify(number=int(number) + 1)
+
+    def finish(goal="count number:?number last:?number"):
+        print(number)
+        goal.clear()
+
+
+if __name__ == "__main__":
+    model = Agent()
+    model.run()
+`;
+
+const BODY = `"""Says in a line what this model is about."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Gt, Le
+
+from actr3d.actr import *
+from actr3d.configuration import Configuration, Live
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(Configuration):
+    """What may be set."""
+
+    width: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.8
+    """The free width of the doorway [m]."""
+
+    speed: Annotated[float, Gt(0), Le(3)] = 1.2
+    """How fast it walks [m/s]."""
+
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    skin = BodyPort(felt)
+
+    def init():
+        goal.set("walk")
+        skin.set("walk", self.speed)
+
+    def feel(goal="walk", felt=None, skin="busy:False"):
+        skin.request("pose")
+
+    def walk_on(goal="walk", felt="pose x:?x"):
+        felt.clear()
+        if float(x) > 8:
+            goal.set("arrived")
+
+    def arrive(goal="arrived"):
+        skin.set("stop")
+        print(f"{self.now():.2f} s: arrived")
+        goal.set("done")
+        self.stop()
+
+
+def build(parameters: Parameters) -> Simulation:
+    """Puts a walker in front of a doorway."""
+
+    def mind():
+        walker = Walker()
+        walker.speed = parameters.speed
+        return walker
+
+    scene = Scene(parts=(Floor(), Aperture(width=parameters.width), Mannequin(name="walker")))
+    return Simulation(scene, {"walker": mind})
+`;
+
+/** What a user may begin with: {value, text, source}. */
+export const TEMPLATES = [
+  { value: "mind", text: "A mind alone", source: MIND },
+  { value: "body", text: "A mind with a body in a world", source: BODY },
+];

@@ -1,0 +1,27 @@
+// The retina as a small picture over the 3D view; it is not there while the tab Eye shows the large one.
+
+import { html } from "../vendor/preact.js";
+import { useAnswer } from "../parts/answer.js";
+import { Icon } from "../parts/icon.js";
+import { seeing } from "../panels/eye.js";
+import { remembered } from "../remembered.js";
+import { openTab } from "../tabs.js";
+import { Retina } from "./retina.js";
+
+const open = remembered("retina", true);
+
+export function RetinaInset() {
+  const body = seeing()[0];
+  const shown = open.value && openTab.value !== "eye" && body !== undefined;
+  const { answer } = useAnswer(shown ? { type: "view", body } : null, { live: true });
+  if (body === undefined || openTab.value === "eye") return null;
+  if (!open.value) return html`<button class="inset-closed" onClick=${() => (open.value = true)}>Eye</button>`;
+  return html`<aside class="inset" aria-label="Retina">
+    <header>
+      <b>eye of ${body}</b><span class="stretch"></span>
+      <button class="bare" aria-label="Larger" title="Larger, with the table of edges" onClick=${() => (openTab.value = "eye")}><${Icon} name="more" /></button>
+      <button class="bare" aria-label="Hide the retina" title="Hide" onClick=${() => (open.value = false)}><${Icon} name="close" /></button>
+    </header>
+    <${Retina} view=${answer} />
+  </aside>`;
+}

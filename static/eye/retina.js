@@ -1,0 +1,39 @@
+// The retina: what an eye sees, as a picture; the pointer tells label, place and distance.
+
+import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { dark } from "../theme.js";
+import { drawView, extentAt } from "./drawing.js";
+
+/** Says an extent in words. */
+export function extentText([row, label, , x1, x2, d1, d2]) {
+  return `label ${label} · row ${row} · x ${x1.toFixed(3)} to ${x2.toFixed(3)} · ${d1.toFixed(2)} m to ${d2.toFixed(2)} m`;
+}
+
+/**
+ * @param view What the question `view` answers; null for nothing yet.
+ * @param chosen A label to be framed.
+ */
+export function Retina({ view, chosen = null }) {
+  const canvas = useRef(null);
+  const [under, setUnder] = useState(null);
+  const isDark = dark.value;
+  const draw = () => drawView(canvas.current, view, isDark, under?.[1] ?? chosen);
+  const newest = useRef(draw);
+  newest.current = draw;
+  useLayoutEffect(draw, [view, isDark, under, chosen]);
+  useLayoutEffect(() => {
+    const watcher = new ResizeObserver(() => newest.current());
+    watcher.observe(canvas.current);
+    return () => watcher.disconnect();
+  }, []);
+
+  function point(event) {
+    const box = canvas.current.getBoundingClientRect();
+    setUnder(extentAt(view, (event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height));
+  }
+
+  return html`<div class="retina">
+    <canvas ref=${canvas} role="img" aria-label="What the eye sees: extents by row" onPointerMove=${point} onPointerLeave=${() => setUnder(null)}></canvas>
+    <output class="mono">${under ? extentText(under) : view ? `${view.extents.length} extents in ${view.rows} rows` : ""}</output>
+  </div>`;
+}

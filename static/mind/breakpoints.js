@@ -1,0 +1,31 @@
+// Breakpoints: productions after which the run pauses; all who watch share them.
+
+import { computed, html } from "../vendor/preact.js";
+import { order } from "../server.js";
+import { session, state } from "../store.js";
+
+export const breakpoints = computed(() => session.value?.breakpoints ?? []);
+
+/** The production at whose breakpoint the run stands; null where it does not. */
+export const held = computed(() => {
+  const { status, reason } = state.value ?? {};
+  return status === "paused" ? /^breakpoint: (.*) fired$/s.exec(reason)?.[1] ?? null : null;
+});
+
+/** Sets a breakpoint on a production, or takes it away. */
+export function toggleBreakpoint(name) {
+  const now = breakpoints.value;
+  order({ type: "breakpoints", productions: now.includes(name) ? now.filter((one) => one !== name) : [...now, name] });
+}
+
+/** Says that the run stands at a breakpoint. */
+export function HeldNote() {
+  const name = held.value;
+  if (name === null) return null;
+  return html`<p class="held" role="status">
+    <span>Paused at the breakpoint on <b class="mono">${name}</b></span>
+    <span class="stretch"></span>
+    <button onClick=${() => order({ type: "run" })}>Go on</button>
+    <button onClick=${() => toggleBreakpoint(name)}>Remove it</button>
+  </p>`;
+}

@@ -1,0 +1,90 @@
+// The conflict set: what matched in the last cycle, with utilities, and which was chosen.
+
+import { html, useMemo } from "../vendor/preact.js";
+import { useAnswer } from "../parts/answer.js";
+import { running, state } from "../store.js";
+import { agentOf, agentsOf } from "./agents.js";
+import { at, production, shownReasons } from "./asked.js";
+import { pairs, timeText } from "./event_text.js";
+import { fixed } from "./part_names.js";
+import { eventAt, useSifted } from "./sifted.js";
+
+const isChoice = ([, , kind, data]) => kind === "select" || kind === "fire" || kind === "changed" || (kind === "conflict" && Object.keys(data.utilities).length > 0);
+
+/** Returns by system its last cycle before an event: {time, conflict, select, fire, over}, each as far as it came. */
+function lastCycles(sifted, end, time) {
+  const cycles = new Map();
+  const after = new Map(); // what came after the conflict, by system
+  for (let n = sifted.below(end) - 1; n >= 0 && n > sifted.below(end) - 2000; n -= 1) {
+    const [when, source, kind, data] = eventAt(sifted.numbers[n]);
+    if (cycles.has(source) || (time !== null && when > time)) continue;
+    if (kind === "conflict") cycles.set(source, { source, time: when, conflict: data, ...after.get(source) });
+    else after.set(source, { ...after.get(source), [kind]: { time: when, ...data } });
+  }
+  return [...cycles.values()];
+}
+
+function comesOf({ select, fire, changed, conflict }) {
+  if (fire) return html`<b class="mono">${fire.production}</b> fired at ${timeText(fire.time)} s`;
+  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but matched no longer at ${timeText(changed.time)} s`;
+  if (select) return html`<b class="mono">${select.production}</b> is chosen, and about to fire`;
+  return conflict.threshold === undefined ? "nothing is chosen yet" : "none reaches the threshold";
+}
+
+function rowsOf({ conflict, select, fire }) {
+  const names = [...new Set(Object.values(conflict.parts ?? {}).flatMap(Object.keys))];
+  const chosen = select?.production ?? fire?.production;
+  const rows = Object.entries(conflict.utilities)
+    .map(([name, utility]) => {
+      const parts = conflict.parts?.[name] ?? {};
+      const base = utility - Object.values(parts).reduce((sum, value) => sum + value, 0);
+      return { name, utility, base, parts, chosen: name === chosen };
+    })
+    .toSorted((one, other) => other.utility - one.utility || other.chosen - one.chosen);
+  return { names, rows, own: names.includes("get_activation") };
+}
+
+function Cycle({ cycle, agents }) {
+  const { source, time, conflict, fire } = cycle;
+  const asks = running.value ? null : { type: "explain", at: time / 1e6, agent: agentOf(source, agents) ?? source };
+  const { answer } = useAnswer(asks);
+  const reasons = useMemo(() => new Map((answer?.[0].time === time / 1e6 ? answer[0].productions : []).filter(({ system }) => system === source).map((reason) => [reason.name, reason])), [answer, time]);
+  const { names, rows, own } = rowsOf(cycle);
+  const bound = (name) => (fire?.production === name ? pairs(fire.bound) : pairs(reasons.get(name)?.bindings));
+  return html`<section aria-label="Conflict set of ${source}">
+    <h3>${source} <span class="quiet">at ${timeText(time)} s:</span> ${rows.length} matched, ${comesOf(cycle)}</h3>
+    <div class="wide">
+      <table class="conflict">
+        <thead>
+          <tr>
+            <th></th><th>Production</th><th class="number">Utility</th>
+            ${names.length && !own ? html`<th class="number">base</th>` : null}
+            ${names.map((name) => html`<th key=${name} class="number" title=${conflict.drawn?.includes(name) ? "Drawn by lot" : ""}>${name}${conflict.drawn?.includes(name) ? " (noise)" : ""}</th>`)}
+            <th>Bound</th>
+          </tr>
+        </thead>
+        <tbody>
+          ${rows.map(
+            (row) => html`<tr key=${row.name} class=${row.chosen ? "selected" : ""}>
+              <td class="sign">${row.chosen ? html`<span role="img" aria-label="chosen">▸</span>` : ""}</td>
+              <td><button class="link mono" onClick=${() => ((production.value = { system: source, name: row.name }), (shownReasons.value = "why"))}>${row.name}</button></td>
+              <td class="number">${fixed(row.utility)}</td>
+              ${names.length && !own ? html`<td class="number">${fixed(row.base)}</td>` : null}
+              ${names.map((name) => html`<td key=${name} class="number">${row.parts[name] === undefined ? "" : fixed(row.parts[name])}</td>`)}
+              <td class="mono">${bound(row.name)}</td>
+            </tr>`,
+          )}
+        </tbody>
+      </table>
+    </div>
+    ${conflict.threshold === undefined ? null : html`<p class="quiet">Production threshold ${fixed(conflict.threshold)}</p>`}
+  </section>`;
+}
+
+export function ConflictSets() {
+  const sifted = useSifted(isChoice, "choices");
+  const agents = agentsOf(state.value?.parts);
+  const cycles = lastCycles(sifted, at.value === null ? (state.value?.events ?? 0) : Infinity, at.value === null ? null : at.value * 1e6);
+  if (cycles.length === 0) return html`<p class="empty">No production has matched yet. Step the run until one does.</p>`;
+  return html`${cycles.map((cycle) => html`<${Cycle} key=${cycle.source} cycle=${cycle} agents=${agents} />`)}`;
+}

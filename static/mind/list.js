@@ -1,0 +1,89 @@
+// All productions: which match, which is chosen, where breakpoints are; one of them is explained.
+
+import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { systemsOf } from "./agents.js";
+import { production } from "./asked.js";
+import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
+import { state } from "../store.js";
+
+/** How a production stands: [class, sign, in words]. */
+export function standing(reason) {
+  if (!reason) return ["", "", ""];
+  if (reason.matches === null) return ["unknown", "?", "cannot be told"];
+  if (reason.selected) return ["selected", "▸", reason.matches ? "matches, and is about to fire" : "was chosen, but matches no longer"];
+  return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
+}
+
+/** Returns the productions as [{system, name, reason}]; `reasons` as the run explains them, or null. */
+export function productionsOf(parts, reasons) {
+  const key = (system, name) => `${system}\n${name}`;
+  const known = new Map((reasons ?? []).map((reason) => [key(reason.system, reason.name), reason]));
+  const found = systemsOf(parts).flatMap((system) =>
+    parts[system].productions.map((name) => ({ system, name, reason: known.get(key(system, name)) ?? null })),
+  );
+  const there = new Set(found.map(({ system, name }) => key(system, name)));
+  const gone = (reasons ?? []).filter((reason) => !there.has(key(reason.system, reason.name)));
+  return [...found, ...gone.map((reason) => ({ system: reason.system, name: reason.name, reason }))];
+}
+
+const same = (one, other) => Boolean(one && other) && one.system === other.system && one.name === other.name;
+
+/** Returns the production that is explained: the one that is wanted, else the one that is chosen or the first that matches. */
+export function explained(all) {
+  const wanted = all.find((one) => same(one, production.value));
+  const rank = ({ reason }) => (reason?.selected ? 0 : reason?.matches ? 1 : 2);
+  return wanted ?? all.toSorted((one, other) => rank(one) - rank(other))[0] ?? null;
+}
+
+function Item({ item, chosen, several }) {
+  const { system, name, reason } = item;
+  const [kind, sign, words] = standing(reason);
+  const marked = breakpoints.value.includes(name);
+  const line = useRef(null);
+  useLayoutEffect(() => {
+    if (chosen) line.current.scrollIntoView({ block: "nearest" });
+  }, [chosen]);
+  return html`<li ref=${line} class="${kind} ${chosen ? "chosen" : ""} ${held.value === name ? "at" : ""}">
+    <button class="dot" tabindex="-1" aria-pressed=${marked} aria-label="Breakpoint on ${name}" title="${marked ? "Remove the breakpoint" : "Pause whenever it fires"} (B)" onClick=${() => toggleBreakpoint(name)}></button>
+    <button class="name" tabindex=${chosen ? 0 : -1} aria-current=${chosen} title="${several ? `${system}: ` : ""}${name}${words ? `: ${words}` : ""}" onClick=${() => (production.value = { system, name })}>
+      <span class="sign" role="img" aria-label=${words}>${sign}</span><span class="text">${name}</span>
+    </button>
+  </li>`;
+}
+
+/** @param all What `productionsOf` returns; `chosen` the one that is explained. */
+export function ProductionList({ all, chosen }) {
+  const [words, setWords] = useState("");
+  const box = useRef(null);
+  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const shown = all.filter(({ system, name }) => wanted.every((word) => `${system} ${name}`.toLowerCase().includes(word)));
+  const systems = [...new Set(shown.map(({ system }) => system))];
+  const ordered = systems.flatMap((system) => shown.filter((one) => one.system === system));
+
+  function press(event) {
+    const at = ordered.findIndex((one) => same(one, chosen));
+    const to = { ArrowUp: at - 1, ArrowDown: at + 1, Home: 0, End: ordered.length - 1 }[event.key];
+    if (to !== undefined && ordered.length > 0) {
+      const { system, name } = ordered[Math.max(0, Math.min(ordered.length - 1, to))];
+      production.value = { system, name };
+      if (event.target.tagName !== "INPUT") requestAnimationFrame(() => box.current?.querySelector("[aria-current=true]")?.focus());
+    } else if (event.key === "b" && event.target.classList.contains("name") && chosen) toggleBreakpoint(chosen.name);
+    else return;
+    event.preventDefault();
+  }
+
+  return html`<div class="production-list" onKeyDown=${press}>
+    <input type="search" aria-label="Search productions" placeholder="${all.length} productions" value=${words} onInput=${(event) => setWords(event.currentTarget.value)} />
+    <div class="production-names" ref=${box}>
+      ${systems.map(
+        (system) => html`<div key=${system}>
+          ${systems.length > 1 || systemsOf(state.value?.parts).length > 1 ? html`<h3>${system}</h3>` : null}
+          <ul aria-label="Productions of ${system}">
+            ${shown.filter((one) => one.system === system).map((item) => html`<${Item} key=${item.name} item=${item} chosen=${same(item, chosen)} several=${systems.length > 1} />`)}
+          </ul>
+        </div>`,
+      )}
+      ${shown.length === 0 ? html`<p class="empty">${all.length ? "No production of that name." : "This model has no productions."}</p>` : null}
+    </div>
+  </div>`;
+}

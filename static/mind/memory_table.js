@@ -1,0 +1,67 @@
+// A memory as a table: chunks with their activations and the parts of these, sorted as the user likes.
+
+import { html, useEffect, useMemo, useState } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { fixed, Part, partName } from "./part_names.js";
+import { Rows } from "./rows.js";
+
+/** Returns rows in order; what is not known comes last. */
+export function sorted(rows, { by, down }) {
+  const value = (row) => (by === "chunk" ? row.chunk : by === "activation" ? row.activation : row.parts[by]);
+  const known = rows.filter((row) => value(row) !== null && value(row) !== undefined);
+  const unknown = rows.filter((row) => !known.includes(row) && (value(row) === null || value(row) === undefined));
+  const sign = down ? -1 : 1;
+  known.sort((one, other) => sign * (typeof value(one) === "number" ? value(one) - value(other) : String(value(one)).localeCompare(String(value(other)), "en", { numeric: true })));
+  return [...known, ...unknown];
+}
+
+function Head({ text, title, by, sort, onSort }) {
+  const mine = sort.by === by;
+  return html`<th class=${by === "chunk" ? "" : "number"} aria-sort=${mine ? (sort.down ? "descending" : "ascending") : "none"}>
+    <button class="sort" title=${title} onClick=${() => onSort({ by, down: mine ? !sort.down : by !== "chunk" })}>${text}<span aria-hidden="true">${mine ? (sort.down ? " ▾" : " ▴") : ""}</span></button>
+  </th>`;
+}
+
+function Chosen({ row, names, threshold }) {
+  const sum = row.activation === null ? "not known before a retrieval" : fixed(row.activation);
+  return html`<section class="one-chunk" aria-label="The chosen chunk">
+    <p class="mono">${Object.entries(row.slots).map(([slot, value]) => html`<span key=${slot} class="slot">${/^\d+$/.test(slot) ? null : html`<b>${slot}</b>`}${valueText(value)}</span>`)}</p>
+    <p>
+      Activation <b class="number">${sum}</b>
+      ${names.length ? html`<span class="quiet"> = ${names.map((name, n) => html`${n ? " + " : ""}${partName(name)} <${Part} value=${row.parts[name]} />`)}</span>` : null}
+      ${threshold !== null ? html`, threshold ${valueText(threshold)}` : null}
+    </p>
+  </section>`;
+}
+
+/** @param answer What the run has answered to `memory`. */
+export function MemoryTable({ answer, words }) {
+  const { rows, threshold, memory } = answer;
+  const [sort, setSort] = useState({ by: "activation", down: true });
+  const [chosen, setChosen] = useState(null);
+  const names = useMemo(() => [...new Set(rows.flatMap(({ parts }) => Object.keys(parts)))], [rows]);
+  const all = useMemo(() => sorted(rows, sort), [rows, sort]);
+  useEffect(() => setChosen(null), [memory, words]);
+  const at = all.findIndex(({ chunk }) => chunk === chosen);
+  const under = ({ activation }) => threshold !== null && activation !== null && activation < threshold;
+  const mark = sort.by === "activation" ? all.findIndex((row, n) => n > 0 && under(row) !== under(all[n - 1]) && row.activation !== null && all[n - 1].activation !== null) : -1;
+
+  const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${all[n].chunk} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
+    <td class="mono">${all[n].chunk}</td>
+    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="One of its parts is known at a retrieval only">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
+    ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${all[n].parts[name]} /></td>`)}
+  </tr>`;
+  return html`<${Rows}
+      id="chunks"
+      label="Chunks of ${memory}"
+      count=${all.length}
+      row=${row}
+      columns=${["auto", "98px", ...names.map(() => "100px")]}
+      head=${html`<${Head} text="Chunk" by="chunk" sort=${sort} onSort=${setSort} /><${Head} text="Activation" by="activation" sort=${sort} onSort=${setSort} />
+        ${names.map((name) => html`<${Head} key=${name} text=${partName(name)} title=${name} by=${name} sort=${sort} onSort=${setSort} />`)}`}
+      chosen=${at < 0 ? null : at}
+      onChoose=${(n) => setChosen(all[n].chunk)}
+      empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is empty so far."}</p>`}
+    />
+    ${at < 0 ? null : html`<${Chosen} row=${all[at]} names=${names} threshold=${threshold} />`}`;
+}

@@ -1,0 +1,85 @@
+// The modules of an agent: busy or not, in error or not, what they wait for, and all their plain attributes.
+
+import { html } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { state } from "../store.js";
+import { pairs, timeText } from "./event_text.js";
+import { Flash } from "./flash.js";
+import { eventAt, useSifted } from "./sifted.js";
+
+/** Returns the newest request to each part up to the present moment, by path. */
+export function useRequests(paths) {
+  const sifted = useSifted((event) => event[2] === "request", "requests");
+  const found = new Map();
+  const wanted = new Set(paths);
+  for (let n = sifted.below(state.value?.events ?? 0) - 1; n >= 0 && wanted.size > 0; n -= 1) {
+    const event = eventAt(sifted.numbers[n]);
+    if (wanted.delete(event[1])) found.set(event[1], event);
+  }
+  return found;
+}
+
+function requestText([time, , , data]) {
+  const { call, asked, ...rest } = data;
+  const given = Object.fromEntries(Object.entries(rest).filter(([, value]) => value !== null && typeof value !== "object"));
+  return `${asked !== undefined ? `'${asked}'` : `${call ?? "request"} ${pairs(given)}`}, asked at ${timeText(time)} s`;
+}
+
+/** Says what a part is about: what it waits for, which production is about to fire, how many chunks it has. */
+export function doing(part, request) {
+  if (part.is === "system") return part.chosen ? `${part.chosen} is about to fire` : "nothing matches";
+  if (part.state?.busy === true) {
+    const groups = Object.keys(part.state).filter((name) => name.endsWith("_busy") && part.state[name] === true);
+    if (groups.length) return `moves ${groups.map((name) => name.slice(0, -5).replaceAll("_", " ")).join(", ")}`;
+    return request ? `waits for ${requestText(request)}` : "waits for an answer";
+  }
+  if (part.state?.watching === true) return "watches";
+  if (part.is === "memory") return `${part.state.size ?? 0} chunks`;
+  return "";
+}
+
+/** The plain attributes of a part. */
+export function Attributes({ path, part }) {
+  const rows = Object.entries(part.state ?? {});
+  if (rows.length === 0) return html`<p class="empty">It has no plain attributes.</p>`;
+  return html`<table class="attributes" aria-label="Attributes of ${path}">
+    <tbody>
+      ${rows.map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td class="mono"><${Flash} text=${valueText(value)} /></td></tr>`)}
+    </tbody>
+  </table>`;
+}
+
+function Lamp({ name, on, level }) {
+  return html`<span class="lamp ${on ? level : "off"}" aria-label="${on ? "" : "not "}${name}" role="img">${name}</span>`;
+}
+
+/** One module, memory or production system: a line that opens. */
+export function Module({ path, name, part, request }) {
+  const { busy, error } = part.state ?? {};
+  const text = doing(part, request);
+  return html`<details class="part" data-path=${path}>
+    <summary>
+      <span class="name mono" title=${path}>${name}</span>
+      <span class="kind quiet">${part.class}</span>
+      <span class="lamps">
+        ${typeof busy === "boolean" ? html`<${Lamp} name="busy" on=${busy} level="on" />` : null}
+        ${typeof error === "boolean" ? html`<${Lamp} name="error" on=${error} level="wrong" />` : null}
+      </span>
+      <span class="doing" title=${text}><${Flash} text=${text} /></span>
+    </summary>
+    <${Attributes} path=${path} part=${part} />
+  </details>`;
+}
+
+/** A part that is neither a buffer nor a module: its attributes in a line, and below it when opened. */
+export function Plain({ path, name, part }) {
+  const text = pairs(part.state);
+  return html`<details class="part" data-path=${path}>
+    <summary>
+      <span class="name mono" title=${path}>${name}</span>
+      <span class="kind quiet">${part.class}</span>
+      <span class="doing mono" title=${text}>${text}</span>
+    </summary>
+    <${Attributes} path=${path} part=${part} />
+  </details>`;
+}

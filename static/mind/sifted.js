@@ -1,0 +1,53 @@
+// Some of the run's events, by their numbers, kept as the list grows: each event is looked at once.
+
+import { useMemo } from "../vendor/preact.js";
+import { events } from "../store.js";
+
+export class Sifted {
+  /** @param takes Tells of an event whether it is wanted. */
+  constructor(takes) {
+    this.takes = takes;
+    this.numbers = [];
+    this.next = 0;
+    this.last = null;
+  }
+
+  /** Looks at what is new; at all where the run has gone another way. */
+  update({ list, first }) {
+    let known = this.next - first;
+    if (known < 0 || known > list.length || (known > 0 && list[known - 1] !== this.last)) {
+      this.numbers = [];
+      known = 0;
+    } else if (this.numbers.length > 0 && this.numbers[0] < first) {
+      this.numbers.splice(0, this.below(first));
+    }
+    for (; known < list.length; known += 1) if (this.takes(list[known])) this.numbers.push(first + known);
+    this.next = first + list.length;
+    this.last = list.at(-1) ?? null;
+    return this;
+  }
+
+  /** Returns how many of them come before an event. */
+  below(number) {
+    let low = 0;
+    let high = this.numbers.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.numbers[middle] < number) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+}
+
+/** Returns the events that a test takes, as they are now; `key` differs where the test does. */
+export function useSifted(takes, key) {
+  const sifted = useMemo(() => new Sifted(takes), [key]);
+  return sifted.update(events.value);
+}
+
+/** Returns an event by its number. */
+export function eventAt(number) {
+  const { list, first } = events.peek();
+  return list[number - first];
+}

@@ -1,0 +1,123 @@
+// The firing trace: what happened, line by line, with what is wanted of it.
+
+import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
+import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
+import { eventText, GROUPS, timeText } from "./event_text.js";
+import { goTo } from "./go.js";
+import { Rows } from "./rows.js";
+import { eventAt, useSifted } from "./sifted.js";
+import { askWhy } from "./asked.js";
+import { events, session, state } from "../store.js";
+import { remembered } from "../remembered.js";
+
+const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
+const wantedWords = remembered("trace words", "");
+
+function testOf(kinds, words, agent) {
+  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  return (event) => {
+    if (!kinds.has(event[2])) return false;
+    if (agent && event[1] !== agent && !isBelow(event[1], agent)) return false;
+    if (wanted.length === 0) return true;
+    const text = `${event[1]} ${event[2]} ${eventText(event).join(" ")}`.toLowerCase();
+    return wanted.every((word) => text.includes(word));
+  };
+}
+
+function Groups() {
+  const box = useRef(null);
+  const all = GROUPS.map(({ id }) => id);
+  const toggle = (id) => (groups.value = groups.value.includes(id) ? groups.value.filter((one) => one !== id) : [...groups.value, id]);
+  useEffect(() => {
+    const close = (event) => {
+      if (event.key === "Escape" || (event.type === "pointerdown" && !box.current.contains(event.target))) box.current.open = false;
+    };
+    for (const kind of ["pointerdown", "keydown"]) addEventListener(kind, close);
+    return () => ["pointerdown", "keydown"].forEach((kind) => removeEventListener(kind, close));
+  }, []);
+  return html`<details class="menu" ref=${box}>
+    <summary title="Which events are shown">Events <span class="quiet">${groups.value.length}/${all.length}</span></summary>
+    <div class="menu-body" role="group" aria-label="Events that are shown">
+      ${GROUPS.map(
+        ({ id, text }) => html`<label key=${id}><input type="checkbox" checked=${groups.value.includes(id)} onChange=${() => toggle(id)} />${text}</label>`,
+      )}
+      <div class="menu-end">
+        <button onClick=${() => (groups.value = all)}>All</button>
+        <button onClick=${() => (groups.value = GROUPS.filter(({ first }) => first).map(({ id }) => id))}>As at first</button>
+      </div>
+    </div>
+  </details>`;
+}
+
+function Row({ number, event, ahead, chosen, several, onChoose }) {
+  const [time, source, kind] = event;
+  const [what, more] = eventText(event);
+  const go = () => (onChoose(), goTo(number));
+  return html`<tr
+    class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
+    id="event-${number}"
+    aria-selected=${chosen}
+    title="${timeText(time)} s  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
+    onClick=${go}
+  >
+    <td class="number time">${timeText(time)}</td>
+    ${several ? html`<td class="source">${source}</td>` : null}
+    <td class="what"><b>${what}</b><span>${more}</span></td>
+    <td class="ask">
+      ${kind === "fire" || chosen
+        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${timeText(time)} s" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
+        : null}
+    </td>
+  </tr>`;
+}
+
+export function FiringTrace() {
+  const parts = state.value?.parts;
+  const [agent, setAgent] = useState("");
+  const [chosen, setChosen] = useState(null);
+  const systems = systemsOf(parts);
+  const wanted = systems.includes(agent) ? agent : "";
+  const key = `${groups.value} ${wantedWords.value} ${wanted}`;
+  const kinds = useMemo(() => new Set(GROUPS.filter(({ id }) => groups.value.includes(id)).flatMap((group) => group.kinds)), [groups.value]);
+  const sifted = useSifted(testOf(kinds, wantedWords.value, wanted), key);
+  const { first, list } = events.value;
+  const now = state.value?.events ?? 0;
+  const present = sifted.below(now);
+  const several = systems.length > 1;
+  const at = chosen === null ? -1 : sifted.below(chosen);
+  const chosenRow = sifted.numbers[at] === chosen && chosen !== null ? at : null;
+  useEffect(() => setChosen(null), [session.value?.id, session.value?.run]);
+
+  const row = (n) => {
+    const number = sifted.numbers[n];
+    return html`<${Row} key=${number} number=${number} event=${eventAt(number)} ahead=${number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
+  };
+  const nothing = list.length === 0 ? "Nothing has happened yet. Run the model, or step it." : "None of the events so far is one of those that are shown.";
+  return html`<section class="trace" aria-label="Firing trace">
+    <div class="tools">
+      <input type="search" aria-label="Filter the trace" placeholder="Filter" value=${wantedWords.value} onInput=${(event) => (wantedWords.value = event.currentTarget.value)} />
+      ${several
+        ? html`<select aria-label="Agent of the trace" value=${wanted} onChange=${(event) => setAgent(event.currentTarget.value)}>
+            <option value="">${agentsOf(parts).length > 1 ? "all agents" : "all systems"}</option>
+            ${systems.map((path) => html`<option key=${path} value=${path}>${nameIn("", path)}</option>`)}
+          </select>`
+        : null}
+      <${Groups} />
+    </div>
+    ${first > 0 ? html`<p class="gap-note" role="note">${first.toLocaleString("en")} earlier events are not shown</p>` : null}
+    <${Rows}
+      id="events"
+      label="Firing trace"
+      count=${sifted.numbers.length}
+      row=${row}
+      columns=${several ? ["68px", "22%", "auto", "42px"] : ["68px", "auto", "42px"]}
+      head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th></th>`}
+      aim=${present > 0 ? present - 1 : null}
+      chosen=${chosenRow}
+      onChoose=${(n) => setChosen(sifted.numbers[n])}
+      onOpen=${(n) => goTo(sifted.numbers[n])}
+      keys=${{ w: (n) => askWhy(sifted.numbers[n]) }}
+      empty=${html`<p class="empty">${nothing}</p>`}
+    />
+  </section>`;
+}

@@ -1,0 +1,65 @@
+// Why one production matches or does not: condition by condition, and what its utility is made of.
+
+import { html } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { standing } from "./list.js";
+import { Part } from "./part_names.js";
+
+const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "cannot be told"] };
+
+function ConditionRow({ one, first }) {
+  const [sign, words] = SIGNS[one.holds];
+  const at = one.condition.indexOf(": ");
+  return html`<tr class="${one.holds === true ? "holds" : one.holds === false ? "fails" : "unknown"} ${first ? "first" : ""}">
+    <td class="sign"><span role="img" aria-label=${words}>${sign}</span></td>
+    <td class="mono"><span class="quiet">${one.condition.slice(0, at)}</span> ${one.condition.slice(at + 2)}</td>
+    <td>
+      ${one.holds === true
+        ? html`<span class="mono">${one.found}</span>`
+        : html`${one.holds === false ? html`expected <span class="mono">${one.expected}</span>, found <span class="mono">${one.found}</span>` : one.found}`}
+      ${one.seen ? html` <span class="quiet">(${one.seen})</span>` : null}
+    </td>
+  </tr>`;
+}
+
+function Conditions({ reason }) {
+  if (reason.conditions.length === 0) return html`<p class="quiet">It has no conditions: it always matches.</p>`;
+  const failing = reason.conditions.findIndex(({ holds }) => holds !== true);
+  return html`<table class="conditions" aria-label="Conditions of ${reason.name}">
+    <thead>
+      <tr><th></th><th>Condition</th><th>What there is</th></tr>
+    </thead>
+    <tbody>
+      ${reason.conditions.map((one, n) => html`<${ConditionRow} key=${n} one=${one} first=${n === failing} />`)}
+    </tbody>
+  </table>`;
+}
+
+function Utility({ reason }) {
+  const parts = Object.entries(reason.parts);
+  const sum = reason.utility === null ? "unknown" : valueText(reason.utility);
+  return html`<p class="utility">
+    Utility <b class="number">${sum}</b>
+    ${parts.length > 1 ? html`<span class="quiet"> = ${parts.map(([name, value], n) => html`${n > 0 ? " + " : ""}${name} <${Part} value=${value} />`)}</span>` : null}
+  </p>`;
+}
+
+/** @param item One of `productionsOf`; its reason is null while the run has not been asked. */
+export function Why({ item }) {
+  if (!item) return null;
+  const { reason, name } = item;
+  if (!reason) return html`<h3 class="mono">${name}</h3><p class="quiet">It is explained as soon as the run pauses.</p>`;
+  const [kind, , words] = standing(reason);
+  const bound = Object.entries(reason.bindings);
+  return html`<h3 class=${kind}><span class="mono">${name}</span>: ${words}</h3>
+    ${reason.verdict ? html`<p>${reason.verdict}</p>` : null}
+    <${Conditions} reason=${reason} />
+    ${bound.length
+      ? html`<p>
+          <span class="quiet">Bound </span>
+          ${bound.map(([variable, value]) => html`<span key=${variable} class="slot mono"><b>?${variable}</b>${value}</span>`)}
+        </p>`
+      : null}
+    <${Utility} reason=${reason} />
+    <p class="quiet">In ${reason.system}${reason.parents.length ? `; compiled from ${reason.parents.join(" and ")}` : ""}</p>`;
+}

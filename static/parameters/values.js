@@ -1,0 +1,33 @@
+// Values of parameters as they are written in fields, read, and checked against their bounds.
+
+/** Returns a value as it is written in a field. */
+export function written(value) {
+  return value === null || value === undefined ? "" : String(value);
+}
+
+/** Says within which bounds a parameter is: "above 0, at most 3". */
+export function boundsText({ above, least, below, most, optional }) {
+  const parts = [
+    above === null ? null : `above ${above}`,
+    least === null ? null : `at least ${least}`,
+    below === null ? null : `below ${below}`,
+    most === null ? null : `at most ${most}`,
+    optional ? "may be empty" : null,
+  ];
+  return parts.filter(Boolean).join(", ");
+}
+
+/** Reads what is written in a field: {value}, or {problem} that says what would be right. */
+export function read(parameter, text) {
+  const { takes, optional } = parameter;
+  if (takes === "switch") return { value: text === true || text === "true" };
+  if (text === "" && optional) return { value: null };
+  if (takes === "choice") return { value: parameter.choices.find((choice) => String(choice) === text) };
+  if (takes !== "number" && takes !== "whole number") return { value: text };
+  const value = Number(String(text).replace(",", "."));
+  if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `a ${takes} is wanted` };
+  if (takes === "whole number" && !Number.isInteger(value)) return { problem: "a whole number is wanted" };
+  const { above, least, below, most } = parameter;
+  const held = (above === null || value > above) && (least === null || value >= least) && (below === null || value < below) && (most === null || value <= most);
+  return held ? { value } : { problem: `must be ${boundsText({ ...parameter, optional: false })}` };
+}

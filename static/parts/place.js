@@ -1,0 +1,44 @@
+// A line of a file, as a link that opens it in the editor; and tracebacks, whose lines are such links.
+
+import { html } from "../vendor/preact.js";
+import { folder } from "../bar/models.js";
+import { open } from "../editor/documents.js";
+import { openTab } from "../tabs.js";
+
+const PLACE = /^(\s*File ")(.+)(", line )(\d+)(.*)$/;
+
+/** Opens a model file in the editor, at a line. */
+export function openAt(path, line) {
+  openTab.value = "editor";
+  return open(path, line);
+}
+
+/** Returns what a file is called in the models folder; null where it is not in there. */
+function inFolder(file) {
+  const root = `${folder.value}/`;
+  if (folder.value && file.startsWith(root)) return file.slice(root.length);
+  return file.startsWith("/") || file.startsWith("<") || /^\w:/.test(file) ? null : file;
+}
+
+export function Place({ file, line }) {
+  const path = inFolder(file);
+  const text = line ? `${path ?? file}:${line}` : path ?? file;
+  if (!path?.endsWith(".py")) return html`<span class="place">${text}</span>`;
+  return html`<button class="place link" title="Open in the editor" onClick=${() => openAt(path, line)}>${text}</button>`;
+}
+
+/** A traceback as text, in which the lines of the folder's files can be gone to. */
+export function Traceback({ text }) {
+  return html`<pre>
+${text
+      .trimEnd()
+      .split("\n")
+      .map((line) => {
+        const found = PLACE.exec(line);
+        const path = found && inFolder(found[2]);
+        if (!path?.endsWith(".py")) return `${line}\n`;
+        const [, before, , between, number, after] = found;
+        return html`${before}<button class="place link" onClick=${() => openAt(path, Number(number))}>${path}</button>${between}${number}${after}${"\n"}`;
+      })}</pre
+  >`;
+}

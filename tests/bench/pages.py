@@ -1,0 +1,141 @@
+"""Pages that measurements attach: real ones in headless Chromium, or clients that say and hear what a page does."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import AsyncGenerator, Callable, Generator
+from contextlib import asynccontextmanager, contextmanager, suppress
+from typing import Any
+
+import websockets
+from websockets.typing import Subprotocol
+
+from tests.server.serving import Served
+
+LONGEST = 60.0
+"""Nothing that is waited for takes longer [s]."""
+CLICKS = """async (count) => {
+    const time = document.querySelector("#time"), step = document.querySelector("#step"), taken = [];
+    for (let n = 0; n < count; n++) {
+        const before = time.textContent;
+        const changed = new Promise((done) => {
+            const observer = new MutationObserver(() => {
+                if (time.textContent === before) return;
+                observer.disconnect();
+                done(performance.now());
+            });
+            observer.observe(time, { childList: true, characterData: true, subtree: true });
+        });
+        const begin = performance.now();
+        step.click();
+        taken.push((await changed) - begin);
+        await new Promise((rest) => setTimeout(rest, 60));
+    }
+    return taken;
+}"""
+"""Clicks on step, one time after the other, and returns how long it took each time until the time on the page was another [ms]."""
+
+
+@contextmanager
+def chromium(path: str) -> Generator[Any]:
+    """Gives a headless Chromium that draws the 3D view by software."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        browser = playwright.chromium.launch(executable_path=path, args=options)
+        yield browser
+        browser.close()
+
+
+class Client:
+    """What a page is to the server: a websocket for state and commands.
+
+    Args:
+        socket: The websocket.
+    """
+
+    def __init__(self, socket: Any) -> None:
+        self._socket = socket
+        self._number = 0
+        self.state: dict[str, Any] = {}
+        self.run = 0
+
+    async def say(self, kind: str, **more: Any) -> None:
+        """Says something; what comes of it is not waited for."""
+        self._number += 1
+        await self._socket.send(json.dumps({"id": self._number, "say": {"type": kind, **more}}))
+
+    async def until(self, condition: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
+        """Reads until something is true of the newest state; returns that."""
+        async with asyncio.timeout(LONGEST):
+            while not (self.state and condition(self.state)):
+                await self._hear()
+        return self.state
+
+    async def restart(self, **more: Any) -> None:
+        """Begins a new run; returns when there is a state of it."""
+        await self.until(lambda _: True)
+        before = self.run
+        await self.say("restart", **more)
+        await self.until(lambda _: self.run > before)
+
+    async def read_on(self) -> None:
+        """Reads all that comes, until the server is gone."""
+        with suppress(websockets.ConnectionClosed):
+            while True:
+                await self._hear()
+
+    async def _hear(self) -> None:
+        message = json.loads(await self._socket.recv())
+        if message["type"] != "update":
+            raise RuntimeError(f"the server refuses: {message}")
+        if message["run"] != self.run:
+            self.run, self.state = message["run"], {}
+        self.state = message.get("state") or self.state
+
+
+@asynccontextmanager
+async def attached(server: Served, session: str) -> AsyncGenerator[Client]:
+    """Attaches a client to a session."""
+    bearer = {"authorization": f"Bearer {server.token}"}
+    async with websockets.connect(f"ws://127.0.0.1:{server.port}/ws", additional_headers=bearer, max_size=None, proxy=None) as socket:
+        await socket.send(json.dumps({"type": "attach", "session": session}))
+        yield Client(socket)
+
+
+@asynccontextmanager
+async def looking(server: Served, session: str) -> AsyncGenerator[None]:
+    """Takes what the 3D view of a session is shown."""
+    import viser
+
+    bearer = {"authorization": f"Bearer {server.token}"}
+    protocol = [Subprotocol(f"viser-v{viser.__version__}")]
+    address = f"ws://127.0.0.1:{server.port}/viser/{session}"
+    async with websockets.connect(address, subprotocols=protocol, additional_headers=bearer, max_size=None, proxy=None) as socket:
+
+        async def read_on() -> None:
+            with suppress(websockets.ConnectionClosed):
+                while True:
+                    await socket.recv()
+
+        reading = asyncio.create_task(read_on())
+        yield
+        reading.cancel()
+
+
+def opened(server: Served, model: str, **options: Any) -> str:
+    """Begins a session, or returns the one that there is with the model."""
+    there: list[str] = [one["id"] for one in server.get("/api/sessions").json()["sessions"] if one["model"] == model]
+    return there[-1] if there else server.post("/api/sessions", {"model": model, "seed": 1, **options}).json()["id"]
+
+
+def await_scene(server: Served, session: str) -> None:
+    """Waits until a session has a 3D view to look at."""
+    end = time.monotonic() + LONGEST
+    while not server.get(f"/api/sessions/{session}").json()["session"]["scene"]:
+        if time.monotonic() > end:
+            raise TimeoutError("there is no 3D view")
+        time.sleep(0.02)

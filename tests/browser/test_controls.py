@@ -1,0 +1,123 @@
+"""The controls of the page: until when it runs, parameters, the eye, keys, themes, sizes."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.looking import PATIENCE, open_tab, shows
+
+
+def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#time", "0.00 s")
+    page.keyboard.press("u")
+    page.get_by_label("Production", exact=True).fill("count_on")
+    page.get_by_role("button", name="Run until then").click()
+    shows(page, "#status", "count_on fired")
+    page.get_by_role("button", name="Run until").click()
+    page.get_by_label("Time [s]").fill("0.01")
+    page.get_by_role("button", name="Run until then").click()
+    expect(page.locator(".toast")).to_have_text(re.compile("seek goes back"))
+    page.get_by_role("button", name="Run until").click()
+    page.get_by_label("Time [s]").fill("0.5")
+    page.keyboard.press("Tab")
+    page.get_by_role("button", name="Run until then").click()
+    shows(page, "#status", "at 0.5 s")
+    shows(page, "#time", "0.50 s")
+
+
+def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    open_tab(page, "Parameters")
+    speed = page.locator("#parameter-speed")
+    speed.fill("0")
+    expect(page.get_by_role("alert")).to_have_text(re.compile("must be above 0"))
+    expect(page.get_by_role("button", name="Restart with these")).to_be_disabled()
+    speed.fill("1.1")
+    expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))
+    page.get_by_role("button", name="Restart with these").click()
+    expect(page.locator(".note")).to_have_count(0, timeout=PATIENCE)
+    expect(speed).to_have_value("1.1")
+    width = page.locator("#parameter-width")
+    width.fill("0.8")
+    width.press("Tab")
+    shows(page, "#width", "80 cm")
+    expect(page.locator(".note")).to_have_count(0)
+    page.get_by_label("seed", exact=True).fill("7")
+    page.get_by_role("button", name="Restart with these").click()
+    expect(page.get_by_text("seed 7", exact=True)).to_be_visible(timeout=PATIENCE)
+
+
+def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    inset = page.get_by_role("complementary", name="Retina")
+    expect(inset).to_have_text(re.compile(r"\d+ extents in 100 rows"), timeout=PATIENCE)
+    inset.get_by_role("button", name="Larger").click()
+    expect(inset).to_have_count(0)
+    labels = page.locator(".eye tbody tr td:first-child")
+    expect(labels).to_have_text(["1", "2"])
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy as JSON").click()
+    view = json.loads(page.evaluate("navigator.clipboard.readText()"))
+    assert {extent[1] for extent in view["extents"]} == {1, 2}
+    page.get_by_role("button", name="Edges").click()
+    expect(page.locator(".eye tbody tr")).to_have_count(len(view["extents"]))
+    box = page.locator(".eye canvas").bounding_box()
+    assert box is not None
+    row, _, _, left, right, *_ = view["extents"][0]
+    page.mouse.move(box["x"] + (left + right) / 2 * box["width"], box["y"] + (row + 0.5) / view["rows"] * box["height"])
+    expect(page.locator(".retina output")).to_have_text(re.compile(rf"label {view['extents'][0][1]} · row {row} · .* m to .* m"))
+
+
+def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#time", "0.00 s")
+    page.keyboard.press("ArrowRight")
+    shows(page, "#time", "0.01 s")
+    page.keyboard.press("ArrowLeft")
+    shows(page, "#time", "0.00 s")
+    page.keyboard.press("c")
+    shows(page, "#status", "fired")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_contain_text("Until the next production fires")
+    page.keyboard.press("Space")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    page.keyboard.press("Space")
+    shows(page, "#status", "ended")
+    expect(page.locator("#run")).to_have_text("Run again")
+    page.keyboard.press("Space")
+    shows(page, "#status", "ended")
+
+
+def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    bar = page.get_by_role("separator", name="Width of the panels")
+    before = int(bar.get_attribute("aria-valuenow") or 0)
+    bar.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    after = int(bar.get_attribute("aria-valuenow") or 0)
+    assert after < before
+    open_tab(page, "Runs")
+    page.get_by_role("tab", name="Runs").press("ArrowRight")
+    expect(page.get_by_role("tab", name="Messages")).to_have_attribute("aria-selected", "true")
+    page.get_by_role("button", name="Theme: system").click()
+    page.get_by_role("button", name="Theme: light").click()
+    expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    page.reload()
+    expect(page.locator("html")).to_have_attribute("data-theme", "dark")
+    expect(bar).to_have_attribute("aria-valuenow", str(after))
+    expect(page.get_by_role("tab", name="Messages")).to_have_attribute("aria-selected", "true")
+
+
+def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None:
+    for width, height in ((1280, 800), (1920, 1080), (1024, 700)):
+        page = pages("doorway.py", width, height)
+        shows(page, "#time", "0.00 s")
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight")
+        page.close()

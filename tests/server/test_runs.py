@@ -1,0 +1,137 @@
+"""What lists tell of recordings, how two are compared, and how they are run again."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from actr3d.errors import RecordingError
+from actr3d.recording import Recorded, Recording
+from actr3d.trace import TraceEvent
+from tests.server.desk import Desk
+from workbench.comparing import CONTEXT, compare
+from workbench.recordings import Recordings
+from workbench.replaying import BusyError, replay
+
+MODELS = Path(__file__).parents[2] / "models"
+APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
+
+
+def written(folder: Path, name: str, events: list[TraceEvent], **facts: object) -> Path:
+    """Writes a recording of a program into a models folder."""
+    path = folder / ".workbench" / "recordings" / f"{name}.sqlite"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with Recording(path, {"kind": "program", "seed": 1, "file": "m.py", "sources": {"m.py": "x = 1\ny = 2\n"}, **facts}) as recording:
+        for event in events:
+            recording.event(event)
+    return path
+
+
+def firing(count: int, last: str = "go", data: object = None) -> list[TraceEvent]:
+    names = ["go"] * (count - 1) + [last]
+    return [TraceEvent(50_000 * n, "agent", "fire", {"production": name, "bound": data}) for n, name in enumerate(names)]
+
+
+def test_a_list_tells_the_result_and_what_is_not_the_default(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.3}, run=True, wait="ended")
+    name = talk.facts["recording"]
+    assert talk.sessions.writing() == {name: talk.session.name}
+    desk.do(talk.session.stop())
+    assert talk.sessions.writing() == {}
+    total, (summary,) = talk.sessions.recordings.list()
+    assert (total, summary.id, summary.model, summary.seed, summary.problem) == (1, name, "model.py", 1, None)
+    assert summary.different == ("aperture",)
+    assert summary.parameters["condition"] == "normal"
+    assert summary.result is not None
+    assert (summary.result["outcome"], summary.ended) == ("declined", "stop")
+    with Recorded(talk.sessions.recordings.path(name)) as recorded:
+        assert summary.time == pytest.approx(sum(1 for _, tick, _, _ in recorded.states() if tick) / 100)
+
+
+def test_a_list_has_the_newest_first_and_tells_what_cannot_be_read(tmp_path: Path) -> None:
+    written(tmp_path, "m-20260102-000000-aaaa", firing(3))
+    written(tmp_path, "m-20260103-000000-aaaa", firing(2))
+    old = written(tmp_path, "m-20260101-000000-aaaa", [], form="actr3d recording 1")
+    torn = written(tmp_path, "m-20251231-000000-aaaa", firing(3))
+    torn.write_bytes(b"no recording at all" * 100)
+    os.utime(old)
+    recordings = Recordings(tmp_path)
+    total, found = recordings.list()
+    assert (total, [summary.id[2:10] for summary in found]) == (4, ["20260103", "20260102", "20260101", "20251231"])
+    assert [summary.events for summary in found] == [2, 3, 0, 0]
+    assert "it says 'actr3d recording 1'" in str(found[2].problem)
+    assert "not a database" in str(found[3].problem)
+    assert [summary.id for summary in recordings.list(1, 2)[1]] == [summary.id for summary in found[1:3]]
+
+
+def test_a_summary_is_read_again_when_its_file_has_changed(tmp_path: Path) -> None:
+    recordings = Recordings(tmp_path)
+    path = tmp_path / ".workbench" / "recordings" / "m.sqlite"
+    path.parent.mkdir(parents=True)
+    with Recording(path, {"kind": "program", "seed": 1}) as recording:
+        assert recordings.summary("m").events == 0
+        recording.event(firing(1)[0])
+        end = time.monotonic() + 10
+        while recordings.summary("m").events == 0 and time.monotonic() < end:
+            time.sleep(0.05)
+        assert recordings.summary("m").events == 1
+        assert recordings.summary("m") is recordings.summary("m")
+
+
+def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:
+    one = written(tmp_path, "a", [*firing(20, "left"), *firing(1)], parameters={"width": 0.5, "same": 1})
+    other = written(tmp_path, "b", firing(20, "right"), parameters={"width": 0.9, "same": 1}, sources={"m.py": "x = 1\ny = 3\n"})
+    told = compare(one, other)
+    assert told["parameters"] == {"width": [0.5, 0.9]}
+    assert (told["same_events"], told["whole"]) == (19, True)
+    difference = told["difference"]
+    assert (difference["number"], difference["time"]) == (19, 0.95)
+    assert difference["what"] == [["production", "left", "right"]]
+    assert [event[0] for event in difference["before"]] == [50_000 * n for n in range(19 - CONTEXT, 19)]
+    assert difference["after"] == [[[0, "agent", "fire", {"production": "go", "bound": None}]], []]
+    assert "-y = 2" in told["text"]
+    assert "+y = 3" in told["text"]
+
+
+def test_events_of_some_kinds_alone_are_compared(tmp_path: Path) -> None:
+    one = written(tmp_path, "a", [TraceEvent(0, "agent", "output", {"text": "a"}), *firing(3)])
+    other = written(tmp_path, "b", [TraceEvent(0, "agent", "output", {"text": "b"}), *firing(3)])
+    assert compare(one, other)["difference"]["number"] == 0
+    told = compare(one, other, ["fire"])
+    assert (told["difference"], told["same_events"], told["text"]) == (None, 3, [])
+    told = compare(one, written(tmp_path, "c", firing(2)), ["fire"])["difference"]
+    assert told["events"][1] is None
+    assert told["number"] == 2
+
+
+def test_where_objects_lie_is_no_difference(tmp_path: Path) -> None:
+    one = written(tmp_path, "a", firing(3, data="<x at 0x7f01>"))
+    assert compare(one, written(tmp_path, "b", firing(3, data="<x at 0x7f02>")))["difference"] is None
+
+
+def test_damaged_recordings_are_not_compared(tmp_path: Path) -> None:
+    one, other = written(tmp_path, "a", firing(3)), written(tmp_path, "b", firing(3), parameters=["no", "dict"])
+    with pytest.raises(RecordingError, match="damaged"):
+        compare(one, other)
+
+
+def test_a_recording_is_run_again_while_somebody_waits(tmp_path: Path) -> None:
+    sleeper = "import time\ntime.sleep(600)\n"
+    facts = {"sources": {"m.py": sleeper}, "file": "m.py", "until": None}
+    path = written(tmp_path, "a", [], **facts)
+
+    async def gone() -> bool:
+        return time.monotonic() > begin + 1
+
+    async def three() -> list[object]:
+        return await asyncio.gather(*(replay(path, gone) for _ in range(3)), return_exceptions=True)
+
+    begin = time.monotonic()
+    first, second, third = asyncio.run(three())
+    assert first == second == {"agrees": None, "text": "cancelled"}
+    assert isinstance(third, BusyError)
+    assert time.monotonic() - begin < 30

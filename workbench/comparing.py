@@ -1,0 +1,151 @@
+"""How two recordings differ: in what they began with, and in the first event that is not the same."""
+
+from __future__ import annotations
+
+import difflib
+from collections import deque
+from collections.abc import Collection, Iterator
+from itertools import islice, zip_longest
+from pathlib import Path
+from typing import Any, cast
+
+import msgspec
+
+from actr3d.clock import seconds
+from actr3d.errors import RecordingError
+from actr3d.recording import Recorded
+from actr3d.trace import TraceEvent
+from workbench.summaries import EVENTS, UNREADABLE, Event
+
+CONTEXT = 8
+"""So many events before the first difference are told, and so many after it of each."""
+MOST_COMPARED = 2_000_000
+"""No more events are compared."""
+MOST_TEXT = 200_000
+"""Longer texts of models are not compared line by line [characters]."""
+MOST_LINES = 400
+"""No more lines are told of what differs between two texts."""
+
+
+def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str, Any]:
+    """Returns where two recordings differ.
+
+    `parameters` holds what was chosen otherwise, `text` the lines that differ where both are of one model file, `difference` the
+    first event that is not the same, with some before and after it; None where there is none among the first `compared`.
+
+    Args:
+        first: One recording, maybe of a run that goes on.
+        second: The other.
+        kinds: Which kinds of events are compared; nothing for all.
+
+    Raises:
+        RecordingError: If one cannot be read.
+    """
+    try:
+        with Recorded(first) as one, Recorded(second) as other:
+            ours, theirs = _told(one.facts), _told(other.facts)
+            different = {name: [ours.get(name), theirs.get(name)] for name in {**ours, **theirs} if ours.get(name) != theirs.get(name)}
+            agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
+            return {
+                "parameters": different,
+                "text": _changes(_source(one.facts), _source(other.facts)) if ours["model"] == theirs["model"] else [],
+                "same_events": agreeing,
+                "whole": whole,
+                "difference": difference,
+            }
+    except RecordingError:
+        raise
+    except UNREADABLE as error:
+        raise RecordingError(f"one of the recordings is damaged: {type(error).__name__}: {error}") from None
+
+
+def _told(facts: dict[str, Any]) -> dict[str, Any]:
+    """Returns what of a run's facts was chosen by who began it."""
+    return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
+
+
+def _source(facts: dict[str, Any]) -> str:
+    return facts.get("sources", {}).get(facts.get("file", ""), "")
+
+
+def _changes(ours: str, theirs: str) -> list[str]:
+    """Returns the lines that differ between two texts, with some around them, as `diff -u` has them."""
+    if ours == theirs:
+        return []
+    if len(ours) + len(theirs) > MOST_TEXT:
+        return ["the texts are too long to be compared line by line"]
+    lines = difflib.unified_diff(ours.splitlines(), theirs.splitlines(), "first", "second", n=2, lineterm="")
+    found = list(islice(lines, MOST_LINES + 1))
+    return [*found[:MOST_LINES], "and more"] if len(found) > MOST_LINES else found
+
+
+# -- events
+
+
+def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> tuple[int, dict[str, Any] | None, bool]:
+    """Returns how many events agree, what then differs, and whether all were compared where nothing does."""
+    ours, theirs = _events(one, kinds), _events(other, kinds)
+    before: deque[Event] = deque(maxlen=CONTEXT)
+    number = -1
+    for number, (mine, its) in enumerate(zip_longest(ours, theirs)):
+        if number == MOST_COMPARED:
+            return number, None, False
+        if mine != its and not (mine is not None and its is not None and _alike(mine, its)):
+            after = [[_shown(event) for event in islice(events, CONTEXT)] for events in (ours, theirs)]
+            difference = {
+                "number": number,
+                "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
+                "events": [None if event is None else _shown(event) for event in (mine, its)],
+                "what": _what(mine, its),
+                "before": [_shown(event) for event in before],
+                "after": after,
+            }
+            return number, difference, True
+        before.append(mine or its)
+    return number + 1, None, True
+
+
+def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[Event]:
+    """Yields events whose particulars are read only where they are needed: there may be a million."""
+    for (text,) in recorded._file.execute("SELECT data FROM events ORDER BY first"):
+        rows = EVENTS.decode(text)
+        yield from (event for event in rows if event[2] in kinds) if kinds else rows
+
+
+def _alike(mine: Event, its: Event) -> bool:
+    """Tells whether two events differ in nothing but where in memory some object lies."""
+    return mine[:3] == its[:3] and _event(mine).to_json() == _event(its).to_json()
+
+
+def _event(event: Event) -> TraceEvent:
+    return TraceEvent(*event[:3], msgspec.json.decode(event[3]))
+
+
+def _shown(event: Event) -> list[Any]:
+    return [*event[:3], msgspec.json.decode(event[3])]
+
+
+def _what(mine: Event | None, its: Event | None) -> list[list[Any]]:
+    """Returns in what two events differ: names with both values."""
+    if mine is None or its is None:
+        return []
+    found: list[list[Any]] = []
+    for name, one, other in zip(("time", "source", "kind"), (seconds(mine[0]), *mine[1:3]), (seconds(its[0]), *its[1:3]), strict=True):
+        if one != other:
+            found.append([name, one, other])
+    if mine[2] == its[2]:
+        found += _differing("", msgspec.json.decode(mine[3]), msgspec.json.decode(its[3]))
+    return found[:CONTEXT]
+
+
+def _differing(name: str, one: Any, other: Any) -> Iterator[list[Any]]:
+    """Yields the innermost values in which two values differ, by the way to them."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        ours, theirs = cast("dict[str, Any]", one), cast("dict[str, Any]", other)
+        for key in {**ours, **theirs}:
+            yield from _differing(f"{name}.{key}" if name else key, ours.get(key), theirs.get(key))
+    elif isinstance(one, list) and isinstance(other, list) and len(cast("list[Any]", one)) == len(cast("list[Any]", other)):
+        for number, (mine, its) in enumerate(zip(cast("list[Any]", one), cast("list[Any]", other), strict=True)):
+            yield from _differing(f"{name}.{number}", mine, its)
+    elif one != other:
+        yield [name, one, other]

@@ -1,0 +1,51 @@
+"""Bounds to what is shown: a model may make texts and lists of any length, and pages are to show them all the same."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from actr3d.values import to_json
+
+LARGEST = 200_000
+"""One event, or all parts together, are no longer as JSON [characters]; what is longer is shown in part, and recorded whole."""
+LONGEST_TEXT = 2_000
+MOST_ENTRIES = 200
+
+
+def bounded_json(value: Any, most: int = LARGEST) -> bytes:
+    """Returns a value as JSON: as it is, or with its long texts and collections cut, or that it is too long.
+
+    Args:
+        value: Anything that has JSON.
+        most: How long that may be [characters].
+    """
+    text = to_json(value)
+    if len(text) > most:
+        size, text = len(text), to_json(cut(value))
+        if len(text) > most:
+            text = to_json(_told(value, f"too long to be shown: {size:,} characters"))
+    return text.encode()
+
+
+def cut(value: Any) -> Any:
+    """Returns a value with all that is long in it cut, and what says so."""
+    if isinstance(value, str):
+        left = len(value) - LONGEST_TEXT
+        return value if left <= 0 else f"{value[:LONGEST_TEXT]} … ({left:,} more characters)"
+    if isinstance(value, dict):
+        entries: list[tuple[Any, Any]] = list(value.items())  # pyright: ignore[reportUnknownArgumentType,reportUnknownVariableType]
+        kept = {key if len(str(key)) <= LONGEST_TEXT else str(key)[:LONGEST_TEXT]: cut(entry) for key, entry in entries[:MOST_ENTRIES]}
+        return kept if len(entries) <= MOST_ENTRIES else {**kept, "…": f"{len(entries) - MOST_ENTRIES:,} more"}
+    if isinstance(value, (list, tuple)):
+        items: list[Any] = list(value)  # pyright: ignore[reportUnknownArgumentType]
+        some = [cut(entry) for entry in items[:MOST_ENTRIES]]
+        return some if len(items) <= MOST_ENTRIES else [*some, f"… ({len(items) - MOST_ENTRIES:,} more)"]
+    return value
+
+
+def _told(value: Any, reason: str) -> Any:
+    """Returns the frame of a value that is too long even so: of an event its time, source and kind."""
+    if isinstance(value, list):
+        entries: list[Any] = list(value)  # pyright: ignore[reportUnknownArgumentType]
+        return [entry if isinstance(entry, (int, float)) else {"…": reason} if isinstance(entry, dict) else cut(entry) for entry in entries]
+    return {"…": reason}
