@@ -190,7 +190,8 @@ def test_pictures(ended: Page, tmp_path: Path) -> None:
     plot = kept("SVG", "speed [m/s]")
     assert {"walker speed", "0 s"} <= {node.text for node in ElementTree.fromstring(plot.read_text(encoding="utf-8")).iter()}
     png = kept("PNG").read_bytes()
-    assert png.startswith(b"\x89PNG\r\n") and len(png) > 20_000
+    assert png.startswith(b"\x89PNG\r\n")
+    assert len(png) > 20_000
     assert int.from_bytes(png[16:20]) > 2000  # sharp enough to print [pixels across]
 
 
@@ -234,7 +235,8 @@ def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None
           }
           const lane = lanes.lanes.get("buffer mind.goal");
           let calls = 0;
-          const surface = { fill: () => (calls += 1), line() {}, polygon() {}, text: () => (calls += 1), within: (x, y, w, h, draw) => draw() };
+          const count = () => (calls += 1);
+          const surface = { fill: count, line() {}, polygon: count, text: count, within: (x, y, w, h, draw) => draw() };
           const layout = { rows: [{ lane, label: "goal", y: 20, height: 18 }] };
           drawTimeline(surface, { width: 900, height: 60, column: 100, scroll: 0, span: { from: 0, to: 100 }, layout, end: 100, begin: 0 });
           return { bands: lane.bands.length, calls, at: lane.at(50.0015, 0)?.chunk[0], open: lane.open?.from };
