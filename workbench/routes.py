@@ -15,11 +15,13 @@ from fastapi import APIRouter, Query, Request
 from fastapi import Path as InPath
 from fastapi.responses import FileResponse, Response, StreamingResponse
 from pydantic import Field
+from starlette.background import BackgroundTask
 
 from workbench import protocol as say
 from workbench.files import ModelFile
 from workbench.loader import listing_of
 from workbench.recordings import compare, curves, events_csv, states_csv
+from workbench.replay.aside import replay_of
 from workbench.sessions import Sessions
 
 router = APIRouter(prefix="/api")
@@ -224,10 +226,15 @@ def recording(request: Request, recording: Id) -> dict[str, Any]:
 
 
 @router.get("/recordings/{recording}/file")
-def download(request: Request, recording: Id, form: Literal["sqlite", "events.csv", "states.csv"] = "sqlite") -> Response:
-    """Gives a recording: as it is, or its events or states as CSV."""
+async def download(
+    request: Request, recording: Id, form: Literal["sqlite", "events.csv", "states.csv", "replay.html"] = "sqlite"
+) -> Response:
+    """Gives a recording: as it is, its events or states as CSV, or one HTML file that plays its scene beside its trace."""
     path = _sessions(request).recordings.path(recording)
     name = f"{recording}.{form}"
+    if form == "replay.html":
+        made = await replay_of(path)
+        return FileResponse(made, media_type="text/html", filename=name, background=BackgroundTask(made.unlink, missing_ok=True))
     if form == "sqlite":
         return FileResponse(path, media_type="application/vnd.sqlite3", filename=name)
     make: Callable[[Path], Iterator[str]] = events_csv if form == "events.csv" else states_csv
