@@ -121,6 +121,9 @@ def test_a_session_by_rest_alone(server: Served) -> None:
     assert len(events) == listed[recording]["events"] + 1
     states = server.get(file, params={"form": "states.csv"}).text.splitlines()
     assert len(states) == 682
+    replay = server.get(file, params={"form": "replay.html"})
+    assert replay.text.startswith("<!doctype html>")
+    assert replay.headers["content-disposition"] == f'attachment; filename="{recording}.replay.html"'
     assert states[-1].startswith("6.8,")
     told = server.get(f"/api/recordings/{recording}/curves", params={"name": ["walker_torso_yaw", "no"], "most": 100}).json()
     assert {"name": "walker_torso_yaw speed", "unit": "deg/s", "group": "joint speed"} in told["names"]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.server.desk import Desk, Talk
+from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -137,6 +138,14 @@ def test_the_planned_posture_is_what_is_commanded_until_it_is_there(desk: Desk, 
     told = talk.say("curves", names=["walker_torso_yaw"], first=1.0)
     assert told["curves"]["walker_torso_yaw"][-1] == pytest.approx(40, abs=0.5)
     assert place > 0
+
+
+def test_who_looks_changes_nothing(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
+    desk.do(draw(talk, ALL))
+    ended(talk)
+    assert set(drawn(talk, talk.state["tick"])) == set(ALL)
+    assert agrees(recording(desk, talk))
 
 
 def test_a_new_run_tells_of_what_is_looked_at_already(desk: Desk, tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ void main() {
 class Drawing {
   constructor(canvas, scene) {
     this.canvas = canvas;
-    this.gl = canvas.getContext("webgl2", { antialias: true });
+    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which the 3D scene needs");
     this.scene = scene;
     this.times = unpacked(scene.times, Float32Array);

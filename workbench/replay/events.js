@@ -3,6 +3,7 @@
 
 const ROW = 22;
 const KINDS = { fire: "fires", output: "prints" };
+const DETAILS = new Set(["answer", "conflict", "select", "state"]); // many a tick; shown where they are asked for
 
 class Events {
   constructor(told, seek) {
@@ -10,21 +11,22 @@ class Events {
     this.seek = seek;
     this.list = document.getElementById("events");
     this.now = -1;
-    this.filter("");
     this.more = told.more;
+    this.filter();
     this.list.addEventListener("scroll", () => this.show());
     new ResizeObserver(() => this.show()).observe(this.list);
-    document.getElementById("filter").addEventListener("input", (event) => {
-      this.filter(event.target.value);
-      this.mark(this.time, true);
-    });
-    this.tell();
+    for (const id of ["filter", "details"])
+      document.getElementById(id).addEventListener("input", () => {
+        this.filter();
+        this.mark(this.time, true);
+      });
   }
 
-  filter(text) {
-    const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+  filter() {
+    const words = document.getElementById("filter").value.toLowerCase().split(/\s+/).filter(Boolean);
+    const details = document.getElementById("details").checked;
     const fits = ([, source, kind, told]) => words.every((word) => `${source} ${kind} ${KINDS[kind] || ""} ${told}`.toLowerCase().includes(word));
-    this.shown = words.length ? this.rows.filter(fits) : this.rows;
+    this.shown = this.rows.filter((row) => (details || !DETAILS.has(row[2])) && fits(row));
     document.getElementById("height").style.height = `${this.shown.length * ROW}px`;
     this.tell();
     this.show();

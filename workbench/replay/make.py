@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -37,12 +37,13 @@ def write_replay(path: Path, to: Path) -> None:
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
-        told = {**_facts(recorded), "events": _events(recorded), "scene": _scene(recorded)}
+        facts = _facts(recorded)
+        told = {**facts, "events": _events(recorded), "scene": _scene(recorded)}
     # Nothing that a model says can end the element in which it stands.
     data = msgspec.json.encode(told).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
     page = (folder / "page.html").read_text(encoding="utf-8")
-    parts = {"TITLE": html.escape(told["title"]), "DATA": data, "STYLE": _read(folder, "style.css"), "SCRIPT": _scripts(folder)}
+    parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": _read(folder, "style.css"), "SCRIPT": _scripts(folder)}
     pieces = page.split("@@")
     to.write_text("".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces)), encoding="utf-8")
 
@@ -68,7 +69,6 @@ def _facts(recorded: Recorded) -> dict[str, Any]:
             str(name): value if isinstance(value, str) else to_json(value) for name, value in facts.get("parameters", {}).items()
         },
         "ended": None if ended is None else str(ended.get("by")),
-        "versions": {str(name): str(value) for name, value in facts["versions"].items()},
     }
 
 
@@ -79,8 +79,12 @@ def _events(recorded: Recorded) -> dict[str, Any]:
     for event in recorded.events():
         if event.kind == "result":
             result = dict(event.data)
-    shown = None if result is None else {str(name): value if isinstance(value, str) else to_json(value) for name, value in result.items()}
-    return {"rows": rows, "more": recorded.event_count - len(rows), "result": shown}
+    return {"rows": rows, "more": recorded.event_count - len(rows), "result": None if result is None else _plain(result)}
+
+
+def _plain(values: Mapping[str, Any]) -> dict[str, str]:
+    """Returns names and values as texts."""
+    return {str(name): value if isinstance(value, str) else to_json(value) for name, value in values.items()}
 
 
 def _text(event: TraceEvent) -> str:
