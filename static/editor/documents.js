@@ -129,15 +129,20 @@ addEventListener("beforeunload", (event) => {
 
 // -- opening and closing
 
-/** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. Returns whether it could be. */
+let newest = null;
+
+/** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. What is asked for last is shown. */
 export async function open(path, line = null) {
+  newest = path;
   await drafts.ready;
+  if (newest !== path) return;
   if (line) wanted.value = { path, line };
   if (documents.value.has(path)) {
     shown.value = { path, error: null };
     look(documents.value.get(path)).catch(() => {});
-    return true;
+    return;
   }
+  shown.value = { path, error: null };
   const draft = drafts.read(path);
   let file = null;
   let error = null;
@@ -147,14 +152,12 @@ export async function open(path, line = null) {
     error = failed;
   }
   if (!documents.value.has(path)) {
-    if (!file && !(draft && error.status === 404)) {
-      shown.value = { path, error: error.message };
-      return false;
+    if (file || (draft && error.status === 404)) put(made(path, file, draft));
+    else {
+      wanted.value = null;
+      if (newest === path) shown.value = { path, error: error.message };
     }
-    put(made(path, file, draft));
   }
-  shown.value = { path, error: null };
-  return true;
 }
 
 function made(path, file, draft) {
@@ -195,14 +198,23 @@ export function renamed(path, file) {
 /** Writes a text to its file; returns whether it is there now. Where the file has changed meanwhile, that is told and nothing is written.
  * `over` is the version that is to be replaced; the one that the text began from, where none is given. */
 export async function save(document, over = document.version) {
-  const sent = document.state.doc;
-  const text = sent.toString();
-  if (new TextEncoder().encode(text).length > LARGEST) {
+  if (new TextEncoder().encode(document.text).length > LARGEST) {
     complain(`${document.path} was not saved: a model file has no more than ${LARGEST.toLocaleString("en")} bytes.`);
     return false;
   }
-  const before = document.since;
   document.saving.value = true;
+  if (over === document.version) await look(document, true).catch(() => {}); // a conflict is better seen before than after
+  if (document.theirs.value && over === document.version) {
+    document.saving.value = false;
+    return false;
+  }
+  return write(document, over);
+}
+
+async function write(document, over) {
+  const sent = document.state.doc;
+  const text = sent.toString();
+  const before = document.since;
   document.since = document.state.changes([]);
   try {
     const { version } = await call("PUT", "/api/model", { path: document.path, text, version: over });
