@@ -39,6 +39,8 @@ class Document {
     this.since = this.state.changes([]);
     this.scroll = 0;
     this.saving = signal(false);
+    /** Whether the save that was begun last has come to its end. */
+    this.saved = Promise.resolve(true);
     this.dirty = signal(base === null);
     /** What the file has that this text did not begin from: {text, version}; {text: null} where there is no file any more. */
     this.theirs = signal(null);
@@ -196,19 +198,26 @@ export function renamed(path, file) {
 // -- the file
 
 /** Writes a text to its file; returns whether it is there now. Where the file has changed meanwhile, that is told and nothing is written.
- * `over` is the version that is to be replaced; the one that the text began from, where none is given. */
-export async function save(document, over = document.version) {
+ * `over` is the version that is to be replaced; the one that the text began from, where none is given. One at a time: a save that
+ * begins while another is under way would take that one's text for somebody else's. */
+export function save(document, over = undefined) {
+  document.saved = document.saved.then(() => saveNow(document, over));
+  return document.saved;
+}
+
+async function saveNow(document, over) {
   if (new TextEncoder().encode(document.text).length > LARGEST) {
     complain(`${document.path} was not saved: a model file has no more than ${LARGEST.toLocaleString("en")} bytes.`);
     return false;
   }
   document.saving.value = true;
-  if (over === document.version) await look(document, true).catch(() => {}); // a conflict is better seen before than after
-  if (document.theirs.value && over === document.version) {
+  try {
+    if (over !== undefined) return await write(document, over);
+    await look(document, true).catch(() => {}); // a conflict is better seen before than after
+    return !document.theirs.value && (await write(document, document.version));
+  } finally {
     document.saving.value = false;
-    return false;
   }
-  return write(document, over);
 }
 
 async function write(document, over) {
@@ -229,8 +238,6 @@ async function write(document, over) {
     if (error.status === 409) await look(document, true).catch(() => {});
     if (!document.theirs.value) complain(error.message);
     return false;
-  } finally {
-    document.saving.value = false;
   }
 }
 
