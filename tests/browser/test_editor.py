@@ -300,7 +300,8 @@ def test_what_cannot_be_opened_or_saved_is_told(pages: Callable[..., Page], work
     page = pages("counting.py")
     open_tab(page, "Editor")
     mark = workbench.folder / "ran"
-    source = f"import os\nos.mkdir({str(mark)!r})\nraise ValueError('at its top')\n\n\ndef build(): ...\n"
+    top = f"from __future__ import annotations\n__import__('os').mkdir({str(mark)!r})\nraise ValueError('at its top')\n"
+    source = f"{top}\n\ndef build(parameters: None) -> Simulation: ...\n"
     written("loaded.py", source)
     page.reload()
     edit(page, "loaded.py")
