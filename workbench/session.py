@@ -102,7 +102,6 @@ class Session(Telling):
             OSError: If no worker can be started.
         """
         text = read_source(self.path) if source is None else source
-        version = ModelFolder.version(self.path) if source is None else hashlib.sha256(text.encode()).hexdigest()
         before = self.start.settings if self.start is not None else {}
         self._attempt += 1
         start = Start(
@@ -118,7 +117,7 @@ class Session(Telling):
             breakpoints=self.breakpoints,
             run=run,
             attempt=self._attempt,
-            version=version,
+            version=ModelFolder.version(self.path) if source is None else hashlib.sha256(text.encode()).hexdigest(),
         )
         worker = await self._workers.launch()
         if self._loading is not None:

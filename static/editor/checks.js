@@ -29,14 +29,15 @@ async function check(document) {
   }
 }
 
-/** Loads a text in a process of its own, which runs its top level; returns whether nothing was wrong. */
+/** Loads a text in a process of its own, which carries out its top level and its `build`; a program without one is only compiled. */
 export async function checkByLoading(document) {
   const { doc } = document.state;
   document.note.value = "being loaded …";
   try {
-    const { problems } = await call("POST", "/api/check", { path: document.path, text: doc.toString(), load: true });
+    const { problems, listing } = await call("POST", "/api/check", { path: document.path, text: doc.toString(), load: true });
     mark(document, doc, problems);
-    document.note.value = problems.length === 0 ? "it loads, and nothing is wrong" : "";
+    const fine = listing.kind === "simulation" ? "it loads, and nothing is wrong" : "nothing is wrong as far as can be told without a run";
+    document.note.value = problems.length === 0 ? fine : "";
   } catch (error) {
     document.note.value = "";
     complain(error.message);

@@ -39,6 +39,8 @@ class Document {
     this.since = this.state.changes([]);
     this.scroll = 0;
     this.saving = signal(false);
+    /** Whether the save that was begun last has come to its end. */
+    this.saved = Promise.resolve(true);
     this.dirty = signal(base === null);
     /** What the file has that this text did not begin from: {text, version}; {text: null} where there is no file any more. */
     this.theirs = signal(null);
@@ -129,15 +131,20 @@ addEventListener("beforeunload", (event) => {
 
 // -- opening and closing
 
-/** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. Returns whether it could be. */
+let newest = null;
+
+/** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. What is asked for last is shown. */
 export async function open(path, line = null) {
+  newest = path;
   await drafts.ready;
+  if (newest !== path) return;
   if (line) wanted.value = { path, line };
   if (documents.value.has(path)) {
     shown.value = { path, error: null };
     look(documents.value.get(path)).catch(() => {});
-    return true;
+    return;
   }
+  shown.value = { path, error: null };
   const draft = drafts.read(path);
   let file = null;
   let error = null;
@@ -147,14 +154,12 @@ export async function open(path, line = null) {
     error = failed;
   }
   if (!documents.value.has(path)) {
-    if (!file && !(draft && error.status === 404)) {
-      shown.value = { path, error: error.message };
-      return false;
+    if (file || (draft && error.status === 404)) put(made(path, file, draft));
+    else {
+      wanted.value = null;
+      if (newest === path) shown.value = { path, error: error.message };
     }
-    put(made(path, file, draft));
   }
-  shown.value = { path, error: null };
-  return true;
 }
 
 function made(path, file, draft) {
@@ -193,16 +198,32 @@ export function renamed(path, file) {
 // -- the file
 
 /** Writes a text to its file; returns whether it is there now. Where the file has changed meanwhile, that is told and nothing is written.
- * `over` is the version that is to be replaced; the one that the text began from, where none is given. */
-export async function save(document, over = document.version) {
-  const sent = document.state.doc;
-  const text = sent.toString();
-  if (new TextEncoder().encode(text).length > LARGEST) {
+ * `over` is the version that is to be replaced; the one that the text began from, where none is given. One at a time: a save that
+ * begins while another is under way would take that one's text for somebody else's. */
+export function save(document, over = undefined) {
+  document.saved = document.saved.then(() => saveNow(document, over));
+  return document.saved;
+}
+
+async function saveNow(document, over) {
+  if (new TextEncoder().encode(document.text).length > LARGEST) {
     complain(`${document.path} was not saved: a model file has no more than ${LARGEST.toLocaleString("en")} bytes.`);
     return false;
   }
-  const before = document.since;
   document.saving.value = true;
+  try {
+    if (over !== undefined) return await write(document, over);
+    await look(document, true).catch(() => {}); // a conflict is better seen before than after
+    return !document.theirs.value && (await write(document, document.version));
+  } finally {
+    document.saving.value = false;
+  }
+}
+
+async function write(document, over) {
+  const sent = document.state.doc;
+  const text = sent.toString();
+  const before = document.since;
   document.since = document.state.changes([]);
   try {
     const { version } = await call("PUT", "/api/model", { path: document.path, text, version: over });
@@ -217,8 +238,6 @@ export async function save(document, over = document.version) {
     if (error.status === 409) await look(document, true).catch(() => {});
     if (!document.theirs.value) complain(error.message);
     return false;
-  } finally {
-    document.saving.value = false;
   }
 }
 

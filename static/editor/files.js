@@ -1,6 +1,6 @@
 // New, duplicate, rename, delete: asks for a name, and says what is wrong with it.
 
-import { listModels, note } from "../bar/models.js";
+import { listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
 import { call } from "../server.js";
 import { complain, session } from "../store.js";
@@ -59,7 +59,12 @@ async function named(title, label, name, action, more, work) {
     const told = await asked(title, label, name, action, { ...more, problem });
     const { text, choice } = typeof told === "string" ? { text: told } : told ?? {};
     if (!text) return null;
+    const taken = name;
     name = text.endsWith(".py") ? text : `${text}.py`;
+    if (models.value.some(({ path }) => path === name) && !(title.startsWith("Rename") && name === taken)) {
+      problem = `there is a '${name}' already`;
+      continue;
+    }
     try {
       const file = await work(name, choice);
       await listModels();

@@ -44,7 +44,7 @@ async function choose(document, which) {
   const theirs = document.theirs.value;
   if (which === "mine" && !(await save(document, theirs.version)) && document.theirs.value) comparing.value = document;
   if (which === "theirs") take(document, theirs);
-  focusText();
+  setTimeout(focusText); // once it is seen again
 }
 
 /** Looks again and again whether files have changed on disk, while the editor is seen. */
@@ -125,8 +125,8 @@ function Editor() {
     ${document
       ? html`${compares ? null : html`<${Strip} document=${document} compare=${() => (comparing.value = document)} />`}<${Problems} document=${document} />`
       : html`<div class="empty">
-          <p class=${error ? "bad" : ""}>${error ?? "No file is open. Choose one above, or make a new model."}</p>
-          <button onClick=${makeNew}>New model</button>
+          <p class=${error ? "bad" : ""}>${error ?? (path ? "Being read …" : "No file is open. Choose one above, or make a new model.")}</p>
+          ${path && !error ? null : html`<button onClick=${makeNew}>Make a new model</button>`}
         </div>`}
   </div>`;
 }

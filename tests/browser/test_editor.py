@@ -1,0 +1,317 @@
+"""The editor in a real browser: errors at their lines, the last good run, conflicts, drafts, files, and the messages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Dialog, Page, expect
+
+from tests.browser.looking import PATIENCE, choose, open_tab, shows
+from tests.server.serving import Served, served
+
+CODE = ".code .cm-content"
+MIND = Path(__file__).parents[2] / "models" / "counting.py"
+
+
+@pytest.fixture(scope="module")
+def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A workbench of its own: there is a bound to the sessions of one."""
+    with served(tmp_path_factory.mktemp("editor") / "models") as running:
+        yield running
+
+
+@pytest.fixture
+def written(workbench: Served) -> Callable[[str, str], Path]:
+    """Writes a model into the folder."""
+
+    def write(name: str, text: str) -> Path:
+        path = workbench.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def edit(page: Page, model: str) -> None:
+    """Opens a file of the folder in the editor."""
+    open_tab(page, "Editor")
+    page.get_by_label("File", exact=True).select_option(model)
+    expect(page.locator(f"{CODE}[aria-label*='{model}']")).to_be_visible(timeout=PATIENCE)
+
+
+def write(page: Page, text: str, *, where: str = "Control+End") -> None:
+    """Writes something at the end, or the start, of the text."""
+    page.locator(CODE).focus()
+    page.keyboard.press(where)
+    page.keyboard.insert_text(text)
+
+
+def text_of(page: Page) -> str:
+    return "\n".join(page.locator(f"{CODE} .cm-line").all_text_contents())
+
+
+def unsaved(page: Page) -> Any:
+    return expect(page.locator(".standing .state"))
+
+
+def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
+    path = written("loads.py", MIND.read_text(encoding="utf-8"))
+    page = pages("loads.py")
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    edit(page, "loads.py")
+    shows(page, ".problems", "No problems")
+    write(page, "x = = 1\n", where="Control+Home")
+    shows(page, ".problems", r"1 error.*line 1invalid syntax")  # while one types, before anything is saved
+    expect(page.locator(".cm-lint-marker-error")).to_be_visible()
+    unsaved(page).to_have_text(re.compile("unsaved"))
+    assert path.read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
+    page.keyboard.press("Control+Enter")
+    shows(page, ".strip", "run of the former text; the new one does not load")
+    assert path.read_text(encoding="utf-8").startswith("x = = 1\n")
+    shows(page, "#time", "0.05 s")
+    page.click("#step")
+    shows(page, "#time", "0.06 s")  # the former run goes on
+    open_tab(page, "Messages")
+    shows(page, ".former", "former text")
+    page.locator("#log .link", has_text="loads.py:1").click()
+    expect(page.locator(".cm-activeLine")).to_have_text("x = = 1")
+    page.keyboard.press("Control+Shift+k")
+    page.keyboard.insert_text("# mended\n")
+    shows(page, ".problems", "No problems")
+    for _ in range(3):
+        page.keyboard.press("Control+s")  # one after the other, although nobody waits
+    shows(page, ".standing", "saved$|savedSave")
+    shows(page, ".strip", "What is shown is the run of the former text")
+    shows(page, "#time", "0.06 s")  # saving runs nothing
+    page.get_by_role("button", name="Run the new one").click()
+    shows(page, "#status", "ended")
+    expect(page.locator(".strip")).to_have_count(0)
+    assert path.read_text(encoding="utf-8") == "# mended\n" + MIND.read_text(encoding="utf-8")
+
+
+def test_what_a_run_says_is_marked_at_its_lines(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
+    written(
+        "helping.py", "import warnings\n\ndef fail():\n    warnings.warn('beware')\n    raise ValueError('<img src=x onerror=alert(1)>')\n"
+    )
+    written("fails.py", "import os\nimport helping\n\nos.write(1, b'past print\\n')\nhelping.fail()\n")
+    page = pages("fails.py")
+    page.on("dialog", lambda dialog: pytest.fail("it was run as HTML"))
+    edit(page, "fails.py")
+    page.get_by_role("button", name="Save and run").click()
+    shows(page, ".problems", r"line 5ValueError: <img src=x onerror=alert\(1\)>")
+    write(page, "# a line\n", where="Control+Home")
+    shows(page, ".problems", "line 6ValueError")  # it moves with its line
+    open_tab(page, "Messages")
+    expect(page.locator("#log li").first).to_have_class("error")  # the newest first
+    shows(page, "#log", "past print")
+    page.locator("#log summary").first.click()
+    page.locator("#log pre .link", has_text="helping.py").click()
+    expect(page.locator(".cm-activeLine")).to_have_text("    raise ValueError('<img src=x onerror=alert(1)>')")
+    shows(page, ".problems", "1 error, 1 warning.*line 4beware.*line 5ValueError")
+    page.locator(".cm-lint-marker-error").hover()
+    shows(page, ".cm-tooltip-lint", r"ValueError: <img src=x[\s\S]*line 5, in fail")
+    page.locator(".problems li button", has_text="line 4").click()
+    page.keyboard.press("End")
+    page.keyboard.type("  # changed")
+    shows(page, ".problems", "^1 error")  # what was said of that line holds no more
+    open_tab(page, "Messages")
+    page.get_by_label("Errors").uncheck()
+    expect(page.locator("#log li.error")).to_have_count(0)
+    shows(page, "#log", "beware")
+    page.get_by_role("button", name="Clear").click()
+    shows(page, ".messages", "No messages")
+    page.get_by_label("Errors").check()
+    edit(page, "fails.py")
+    page.keyboard.press("Control+z")
+    page.locator(CODE).focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text("print('well')\n")
+    page.keyboard.press("Control+Enter")
+    shows(page, "#status", "ended")
+    shows(page, ".problems", "No problems")
+
+
+def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
+    path = written("shared.py", "a = 1\nb = 2\n")
+    page = pages("counting.py")
+    edit(page, "shared.py")
+    written("shared.py", "a = 1\nb = 3\n")
+    expect(page.locator(CODE)).to_have_text(re.compile("b = 3"), timeout=PATIENCE)  # nothing was edited here
+    shows(page, ".standing", "read again: the file had changed")
+    write(page, "mine = 1\n")
+    written("shared.py", "theirs = 1\n")
+    shows(page, ".strip", "has changed on disk")
+    page.keyboard.press("Control+s")
+    shows(page, ".conflict", "shared.py has changed on disk")
+    expect(page.locator(".conflict .cm-deletedChunk")).to_have_text(re.compile("theirs = 1"))
+    expect(page.locator(".conflict .cm-content")).to_have_text(re.compile("mine = 1"))
+    page.get_by_role("button", name="Keep editing").click()
+    expect(page.locator(CODE)).to_be_focused()
+    write(page, "more = 1\n")
+    assert path.read_text(encoding="utf-8") == "theirs = 1\n"
+    page.get_by_role("button", name="Compare and choose").click()
+    page.get_by_role("button", name="Keep mine").click()
+    shows(page, ".standing", "saved")
+    assert path.read_text(encoding="utf-8") == "a = 1\nb = 3\nmine = 1\nmore = 1\n"
+    write(page, "again = 1\n")
+    written("shared.py", "theirs = 2\n")
+    page.get_by_role("button", name="Compare and choose").click()
+    page.get_by_role("button", name="Take theirs").click()
+    expect(page.locator(CODE)).to_have_text("theirs = 2")
+    page.keyboard.press("Control+z")
+    expect(page.locator(CODE)).to_have_text(re.compile("again = 1"))  # it can be undone
+    unsaved(page).to_have_text(re.compile("unsaved"))
+    path.unlink()
+    shows(page, ".strip", "gone from the folder")
+    page.get_by_role("button", name="Save it again").click()
+    shows(page, ".standing", "saved")
+    assert "again = 1" in path.read_text(encoding="utf-8")
+
+
+def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
+    path = written("draft.py", "a = 1\n")
+    page = pages("counting.py")
+    edit(page, "draft.py")
+    other = page.context.new_page()
+    other.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    edit(other, "draft.py")
+    write(page, "b = 2\n")
+    write(other, "c = 3\n")
+    page.wait_for_timeout(400)
+    asked: list[str] = []
+
+    def leave(dialog: Dialog) -> None:
+        asked.append(dialog.type)
+        dialog.accept()
+
+    page.on("dialog", leave)
+    page.reload()
+    assert asked == ["beforeunload"]
+    open_tab(page, "Editor")
+    page.get_by_label("File", exact=True).select_option("draft.py")
+    expect(page.locator(CODE)).to_have_text("a = 1b = 2", timeout=PATIENCE)
+    unsaved(page).to_have_text(re.compile("unsaved.*brought back"))
+    assert path.read_text(encoding="utf-8") == "a = 1\n"
+    page.keyboard.press("Control+s")
+    shows(page, ".standing", "saved")
+    other.locator(CODE).focus()
+    other.keyboard.press("Control+s")
+    shows(other, ".conflict", "has changed on disk")
+    assert path.read_text(encoding="utf-8") == "a = 1\nb = 2\n"
+    other.close()  # with unsaved work, which the next tab takes over
+    third = page.context.new_page()
+    third.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    edit(third, "draft.py")
+    expect(third.locator(CODE)).to_have_text("a = 1c = 3")
+    shows(third, ".strip", "has changed on disk")
+
+
+@pytest.mark.parametrize(
+    ("choice", "seen"), [("A mind alone", "the program is over"), ("A mind with a body in a world", "a mind said stop")]
+)
+def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str) -> None:
+    shows(page, "#status", "at its start")
+    open_tab(page, "Editor")
+    page.get_by_role("button", name="New model", exact=True).click()
+    name = page.get_by_label("Name of the file")
+    name.fill("counting")
+    page.get_by_role("button", name="Create").click()
+    shows(page, "dialog", "there is a 'counting.py' already")
+    name.fill(f"new {choice[-5:]}")
+    page.get_by_label(choice).check()
+    page.get_by_role("button", name="Create").click()
+    expect(page.locator(CODE)).to_have_text(re.compile("Says in a line"), timeout=PATIENCE)
+    shows(page, "#status", "at its start")
+    page.keyboard.press("Control+Enter")
+    shows(page, "#status", f"ended: {seen}")
+    shows(page, ".problems", "No problems")
+    expect(page.get_by_label("Model", exact=True)).to_have_value(f"new {choice[-5:]}.py")
+
+
+def test_files_are_copied_renamed_and_deleted_while_one_runs(
+    pages: Callable[..., Page], workbench: Served, written: Callable[[str, str], Path]
+) -> None:
+    written("first.py", MIND.read_text(encoding="utf-8"))
+    page = pages("first.py")
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    edit(page, "first.py")
+    page.get_by_role("button", name="Duplicate").click()
+    page.get_by_role("dialog").get_by_role("button", name="Duplicate").click()
+    expect(page.get_by_label("File", exact=True)).to_have_value("first_copy.py")
+    edit(page, "first.py")
+    page.get_by_role("button", name="Rename").click()
+    page.get_by_label("New name").fill("sub/second.py")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("File", exact=True)).to_have_value("sub/second.py")
+    expect(page.get_by_label("Model", exact=True)).to_have_value("sub/second.py")
+    shows(page, "#time", "0.05 s")  # the run goes on, under the new name
+    expect(page.locator(".strip")).to_have_count(0)
+    page.get_by_role("button", name="Delete").click()
+    page.get_by_role("button", name="Cancel").click()
+    assert (workbench.folder / "sub" / "second.py").is_file()
+    page.get_by_role("button", name="Delete").click()
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    shows(page, ".former", "file of this run is gone")
+    shows(page, ".side select.file", "no file")
+    expect(page.get_by_label("Model", exact=True)).to_have_text(re.compile(r"sub/second.py \(not in the folder\)"))
+    open_tab(page, "Messages")
+    told = page.locator("#log li").first.inner_text()
+    (trash,) = re.findall(r"\.workbench/trash/\S+", told)
+    assert (workbench.folder / trash).read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
+    assert not (workbench.folder / "sub" / "second.py").exists()
+
+
+def test_each_text_keeps_its_history_and_tab_can_leave(page: Page, workbench: Served) -> None:
+    choose(page, "doorway.py")
+    edit(page, "doorway.py")
+    write(page, "# one")
+    choose(page, "counting.py")
+    expect(page.get_by_label("File", exact=True)).to_have_value("counting.py")  # the chosen model is shown
+    write(page, "# two")
+    page.get_by_label("File", exact=True).select_option("doorway.py")
+    page.locator(CODE).focus()
+    page.keyboard.press("Control+f")
+    expect(page.locator(".cm-search [name=search]")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(page.locator(".cm-search")).to_have_count(0)
+    assert text_of(page).endswith("# one")
+    page.keyboard.press("Control+z")
+    assert text_of(page).endswith('{"walker": mind})\n')
+    page.keyboard.press("Tab")
+    assert text_of(page).endswith("\n    ")
+    page.keyboard.press("Escape")
+    page.keyboard.press("Tab")
+    expect(page.locator(CODE)).not_to_be_focused()
+    page.get_by_label("File", exact=True).select_option("counting.py")
+    page.locator(CODE).focus()
+    assert text_of(page).endswith("# two")
+    page.keyboard.press("Control+z")
+    unsaved(page).not_to_have_text(re.compile("unsaved"))
+
+
+def test_what_cannot_be_opened_or_saved_is_told(pages: Callable[..., Page], workbench: Served, written: Callable[[str, str], Path]) -> None:
+    page = pages("counting.py")
+    open_tab(page, "Editor")
+    mark = workbench.folder / "ran"
+    top = f"from __future__ import annotations\n__import__('os').mkdir({str(mark)!r})\nraise ValueError('at its top')\n"
+    source = f"{top}\n\ndef build(parameters: None) -> Simulation: ...\n"
+    written("loaded.py", source)
+    page.reload()
+    edit(page, "loaded.py")
+    shows(page, ".problems", "No problems")  # which a check without loading cannot know
+    assert not mark.exists()
+    page.get_by_role("button", name=re.compile("^Load it")).click()
+    shows(page, ".problems", "line 3ValueError: at its top")
+    assert mark.is_dir()
+    write(page, "#" * 1_000_001)
+    page.keyboard.press("Control+s")
+    shows(page, ".toast", "no more than 1,000,000 bytes")
+    assert (workbench.folder / "loaded.py").read_text(encoding="utf-8") == source
+    page.keyboard.press("Control+z")
