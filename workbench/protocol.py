@@ -15,6 +15,12 @@ Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
 Plain = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
 """A value that can be recorded."""
 
+OverlayName = Literal["frustum", "edges", "features", "path", "posture", "contacts"]
+"""What can be drawn over the 3D view: what the eye can see, the edges that it sees, what vision has found last with its width, the
+path walked, the posture that the body is commanded to, where it touches something."""
+CameraView = Literal["free", "follow", "eye", "top"]
+"""From where the 3D view is seen: from where each user likes, with the body, through its eye, from above."""
+
 
 class Said(BaseModel):
     """The base of all that is said."""
@@ -136,6 +142,21 @@ class Restart(Said):
     """Whether it runs at once; otherwise it waits at its start."""
 
 
+class Overlay(Said):
+    """Shows or hides something over the 3D view, for all who watch the session."""
+
+    type: Literal["overlay"] = "overlay"
+    name: OverlayName
+    shown: bool
+
+
+class Camera(Said):
+    """Chooses from where the 3D view is seen, for all who watch the session."""
+
+    type: Literal["camera"] = "camera"
+    view: CameraView
+
+
 class Stop(Said):
     """Ends the worker in which the run is, whatever it does."""
 
@@ -206,7 +227,7 @@ class Curves(Said):
 
 
 Command = Annotated[
-    Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Restart | Stop,
+    Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Overlay | Camera | Restart | Stop,
     Field(discriminator="type"),
 ]
 Question = Annotated[Explain | Rows | Look | Body | Events | Curves, Field(discriminator="type")]
@@ -223,6 +244,8 @@ Anything = Annotated[
     | Aperture
     | Set
     | Say
+    | Overlay
+    | Camera
     | Restart
     | Stop
     | Explain
@@ -234,6 +257,8 @@ Anything = Annotated[
     Field(discriminator="type"),
 ]
 
+LOOKS = (Overlay, Camera)
+"""What changes the view only, and nothing of the run."""
 QUESTIONS = (Explain, Rows, Look, Body, Events, Curves)
 """What only asks."""
 ANYTHING: TypeAdapter[Any] = TypeAdapter(Anything)

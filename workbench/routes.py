@@ -13,6 +13,7 @@ from fastapi import APIRouter, Query, Request
 from fastapi import Path as InPath
 from fastapi.responses import FileResponse, Response, StreamingResponse
 from pydantic import Field
+from starlette.background import BackgroundTask
 
 from actr3d.recording import Recorded
 from actr3d.values import to_json
@@ -22,6 +23,7 @@ from workbench.files import ModelFile
 from workbench.loader import listing_of
 from workbench.recordings import MOST as MOST_LISTED
 from workbench.recordings import curves, events_csv, states_csv
+from workbench.replay.aside import replay_of
 from workbench.replaying import replay as again
 from workbench.sessions import SessionError, Sessions
 
@@ -236,16 +238,26 @@ def recording(request: Request, recording: Id) -> Response:
 
 
 @router.get("/recordings/{recording}/file")
-def download(request: Request, recording: Id, form: Literal["sqlite", "events.csv", "states.csv"] = "sqlite") -> Response:
-    """Gives a recording: as it is, or its events or states as CSV."""
+async def download(
+    request: Request, recording: Id, form: Literal["sqlite", "events.csv", "states.csv", "replay.html"] = "sqlite"
+) -> Response:
+    """Gives a recording: as it is, its events or states as CSV, or one HTML file that plays its scene beside its trace."""
     path = _sessions(request).recordings.path(recording)
     name = f"{recording}.{form}"
+    if form == "replay.html":
+        made = await replay_of(path)
+        return FileResponse(made, media_type="text/html", filename=name, background=BackgroundTask(made.unlink, missing_ok=True))
     if form == "sqlite":
         return FileResponse(path, media_type="application/vnd.sqlite3", filename=name)
     make: Callable[[Path], Iterator[str]] = events_csv if form == "events.csv" else states_csv
-    Recorded(path).close()  # once the answer has begun, it is too late to say that it cannot be read
+    await asyncio.to_thread(_check_readable, path)  # once the answer has begun, it is too late to say that it cannot be read
     headers = {"content-disposition": f'attachment; filename="{name}"'}
     return StreamingResponse(make(path), media_type="text/csv; charset=utf-8", headers=headers)
+
+
+def _check_readable(path: Path) -> None:
+    """Raises `RecordingError` where a file is no recording."""
+    Recorded(path).close()
 
 
 @router.get("/recordings/{recording}/curves")

@@ -16,14 +16,15 @@ from actr3d.errors import Actr3dError, SimulationError
 from workbench import protocol as say
 from workbench.attendant import Attendant
 from workbench.feed import MOST_NOTICES, EventLog, Feed
+from workbench.look import Look
 from workbench.telling import Telling
-from workbench.worker.messages import At, Cut, Do, Facts, FromWorker, News, Notice, Reply, Start, State
+from workbench.worker.messages import At, Cut, Do, Draw, Facts, FromWorker, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 
 MOST_WAITING = 200
 """So many commands and questions of one session may wait for their answers."""
 
-Watcher = Callable[["Session", Facts | State | None], None]
+Watcher = Callable[["Session", Facts | State | Look | None], None]
 
 
 class Session(Telling):
@@ -43,7 +44,8 @@ class Session(Telling):
         self.model = shown_path
         self.feeds: list[Feed] = []
         self.watchers: list[Watcher] = []
-        """Are told of the facts of each new run, of each state, and by None of the end."""
+        """Are told of the facts of each new run, of each state, of another look, and by None of the end."""
+        self.look = Look()
         self.run = self.epoch = self.state_version = self.facts_version = 0
         self.log = EventLog()
         self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
@@ -61,6 +63,7 @@ class Session(Telling):
         self._tasks: set[asyncio.Task[Any]] = set()
         self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
         self._number = self._notice_number = 0
+        self._drawn: tuple[str, ...] = ()
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
@@ -163,6 +166,8 @@ class Session(Telling):
         self.epoch += 1
         self.log = EventLog()
         self.start, self.facts, self.state, self._stuck = start, facts, None, None
+        if self._drawn:
+            worker.send(Draw(kinds=self._drawn))
         self._tell_watchers(facts)
         self._changed(facts=True)
 
@@ -229,7 +234,7 @@ class Session(Telling):
             said: One of `protocol.Anything`.
             who: Who says it, as others are told.
         """
-        if not isinstance(said, say.QUESTIONS) and who and who != self._controlled_by:
+        if not isinstance(said, (*say.QUESTIONS, *say.LOOKS)) and who and who != self._controlled_by:
             self._controlled_by = who
             self._changed(facts=True)
         try:
@@ -239,6 +244,10 @@ class Session(Telling):
                 case say.Restart():
                     seed = said.seed if said.seed is not None or said.new_seed or self.start is None else self.start.seed
                     await self.begin(said.settings, seed=seed, record=said.record, run=said.run)
+                case say.Overlay() | say.Camera():
+                    self.look = self.look.after(said)
+                    self._tell_watchers(self.look)
+                    self._changed(facts=True)
                 case _:
                     self._note(said)
                     return await self._ask(said)
@@ -266,6 +275,13 @@ class Session(Telling):
         self._waiting[number] = worker, waiting
         worker.send(Do(id=number, say=said.model_dump_json().encode()))
         return await waiting
+
+    def draw(self, kinds: tuple[str, ...]) -> None:
+        """Lets the states of this run and later ones tell what overlays of these kinds show."""
+        if kinds != self._drawn:
+            self._drawn = kinds
+            if self._worker is not None:
+                self._worker.send(Draw(kinds=kinds))
 
     # -- what is told of it
 
@@ -304,7 +320,7 @@ class Session(Telling):
         for feed in self.feeds:
             feed.wake()
 
-    def _tell_watchers(self, what: Facts | State) -> None:
+    def _tell_watchers(self, what: Facts | State | Look) -> None:
         for watcher in self.watchers:
             watcher(self, what)
 

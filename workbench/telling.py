@@ -10,6 +10,7 @@ import msgspec
 from actr3d.actr.reading import read_source
 from actr3d.errors import Actr3dError
 from workbench.feed import Feed, Raw
+from workbench.look import Look
 from workbench.worker.messages import Facts, Start, State
 from workbench.worker.workers import Worker
 
@@ -27,6 +28,7 @@ class Telling:
     feeds: list[Feed]
     breakpoints: tuple[str, ...]
     has_scene: bool
+    look: Look
     _worker: Worker | None
     _loading: Worker | None
     _ending: str
@@ -46,6 +48,7 @@ class Telling:
             **self.summary(),
             "stuck": self._stuck,
             "scene": self.has_scene,
+            **self.look.told(),
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": facts.seed if facts is not None else None,

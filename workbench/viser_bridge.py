@@ -23,14 +23,26 @@ MOST_VIEWS = 32
 """So many 3D views may be open at once."""
 
 
+FRAMED = """<script>
+document.hasFocus = () => true;
+if (new URLSearchParams(location.search).get("panel") === "hidden") {
+  const style = document.createElement("style");
+  style.textContent = ".mantine-Paper-root, .mantine-Notification-root { display: none !important; }";
+  document.documentElement.append(style);
+}
+</script>"""
+"""What is put into viser's page: it goes on connecting again when it is not in front, too; `?panel=hidden` hides viser's own panel and
+notices, for pages that have controls of their own around it."""
+
+
 @cache
 def page() -> str:
-    """Returns viser's page; it goes on connecting again when it is not in front, too."""
+    """Returns viser's page, which takes `?panel=hidden` and `?darkMode`."""
     spec = find_spec("viser")
     assert spec is not None
     assert spec.origin is not None
     text = (Path(spec.origin).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
-    return text.replace("<head>", "<head><script>document.hasFocus = () => true;</script>", 1)
+    return text.replace("<head>", f"<head>{FRAMED}", 1)
 
 
 class Bridge:

@@ -21,7 +21,7 @@ function found(all, search) {
 
 /** Tells of a recording of which nothing was ever run, such as of a model that was only looked at. */
 function isIdle(run) {
-  return run.time === 0 && !run.ended && !run.session && !run.problem;
+  return run.time === 0 && !run.ended && !run.failed && !run.session && !run.problem;
 }
 
 function Runs() {

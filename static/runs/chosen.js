@@ -10,12 +10,13 @@ import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./word
 
 const FORMS = [
   ["sqlite", "SQLite", "The recording as it is"],
+  ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
   ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
   ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick"],
 ];
 
 function Downloads({ run }) {
-  const forms = run.problem ? FORMS.slice(0, 1) : FORMS;
+  const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => form !== "replay.html" || run.kind === "simulation");
   return html`<span class="downloads">
     <${Icon} name="download" />
     ${forms.map(([form, text, title]) => html`<a key=${form} href="/api/recordings/${run.id}/file?form=${form}" download title=${title}>${text}</a>`)}

@@ -70,7 +70,7 @@ function Row({ run, number, now, toggle, open }) {
       <span>${run.model || run.id}${run.session ? html` <b class="mark">present</b>` : null}</span>
       <small>${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
-    <td class="outcome ${run.problem ? "bad" : ""}" title=${endedText(run)}>
+    <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>
     </td>
     <td class="time number"><span>${run.problem ? "" : `${run.time.toFixed(2)} s`}</span><small>${sizeText(run.size)}</small></td>

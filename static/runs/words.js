@@ -55,6 +55,7 @@ export function differentText(run) {
 /** Says what came of a run in a few words. */
 export function outcomeText(run) {
   if (run.problem) return "unreadable";
+  if (run.failed) return "failed";
   if (run.result?.outcome) return String(run.result.outcome);
   const first = Object.entries(run.result ?? {})[0];
   if (first) return `${labelOf(first[0])} ${measureText(...first)}`;
@@ -71,7 +72,7 @@ export function resultText(run) {
 
 /** Says how a run ended. */
 export function endedText(run) {
-  if (run.problem) return run.problem;
+  if (run.problem || run.failed) return run.problem ?? run.failed;
   if (run.ended) return ENDED[run.ended] ?? run.ended;
   return run.session ? "goes on, or waits" : "left before its end";
 }

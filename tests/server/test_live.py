@@ -121,6 +121,9 @@ def test_a_session_by_rest_alone(server: Served) -> None:
     assert len(events) == listed[recording]["events"] + 1
     states = server.get(file, params={"form": "states.csv"}).text.splitlines()
     assert len(states) == 682
+    replay = server.get(file, params={"form": "replay.html"})
+    assert replay.text.startswith("<!doctype html>")
+    assert replay.headers["content-disposition"] == f'attachment; filename="{recording}.replay.html"'
     assert states[-1].startswith("6.8,")
     told = server.get(f"/api/recordings/{recording}/curves", params={"name": ["walker_torso_yaw", "no"], "most": 100}).json()
     assert {"name": "walker_torso_yaw speed", "unit": "deg/s", "group": "joint speed"} in told["names"]
@@ -328,23 +331,10 @@ def test_viser_is_behind_the_login_and_nowhere_else(server: Served) -> None:
 def test_nobody_can_ask_viser_for_a_way_out() -> None:
     from viser import _messages
 
-    from tests.server.desk import Desk
-    from workbench.scene_view import SceneView
+    from workbench.viser_server import start_viser
 
-    desk = Desk()
-
-    class Session:
-        watchers: list[Any] = []
-
-    async def make() -> Any:
-        view = SceneView(Session())  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
-        server = view._start()
-        view._task.cancel()
-        return server
-
-    viser_server = desk.do(make())
+    viser_server = start_viser("secret")
     handlers = viser_server._websock_server._incoming_handlers
     assert _messages.ShareUrlRequest not in handlers
     assert _messages.ShareUrlDisconnect not in handlers
     viser_server.stop()
-    desk.close()

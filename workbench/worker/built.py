@@ -15,7 +15,7 @@ from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.picture import picture_of
 from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, microseconds, seconds
-from actr3d.errors import SimulationError
+from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
 from actr3d.running.building import build
 from actr3d.running.printed import BuiltOutput
@@ -30,6 +30,7 @@ from workbench.curves import Curves
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor
+from workbench.worker.drawings import Drawings
 from workbench.worker.messages import Facts
 from workbench.worker.past import Past
 from workbench.worker.surroundings import surroundings
@@ -59,6 +60,7 @@ class BuiltRun:
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
+        self._failed = False
         self._past = Past()
         self._simulation: Simulation
 
@@ -123,6 +125,7 @@ class BuiltRun:
                 self._conclude()
         except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
             conductor.link.post(notice_of(error))
+            self._tell_failure(told_of(error))
             conductor.end("failed", told_of(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
@@ -157,6 +160,11 @@ class BuiltRun:
         """What makes curves of its past, once somebody asks; from a copy of the scene."""
         model = loaded(saved(self._simulation.world.mj_model))
         return Curves(model, surroundings(self._simulation.world))
+
+    @cached_property
+    def _drawings(self) -> Drawings:
+        """What tells what overlays show, once somebody looks."""
+        return Drawings(self._simulation, self._past)
 
     # -- what the conductor asks
 
@@ -213,11 +221,20 @@ class BuiltRun:
         before = 0 if trace is None else len(trace)
         self._simulation.command(word, *values, body=body, **named)
         self._past.cut(self._simulation.ticks)
+        self._drawings.cut(self._simulation.ticks)
+        if self._failed:
+            self._tell_failure(None)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
                 self._recording.fact("ended", None)
         self._conductor.goes_another_way(before)
+
+    def _tell_failure(self, text: str | None) -> None:
+        """Records what the model raised; None where the run goes another way now."""
+        self._failed = text is not None
+        if self._recording is not None:
+            self._recording.fact("failed", text)
 
     def _seek(self, tick: int) -> None:
         self._simulation.seek(seconds(tick * self.period))
@@ -247,6 +264,12 @@ class BuiltRun:
         world = self._simulation.world
         names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
         return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+
+    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+        """Returns what overlays show of the present, by kind; nothing of what cannot be told, as after a physics that diverged."""
+        with suppress(Actr3dError):
+            return self._drawings.told(kinds)
+        return {}
 
     def result(self) -> dict[str, Any] | None:
         """Returns what was measured of the run, if anything was."""

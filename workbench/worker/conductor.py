@@ -13,7 +13,7 @@ from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.worker.link import Link
-from workbench.worker.messages import Cut, Do, Leave, Reply, State, Status, whole
+from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.trouble import told_of
 from workbench.worker.watch import Touches, Watch
 
@@ -72,6 +72,10 @@ class Conducted(Protocol):
         """Returns the physics' state, and how wide apertures are."""
         ...
 
+    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+        """Returns what overlays show of the present, by kind."""
+        ...
+
     def result(self) -> dict[str, Any] | None:
         """Returns what was measured of the run, if anything was."""
         ...
@@ -107,6 +111,8 @@ class Conductor:
         self._seen = 0
         """How many events have been looked at for what is watched."""
         self._shown = 0.0
+        self._drawn: tuple[str, ...] = ()
+        """The kinds of overlays that are shown where somebody looks."""
         self._anchor: tuple[float, int] | None = None
         self._marks: deque[tuple[float, int]] = deque()
 
@@ -184,10 +190,14 @@ class Conductor:
 
     # -- what users say
 
-    def _hear(self, message: Do | Leave) -> None:
+    def _hear(self, message: Do | Draw | Leave) -> None:
         if isinstance(message, Leave):
             self.leaving = True
             raise Leaving
+        if isinstance(message, Draw):
+            self._drawn = message.kinds
+            self.show()
+            return
         try:
             result = self._do(say.ANYTHING.validate_json(message.say))
         except EndOfRun:
@@ -294,6 +304,7 @@ class Conductor:
             apertures=apertures,
             result=to_json(run.result() if self.status == "ended" else None).encode(),
             physics=physics,
+            drawn=run.drawn(self._drawn) if self._drawn else {},
         )
         self.link.show(state, self._sent, [to_json([e.time_us, e.source, e.kind, e.data]).encode() for e in news])
         self._sent = max(self._sent, count)

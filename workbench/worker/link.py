@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from time import perf_counter
 from types import FrameType
 
-from workbench.worker.messages import LENGTH, TO_WORKER, At, Do, Leave, Message, News, Start, State, Where, framed, whole
+from workbench.worker.messages import LENGTH, TO_WORKER, At, Do, Draw, Leave, Message, News, Start, State, Where, framed, whole
 
 MOST_EVENTS = 50_000
 """So many events may wait to be sent; beyond that the oldest are left out, and the numbers tell so."""
@@ -30,7 +30,7 @@ class Link:
 
     def __init__(self, wire: socket.socket) -> None:
         self._wire = wire
-        self.inbox: queue.SimpleQueue[Do | Leave] = queue.SimpleQueue()
+        self.inbox: queue.SimpleQueue[Do | Draw | Leave] = queue.SimpleQueue()
         self._messages: deque[Message] = deque()
         self._events: deque[bytes] = deque()
         self._first = 0
@@ -45,7 +45,7 @@ class Link:
 
     # -- what comes
 
-    def receive(self, timeout: float | None = None) -> Do | Leave | None:
+    def receive(self, timeout: float | None = None) -> Do | Draw | Leave | None:
         """Returns the next command; waits for it for so long [s], or for ever. None where there is none by then."""
         try:
             return self.inbox.get(timeout=timeout) if timeout is None or timeout > 0 else self.inbox.get_nowait()
@@ -57,7 +57,7 @@ class Link:
         assert isinstance(message, Start)
         return message
 
-    def _next(self) -> Start | Do | Leave | Where | None:
+    def _next(self) -> Start | Do | Draw | Leave | Where | None:
         head = self._exactly(LENGTH)
         data = None if head is None else self._exactly(int.from_bytes(head, "big"))
         return None if data is None else TO_WORKER.decode(data)
@@ -81,7 +81,7 @@ class Link:
                 os._exit(0)  # the server is gone; nobody is left to be told anything
             if isinstance(message, Where):
                 self.post(self._where())
-            elif isinstance(message, (Do, Leave)):
+            elif isinstance(message, (Do, Draw, Leave)):
                 self.inbox.put(message)
 
     def _where(self) -> At:

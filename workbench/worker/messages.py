@@ -53,6 +53,12 @@ class Leave(Message, frozen=True, kw_only=True):
     """Asks the worker to end in good order."""
 
 
+class Draw(Message, frozen=True, kw_only=True):
+    """Says of which kinds of overlays every state is to tell from now on; see `worker.drawings`."""
+
+    kinds: tuple[str, ...]
+
+
 class Where(Message, frozen=True, kw_only=True):
     """Asks at which line of the model the worker is."""
 
@@ -99,6 +105,8 @@ class State(Message, frozen=True, kw_only=True):
     """JSON: what was measured of a run that has ended; null where nothing was, or it goes on."""
     physics: bytes | None
     """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
+    drawn: dict[str, Any] = {}
+    """What overlays show of it, by kind: what a `Draw` has asked for."""
 
 
 class News(Message, frozen=True, kw_only=True):
@@ -154,7 +162,7 @@ class Over(Message, frozen=True, kw_only=True):
     """The worker ends in good order."""
 
 
-ToWorker = Start | Do | Leave | Where
+ToWorker = Start | Do | Draw | Leave | Where
 FromWorker = Facts | State | News | Cut | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()

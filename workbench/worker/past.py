@@ -50,3 +50,16 @@ class Past:
                 yield number * self._every, self._states[number]
         if self._last[0] >= first:
             yield self._last
+
+    def at(self, tick: int) -> bytes | None:
+        """Returns the state at the end of a tick, or the nearest one before that is kept; None where it has not been there."""
+        if tick == self._last[0]:
+            return self._last[1]
+        return self._states[tick // self._every] if 0 <= tick < self._last[0] else None
+
+    def up_to(self, first: int, last: int, spacing: int) -> Iterator[tuple[int, bytes]]:
+        """Yields one tick in so many between two, and the last one, with their states."""
+        for tick in (*range(-(-first // spacing) * spacing, last, spacing), last):
+            state = self.at(tick)
+            if state is not None and tick >= first:
+                yield tick, state

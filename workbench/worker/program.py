@@ -117,6 +117,8 @@ class ProgramRun:
             if self._left:
                 return
             conductor.link.post(notice_of(error))
+            if self._recording is not None:
+                self._recording.fact("failed", told_of(error))
             self._end("failed", told_of(error))
             return
         if not self._left:
@@ -225,6 +227,10 @@ class ProgramRun:
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns nothing: a program has no world that is shown."""
         return None, {}
+
+    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+        """Returns nothing: there is nothing to draw on."""
+        return {}
 
     def result(self) -> dict[str, Any] | None:
         """Returns nothing: a program is not measured."""

@@ -1,0 +1,111 @@
+"""The 3D view in a real browser: alone, with viser's panel; framed, without it; and in the dark."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.browsing import chromium
+from tests.server.serving import MODELS, Served, served
+
+PATIENCE = 120_000
+"""[ms]; without a graphics card, on a busy machine."""
+
+
+@pytest.fixture(scope="module")
+def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with served(tmp_path_factory.mktemp("scene") / "models") as running:
+        shutil.copy(MODELS / "aperture_passage.py", running.folder / "aperture_passage.py")
+        yield running
+
+
+@pytest.fixture
+def page(workbench: Served) -> Iterator[Page]:
+    with chromium() as browser:
+        page = browser.new_context(viewport={"width": 800, "height": 600}).new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(workbench.address)
+        yield page
+
+
+@pytest.fixture
+def session(workbench: Served) -> Iterator[str]:
+    name: str = workbench.post("/api/sessions", {"model": "aperture_passage.py", "seed": 1}).json()["id"]
+    wait(lambda: told(workbench, name)["session"]["scene"])
+    yield name
+    workbench.post(f"/api/sessions/{name}/close")
+
+
+def told(workbench: Served, session: str) -> dict[str, Any]:
+    return workbench.get(f"/api/sessions/{session}").json()
+
+
+def wait(condition: Callable[[], Any]) -> None:
+    end = time.monotonic() + PATIENCE / 1000
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def say(workbench: Served, session: str, **said: Any) -> None:
+    assert workbench.post(f"/api/sessions/{session}/say", {"say": said}).status_code == 200
+
+
+def shown(workbench: Served, session: str, overlay: str) -> bool:
+    return next(one["shown"] for one in told(workbench, session)["session"]["overlays"] if one["name"] == overlay)
+
+
+def test_viser_alone_has_all_controls_and_they_are_those_of_the_session(workbench: Served, page: Page, session: str) -> None:
+    page.goto(f"{workbench.url}/viser/{session}/")
+    expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
+    expect(page.locator("canvas").first).to_be_visible(timeout=PATIENCE)
+    page.get_by_role("button", name="step", exact=True).click()
+    expect(page.get_by_text("t = 0.01 s")).to_be_visible(timeout=PATIENCE)
+    page.get_by_role("button", name="back", exact=True).click()
+    expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
+    box = page.get_by_role("checkbox", name="edges seen")
+    expect(box).not_to_be_checked()
+    box.click()
+    wait(lambda: shown(workbench, session, "edges"))
+    say(workbench, session, type="overlay", name="edges", shown=False)
+    expect(box).not_to_be_checked(timeout=PATIENCE)
+    say(workbench, session, type="camera", view="top")
+    expect(page.get_by_role("combobox", name="camera")).to_have_value("top", timeout=PATIENCE)
+    assert told(workbench, session)["session"]["controlled_by"] == "3D view"  # who has stepped
+
+
+def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, page: Page, session: str) -> None:
+    page.goto(f"{workbench.url}/viser/{session}/?panel=hidden&darkMode")
+    expect(page.locator("canvas").first).to_be_visible(timeout=PATIENCE)
+    expect(page.locator("html")).to_have_attribute("data-mantine-color-scheme", "dark", timeout=PATIENCE)
+    expect(page.get_by_text(re.compile("t = 0.00 s"))).to_have_count(1, timeout=PATIENCE)  # it is connected
+    for panel in page.locator(".mantine-Paper-root, .mantine-Notification-root").all():
+        expect(panel).to_be_hidden()
+    page.set_viewport_size({"width": 400, "height": 400})  # where viser has its panel below
+    for panel in page.locator(".mantine-Paper-root").all():
+        expect(panel).to_be_hidden()
+    page.goto(f"{workbench.url}/viser/{session}/")
+    expect(page.locator("html")).to_have_attribute("data-mantine-color-scheme", "light", timeout=PATIENCE)
+    expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
+
+
+def test_what_a_model_calls_its_things_is_text(workbench: Served, page: Page) -> None:
+    evil = "<img src=x onerror=document.title='run'>"
+    source = (
+        "from actr3d.simulation import Simulation\nfrom actr3d.world import Aperture, Floor, Scene\n\n"
+        f'def build() -> Simulation:\n    return Simulation(Scene(parts=(Floor(), Aperture(name="{evil}"))), seed=1)\n'
+    )
+    (Path(workbench.folder) / "evil.py").write_text(source, encoding="utf-8")
+    name = workbench.post("/api/sessions", {"model": "evil.py", "seed": 1}).json()["id"]
+    wait(lambda: told(workbench, name)["session"]["scene"] or told(workbench, name)["session"]["ending"])
+    page.goto(f"{workbench.url}/viser/{name}/")
+    expect(page.get_by_text("<img src=x")).to_be_visible(timeout=PATIENCE)
+    assert page.title() != "run"
+    workbench.post(f"/api/sessions/{name}/close")

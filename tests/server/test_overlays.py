@@ -1,0 +1,168 @@
+"""What is drawn over the 3D view: computed only when it is shown to somebody, true to the world, and switched for all at once."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.server.desk import Desk, Talk
+
+LOOKING = """from actr3d.actr import *
+from actr3d.motor import Motor
+from actr3d.simulation import Simulation
+from actr3d.vision import Vision
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    b_visual = Buffer()
+    vision = Vision(b_visual, horizontal_fov=1.2, vertical_fov=0.9)
+    motor = Motor()
+    def init():
+        goal.set("look")
+    def look(goal="look"):
+        vision.request("feature:opening height:>1")
+        motor.rotate_torso(40, 60)
+        motor.walk(0.5)
+        goal.set("wait")
+    def wait(goal="wait"):
+        goal.set("wait")
+
+def build() -> Simulation:
+    parts = (Floor(), Mannequin(name="walker"), Aperture(width=0.6, position=(3.0, 0.2), heading=0.3))
+    return Simulation(Scene(parts=parts), {"walker": Walker}, seed=1)
+"""
+ALL = ("frustum", "edges", "features", "path", "posture")
+MIDDLE, ACROSS = np.array((3.0, 0.2)), np.array((-math.sin(0.3), math.cos(0.3)))
+
+
+def drawn(talk: Talk, tick: int, kinds: tuple[str, ...] = ALL) -> dict[str, Any]:
+    """Returns what overlays are told of a tick."""
+    talk.desk.do(draw(talk, kinds))
+
+    def there() -> bool:
+        state = talk.session.state
+        return state is not None and state.tick == tick and set(state.drawn) == set(kinds)
+
+    talk.wait(there)
+    assert talk.session.state is not None
+    return talk.session.state.drawn
+
+
+async def draw(talk: Talk, kinds: tuple[str, ...]) -> None:
+    talk.session.draw(kinds)
+
+
+def after(desk: Desk, folder: Path, ticks: int) -> Talk:
+    talk = desk.begin(folder, LOOKING)
+    talk.say("step", ticks=ticks)
+    talk.until("paused", tick=ticks)
+    return talk
+
+
+def test_nothing_is_told_of_overlays_that_nobody_looks_at(desk: Desk, tmp_path: Path) -> None:
+    talk = after(desk, tmp_path, 5)
+    assert talk.session.state is not None
+    assert talk.session.state.drawn == {}
+    assert set(drawn(talk, 5, ("path",))) == {"path"}
+    assert drawn(talk, 5, ()) == {}
+
+
+def test_the_field_of_view_is_that_of_the_camera_from_the_start_on(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, LOOKING)
+    assert drawn(talk, 0, ("frustum",)) == {"frustum": {"walker": [1.2, 0.9]}}
+    talk.say("step", ticks=20)
+    talk.until("paused", tick=20)
+    assert drawn(talk, 20, ("frustum",)) == {"frustum": {"walker": [1.2, 0.9]}}
+
+
+def test_edges_lie_on_what_is_seen(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, LOOKING)
+    lines = np.frombuffer(drawn(talk, 0, ("edges",))["edges"]["walker"], dtype=np.float32).reshape(-1, 2, 3)
+    assert len(lines) > 100
+    along = (lines[..., :2] - MIDDLE) @ ACROSS
+    before = (lines[..., :2] - MIDDLE) @ np.array((math.cos(0.3), math.sin(0.3)))
+    assert np.abs(before).max() < 0.05 + 0.005 * 6  # the wall is 10 cm thick, and they are drawn a little before it
+    at_gap = np.abs(np.abs(along) - 0.3) < 0.02
+    assert at_gap.mean() > 0.3  # the sides of the gap; what else there is are the ends of the wall, its top and its bottom
+    assert not (np.abs(along) < 0.27).any()
+    assert lines[..., 2].max() < 2.5
+
+
+def test_openings_are_shown_where_they_are_with_their_width(desk: Desk, tmp_path: Path) -> None:
+    talk = after(desk, tmp_path, 60)  # it has walked on since it looked
+    (found,) = drawn(talk, 60, ("features",))["features"]["walker"]
+    assert found["chosen"] is True
+    assert found["text"] == "opening 60 cm"
+    across = np.array(found["lines"][0])
+    for end, side in zip(across, (1, -1), strict=True):
+        assert end[:2] @ ACROSS == pytest.approx((MIDDLE + side * 0.3 * ACROSS) @ ACROSS, abs=0.01)
+        assert (end[:2] - MIDDLE) @ np.array((math.cos(0.3), math.sin(0.3))) == pytest.approx(-0.05, abs=0.11)
+    upright = np.array(found["lines"][1])
+    assert upright[0, :2] == pytest.approx(upright[1, :2])
+    assert upright[1, 2] - upright[0, 2] > 1
+
+
+def test_the_path_is_known_to_who_comes_late_and_after_going_back(desk: Desk, tmp_path: Path) -> None:
+    talk = after(desk, tmp_path, 200)
+    way = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
+    assert way[0] == pytest.approx((0, 0))
+    assert way[-1, 0] == pytest.approx(0.5 * 1.95, abs=0.03)
+    assert (np.diff(way[:, 0]) >= 0).all()
+    assert len(way) > 30
+    talk.say("seek", time=1.0)
+    talk.until("paused", tick=100)
+    back = np.array(drawn(talk, 100, ("path",))["path"]["walker"])
+    assert len(back) < len(way)
+    assert back[-1, 0] == pytest.approx(0.5 * 0.95, abs=0.03)
+    talk.say("say", word="walk", values=[-0.5])
+    talk.say("step", ticks=100)
+    talk.until("paused", tick=200)
+    other = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
+    assert other[:, 0].max() == pytest.approx(back[-1, 0], abs=0.02)
+    assert other[-1, 0] < back[-1, 0] - 0.03
+
+
+def test_the_planned_posture_is_what_is_commanded_until_it_is_there(desk: Desk, tmp_path: Path) -> None:
+    talk = after(desk, tmp_path, 20)
+    ((place, target),) = drawn(talk, 20, ("posture",))["posture"]["walker"]
+    assert target == pytest.approx(math.radians(40))
+    talk.say("step", ticks=80)
+    talk.until("paused", tick=100)
+    assert drawn(talk, 100, ("posture",))["posture"]["walker"] == []
+    told = talk.say("curves", names=["walker_torso_yaw"], first=1.0)
+    assert told["curves"]["walker_torso_yaw"][-1] == pytest.approx(40, abs=0.5)
+    assert place > 0
+
+
+def test_a_new_run_tells_of_what_is_looked_at_already(desk: Desk, tmp_path: Path) -> None:
+    talk = after(desk, tmp_path, 5)
+    drawn(talk, 5, ("path",))
+    talk.say("restart")
+    talk.wait(lambda: talk.session.run == 2 and talk.session.state is not None and "path" in talk.session.state.drawn)
+
+
+def test_who_looks_switches_for_all_and_takes_no_control(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, LOOKING)
+
+    def shown() -> dict[str, bool]:
+        return {one["name"]: one["shown"] for one in talk.facts["overlays"]}
+
+    assert list(shown()) == [*ALL[:4], "posture", "contacts"]
+    before = shown()
+    talk.say("overlay", name="edges", shown=True)
+    talk.say("overlay", name="path", shown=False)
+    assert shown() == {**before, "edges": True, "path": False}
+    assert talk.facts["camera"] == "free"
+    talk.say("camera", view="eye")
+    assert (talk.facts["camera"], talk.facts["cameras"]) == ("eye", ["free", "follow", "eye", "top"])
+    assert talk.facts["controlled_by"] == ""
+    talk.say("restart")
+    talk.wait(lambda: talk.session.run == 2)
+    assert shown()["edges"] is True
+    with pytest.raises(ValueError, match="name"):
+        talk.say("overlay", name="sky", shown=True)

@@ -1,0 +1,41 @@
+"""The way that bodies have come."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from mujoco import MjData
+
+from workbench.overlays.overlay import Lines, Overlay
+
+HEIGHT = 0.012
+"""How far above the floor it is drawn [m], so that it can be seen."""
+
+
+class Path(Overlay):
+    """The way of each body from the start of the run up to the present, whoever watched.
+
+    Args:
+        server: Viser's server.
+    """
+
+    def __init__(self, server: Any) -> None:
+        self._lines = Lines(server, "/overlays/path", (230, 120, 30), 3.0)
+        self._lines.show(False)
+
+    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+        """Draws it as far as it goes."""
+        if drawn is None:
+            return
+        pieces = [np.zeros((0, 2, 3), dtype=np.float32)]
+        for way in drawn.values():
+            if len(way) > 1:
+                places = np.full((len(way), 3), HEIGHT, dtype=np.float32)
+                places[:, :2] = way
+                pieces.append(np.stack((places[:-1], places[1:]), axis=1))
+        self._lines.set(np.concatenate(pieces))
+
+    def switch(self) -> None:
+        """Shows or hides it."""
+        self._lines.show(self.visible)

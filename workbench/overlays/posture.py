@@ -1,0 +1,73 @@
+"""The posture that a body is commanded to, as a translucent copy of what still moves there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import MjData, MjModel
+
+from workbench.overlays.overlay import Overlay
+
+SLIGHT = 1e-3
+"""What differs less than this is there already [m], and of the axes of a part."""
+COLOUR = (60, 170, 90)
+
+
+class Posture(Overlay):
+    """The parts that are on their way, where they are commanded to be when the body stands where it stands now.
+
+    Args:
+        server: Viser's server.
+        model: The compiled scene.
+        world: What is in it, as `Facts.world` tells it.
+    """
+
+    def __init__(self, server: Any, model: MjModel, world: dict[str, Any]) -> None:
+        self._server, self._model, self._data = server, model, MjData(model)
+        self._handles: dict[int, Any] = {}
+        self._seen: set[int] = set()
+
+    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+        """Draws what differs from the present posture."""
+        targets = [target for body in (drawn or {}).values() for target in body]
+        self._seen = self._pose(data, targets) if targets else set()
+        for number in self._seen - self._handles.keys():
+            self._handles[number] = self._copy(number)
+        for number in self._seen:
+            handle = self._handles[number]
+            if handle is not None:
+                handle.position, handle.wxyz = self._data.xpos[number].copy(), self._data.xquat[number].copy()
+        self.switch()
+
+    def _pose(self, data: MjData, targets: list[Any]) -> set[int]:
+        """Brings the copy into the posture that is commanded; returns the MuJoCo bodies that are elsewhere then."""
+        now, then = data, self._data
+        then.qpos[:], then.mocap_pos[:], then.mocap_quat[:] = now.qpos, now.mocap_pos, now.mocap_quat
+        for place, target in targets:
+            then.qpos[int(place)] = target
+        mujoco.mj_kinematics(self._model, then)
+        off = np.abs(then.xpos - now.xpos).max(axis=1) + np.abs(then.xmat - now.xmat).max(axis=1)
+        return set(np.flatnonzero(off > SLIGHT).tolist())
+
+    def _copy(self, number: int) -> Any:
+        """Makes a translucent copy of a part; None of one that has no shape."""
+        from mjviser.conversions import merge_geoms
+
+        geoms = [
+            geom for geom in range(self._model.ngeom) if self._model.geom_bodyid[geom] == number and self._model.geom_rgba[geom, 3] > 0
+        ]
+        if not geoms:
+            return None
+        mesh = merge_geoms(self._model, geoms)
+        return self._server.scene.add_mesh_simple(
+            f"/overlays/posture/{number}", mesh.vertices, mesh.faces, color=COLOUR, opacity=0.35, cast_shadow=False, visible=False
+        )
+
+    def switch(self) -> None:
+        """Shows or hides them."""
+        for number, handle in self._handles.items():
+            visible = self.visible and number in self._seen
+            if handle is not None and handle.visible != visible:
+                handle.visible = visible

@@ -1,0 +1,83 @@
+"""Viser's own panel: run, pause, step and back, the apertures, the camera, the overlays; so that it is enough alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from workbench import protocol as say
+from workbench.look import TITLES, VIEWS, Look
+from workbench.worker.messages import State
+
+WORDS: dict[str, Callable[[], Any]] = {"run": say.Run, "pause": say.Pause, "step": say.Step, "back": say.Back}
+MOST_SLIDERS = 8
+WIDEST = 300
+"""A slider goes up to this [cm]."""
+
+
+class Panel:
+    """The controls in viser's panel. What a model calls its things is shown as text only.
+
+    Args:
+        gui: Viser's side of it.
+        apertures: The names of the apertures.
+        look: How the scene is looked at.
+        said: Takes what users do.
+    """
+
+    def __init__(self, gui: Any, apertures: list[str], look: Look, said: Callable[[Any], None]) -> None:
+        self._said = said
+        gui.reset()
+        gui.set_panel_label("ACT-R 3D")
+        self._time = gui.add_markdown("")
+        buttons = gui.add_button_group("run", tuple(WORDS))
+
+        @buttons.on_click
+        def _(_: Any) -> None:
+            said(WORDS[buttons.value]())
+
+        self._sliders: dict[str, Any] = {}
+        for name in apertures[:MOST_SLIDERS]:
+            slider = gui.add_slider(f"{name} [cm]", min=0, max=WIDEST, step=1, initial_value=0)
+            slider.on_update(partial(self._slid, name, slider))
+            self._sliders[name] = slider
+        self._camera = gui.add_dropdown("camera", VIEWS, initial_value=look.camera)
+        self._camera.on_update(self._turned)
+        self._boxes: dict[str, Any] = {}
+        with gui.add_folder("overlays"):
+            for name, title in TITLES.items():
+                box = gui.add_checkbox(title, initial_value=name in look.shown)
+                box.on_update(partial(self._switched, name, box))
+                self._boxes[name] = box
+
+    def show(self, state: State) -> None:
+        """Shows how the run is."""
+        pace = "" if state.measured is None else f" · {state.measured:.1f}x"
+        text = f"**t = {state.time:.2f} s** · {state.status}{pace}"
+        if self._time.content != text:
+            self._time.content = text
+        for name, width in state.apertures.items():
+            slider = self._sliders.get(name)
+            if slider is not None and round(slider.value) != round(100 * width):
+                slider.value = min(WIDEST, round(100 * width))
+
+    def choose(self, look: Look) -> None:
+        """Shows how the scene is looked at."""
+        if self._camera.value != look.camera:
+            self._camera.value = look.camera
+        for name, box in self._boxes.items():
+            if box.value != (name in look.shown):
+                box.value = name in look.shown
+
+    def _slid(self, name: str, slider: Any, event: Any) -> None:
+        if event.client_id is not None:  # else the panel is only being set to what is so
+            self._said(say.Aperture(width=slider.value / 100, name=name))
+
+    def _turned(self, event: Any) -> None:
+        if event.client_id is not None:
+            self._said(say.Camera(view=self._camera.value))
+
+    def _switched(self, name: say.OverlayName, box: Any, event: Any) -> None:
+        if event.client_id is not None:
+            self._said(say.Overlay(name=name, shown=box.value))

@@ -1,0 +1,178 @@
+"use strict";
+// Draws the scene: shapes lit from above, and the ground as a grid.
+
+const SHAPE_VERTEX = `#version 300 es
+in vec3 place; in vec4 colour; uniform mat4 pose, view; out vec4 tint; out vec3 at;
+void main() { vec4 world = pose * vec4(place, 1.0); at = world.xyz; tint = colour; gl_Position = view * world; }`;
+const SHAPE_FRAGMENT = `#version 300 es
+precision highp float; in vec4 tint; in vec3 at; uniform vec3 eye; out vec4 seen;
+void main() {
+  vec3 normal = normalize(cross(dFdx(at), dFdy(at)));
+  if (dot(normal, eye - at) < 0.0) normal = -normal;
+  float light = 0.45 + 0.4 * max(dot(normal, normalize(vec3(-0.4, -0.6, 1.0))), 0.0) + 0.2 * max(dot(normal, normalize(eye - at)), 0.0);
+  seen = vec4(tint.rgb * light, tint.a);
+}`;
+const GROUND_VERTEX = `#version 300 es
+in vec2 place; uniform mat4 view; uniform float height; uniform vec2 middle; out vec2 at;
+void main() { at = place * 60.0 + floor(middle); gl_Position = view * vec4(at, height, 1.0); }`;
+const GROUND_FRAGMENT = `#version 300 es
+precision highp float; in vec2 at; uniform vec3 ground, line; uniform vec2 middle; out vec4 seen;
+void main() {
+  vec2 width = fwidth(at);
+  vec2 off = abs(fract(at - 0.5) - 0.5) / max(width, vec2(1e-6));
+  float strong = (1.0 - min(min(off.x, off.y) / 1.3, 1.0)) * clamp(0.6 / max(width.x, width.y), 0.0, 1.0);
+  float far = clamp(1.0 - length(at - middle) / 55.0, 0.0, 1.0);
+  seen = vec4(mix(ground, line, strong), far);
+}`;
+
+class Drawing {
+  constructor(canvas, scene) {
+    this.canvas = canvas;
+    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
+    if (!this.gl) throw new Error("this browser has no WebGL 2, which the 3D scene needs");
+    this.scene = scene;
+    this.times = unpacked(scene.times, Float32Array);
+    this.poses = unpacked(scene.poses, Float32Array);
+    this.shaded = this.program(SHAPE_VERTEX, SHAPE_FRAGMENT);
+    this.grounded = this.program(GROUND_VERTEX, GROUND_FRAGMENT);
+    this.shapes = scene.shapes.map((shape) => this.shape(shape));
+    this.square = this.array(this.grounded, { place: [new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), 2, this.gl.FLOAT, false] });
+    this.turn = -2.3;
+    this.tilt = 0.5;
+    this.distance = 5.5;
+    this.target = [0, 0, 1];
+    this.following = true;
+    this.now = 0;
+    this.dark = matchMedia("(prefers-color-scheme: dark)");
+    this.listen();
+  }
+
+  program(vertex, fragment) {
+    const gl = this.gl, program = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(program, shader);
+    }
+    gl.linkProgram(program);
+    return program;
+  }
+
+  array(program, values) {
+    const gl = this.gl, array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    for (const [name, [data, size, kind, whole]] of Object.entries(values)) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      const at = gl.getAttribLocation(program, name);
+      gl.enableVertexAttribArray(at);
+      gl.vertexAttribPointer(at, size, kind, whole, 0, 0);
+    }
+    return array;
+  }
+
+  shape(shape) {
+    const gl = this.gl, faces = unpacked(shape.faces, Uint32Array);
+    const array = this.array(this.shaded, {
+      place: [unpacked(shape.places, Float32Array), 3, gl.FLOAT, false],
+      colour: [unpacked(shape.colours, Uint8Array), 4, gl.UNSIGNED_BYTE, true],
+    });
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
+    return { array, count: faces.length, clear: shape.clear };
+  }
+
+  // How a shape stands at a time.
+  pose(shape, time) {
+    const times = this.times, count = this.shapes.length;
+    let low = 0, high = times.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= time) low = middle;
+      else high = middle - 1;
+    }
+    const next = Math.min(low + 1, times.length - 1);
+    const part = next > low ? Math.min(1, Math.max(0, (time - times[low]) / (times[next] - times[low]))) : 0;
+    return between(this.poses, (low * count + shape) * 7, (next * count + shape) * 7, part);
+  }
+
+  draw(time) {
+    const gl = this.gl, canvas = this.canvas;
+    this.now = time;
+    const wide = Math.max(1, Math.round(canvas.clientWidth * devicePixelRatio)), high = Math.max(1, Math.round(canvas.clientHeight * devicePixelRatio));
+    if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
+    gl.viewport(0, 0, wide, high);
+    const dark = this.dark.matches, sky = dark ? [0.08, 0.09, 0.11] : [0.93, 0.95, 0.97];
+    gl.clearColor(...sky, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    if (!this.shapes.length) return;
+    if (this.following) {
+      const [x, y] = this.pose(this.scene.follow, time);
+      this.target = [x, y, 1];
+    }
+    const flat = Math.cos(this.tilt) * this.distance;
+    const eye = [this.target[0] + flat * Math.cos(this.turn), this.target[1] + flat * Math.sin(this.turn), this.target[2] + Math.sin(this.tilt) * this.distance];
+    const view = times(perspective(0.9, wide / high, 0.05, 200), lookAt(eye, this.target));
+    this.drawGround(view, dark);
+    gl.useProgram(this.shaded);
+    const place = (name) => gl.getUniformLocation(this.shaded, name);
+    gl.uniformMatrix4fv(place("view"), false, view);
+    gl.uniform3fv(place("eye"), eye);
+    for (const clear of [false, true])
+      this.shapes.forEach((shape, number) => {
+        if (shape.clear !== clear) return;
+        gl.uniformMatrix4fv(place("pose"), false, poseMatrix(this.pose(number, time)));
+        gl.bindVertexArray(shape.array);
+        gl.drawElements(gl.TRIANGLES, shape.count, gl.UNSIGNED_INT, 0);
+      });
+  }
+
+  drawGround(view, dark) {
+    const gl = this.gl, place = (name) => gl.getUniformLocation(this.grounded, name);
+    gl.useProgram(this.grounded);
+    gl.uniformMatrix4fv(place("view"), false, view);
+    gl.uniform2f(place("middle"), this.target[0], this.target[1]);
+    gl.uniform3fv(place("ground"), dark ? [0.16, 0.18, 0.21] : [0.84, 0.87, 0.89]);
+    gl.uniform3fv(place("line"), dark ? [0.34, 0.37, 0.42] : [0.66, 0.7, 0.74]);
+    gl.bindVertexArray(this.square);
+    for (const height of this.scene.grounds) {
+      gl.uniform1f(place("height"), height);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    }
+  }
+
+  listen() {
+    const canvas = this.canvas;
+    canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+    canvas.addEventListener("pointermove", (event) => {
+      if (!event.buttons) return;
+      if (event.shiftKey || event.buttons > 1) this.shift(event.movementX, event.movementY);
+      else {
+        this.turn -= event.movementX * 0.008;
+        this.tilt = Math.min(1.5, Math.max(-0.2, this.tilt + event.movementY * 0.006));
+      }
+      this.draw(this.now);
+    });
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.distance = Math.min(80, Math.max(0.5, this.distance * Math.exp(event.deltaY * 0.001)));
+      this.draw(this.now);
+    }, { passive: false });
+    new ResizeObserver(() => this.draw(this.now)).observe(canvas);
+    this.dark.addEventListener("change", () => this.draw(this.now));
+  }
+
+  // Moves what is looked at, which is then no longer followed.
+  shift(x, y) {
+    const size = (this.distance * 0.9) / this.canvas.clientHeight, s = Math.sin(this.turn), c = Math.cos(this.turn);
+    this.following = false;
+    document.getElementById("follow").checked = false;
+    this.target = [this.target[0] + size * (x * s - y * c), this.target[1] - size * (x * c + y * s), this.target[2]];
+  }
+}

@@ -1,0 +1,78 @@
+"use strict";
+// The list of events: only the rows that are in sight are in the page.
+
+const ROW = 22;
+const KINDS = { fire: "fires", output: "prints" };
+const DETAILS = new Set(["answer", "conflict", "select", "state"]); // many a tick; shown where they are asked for
+
+class Events {
+  constructor(told, seek) {
+    this.rows = told.rows;
+    this.seek = seek;
+    this.list = document.getElementById("events");
+    this.now = -1;
+    this.more = told.more;
+    this.filter();
+    this.list.addEventListener("scroll", () => this.show());
+    new ResizeObserver(() => this.show()).observe(this.list);
+    for (const id of ["filter", "details"])
+      document.getElementById(id).addEventListener("input", () => {
+        this.filter();
+        this.mark(this.time, true);
+      });
+  }
+
+  filter() {
+    const words = document.getElementById("filter").value.toLowerCase().split(/\s+/).filter(Boolean);
+    const details = document.getElementById("details").checked;
+    const fits = ([, source, kind, told]) => words.every((word) => `${source} ${kind} ${KINDS[kind] || ""} ${told}`.toLowerCase().includes(word));
+    this.shown = this.rows.filter((row) => (details || !DETAILS.has(row[2])) && fits(row));
+    document.getElementById("height").style.height = `${this.shown.length * ROW}px`;
+    this.tell();
+    this.show();
+  }
+
+  tell() {
+    const left = this.more ? `; ${this.more} more are left out` : "";
+    document.getElementById("count").textContent = `${this.shown.length} of ${this.rows.length} events${left}`;
+  }
+
+  // Marks what has happened up to a time, and brings it into sight.
+  mark(time, anyway) {
+    this.time = time;
+    let low = 0, high = this.shown.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.shown[middle][0] <= time + 1e-6) low = middle + 1;
+      else high = middle;
+    }
+    if (low - 1 === this.now && !anyway) return;
+    this.now = low - 1;
+    const at = this.now * ROW, list = this.list;
+    if (at < list.scrollTop || at > list.scrollTop + list.clientHeight - 2 * ROW) list.scrollTop = Math.max(0, at - list.clientHeight / 2);
+    this.show();
+  }
+
+  show() {
+    const list = this.list, first = Math.max(0, Math.floor(list.scrollTop / ROW) - 5);
+    const last = Math.min(this.shown.length, first + Math.ceil(list.clientHeight / ROW) + 10);
+    const rows = [];
+    for (let n = first; n < last; n++) rows.push(this.row(n));
+    list.replaceChildren(document.getElementById("height") || list.firstChild, ...rows);
+  }
+
+  row(number) {
+    const [time, source, kind, told] = this.shown[number];
+    const row = document.createElement("button");
+    row.type = "button";
+    row.className = `event${number < this.now ? " past" : number === this.now ? " now" : ""}`;
+    row.style.top = `${number * ROW}px`;
+    const when = document.createElement("time"), what = document.createElement("b");
+    when.textContent = time.toFixed(3);
+    what.textContent = told;
+    row.append(when, `${source} ${KINDS[kind] || kind} `, what);
+    row.title = `${source} ${kind}: ${told}`;
+    row.addEventListener("click", () => this.seek(time));
+    return row;
+  }
+}

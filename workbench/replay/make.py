@@ -1,0 +1,134 @@
+"""Makes the replay of a recording."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from actr3d.clock import MICROSECONDS, seconds
+from actr3d.recording import Recorded
+from actr3d.trace import TraceEvent
+from actr3d.values import to_json
+from workbench.compiled import from_text, loaded
+from workbench.curves import stride
+from workbench.replay.shapes import grounds_of, packed, poses_of, shapes_of
+
+RATE = 30
+"""About so many moments of each second of simulated time are shown; between them everything moves evenly."""
+MOST_FRAMES = 20_000
+MOST_NUMBERS = 7_000_000
+"""Of longer runs, or those with more bodies, fewer moments are shown: no more numbers than these, 4 bytes each."""
+MOST_EVENTS = 50_000
+"""So many events are told; of more, the first."""
+LONGEST = 400
+"""No more of what an event tells is shown [characters]."""
+
+
+def write_replay(path: Path, to: Path) -> None:
+    """Writes the replay of a recording to a file.
+
+    Raises:
+        RecordingError: If the recording cannot be read, or its scene is too large.
+        OSError: If the file cannot be written.
+    """
+    with Recorded(path) as recorded:
+        facts = _facts(recorded)
+        told = {**facts, "events": _events(recorded), "scene": _scene(recorded)}
+    # Nothing that a model says can end the element in which it stands.
+    data = msgspec.json.encode(told).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    folder = Path(__file__).parent
+    page = (folder / "page.html").read_text(encoding="utf-8")
+    parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": _read(folder, "style.css"), "SCRIPT": _scripts(folder)}
+    pieces = page.split("@@")
+    to.write_text("".join(parts[piece] if number % 2 else piece for number, piece in enumerate(pieces)), encoding="utf-8")
+
+
+def _read(folder: Path, name: str) -> str:
+    return (folder / name).read_text(encoding="utf-8")
+
+
+def _scripts(folder: Path) -> str:
+    return "\n".join(_read(folder, name) for name in ("space.js", "drawing.js", "events.js", "player.js"))
+
+
+def _facts(recorded: Recorded) -> dict[str, Any]:
+    facts = recorded.facts
+    model = Path(facts.get("file", "")).name
+    seed = facts.get("program_seed", facts.get("seed"))
+    ended = facts.get("ended")
+    return {
+        "title": f"{model or 'a run'} · seed {seed}",
+        "model": model,
+        "seed": str(seed),
+        "parameters": {
+            str(name): value if isinstance(value, str) else to_json(value) for name, value in facts.get("parameters", {}).items()
+        },
+        "ended": None if ended is None else str(ended.get("by")),
+    }
+
+
+def _events(recorded: Recorded) -> dict[str, Any]:
+    """Returns the events as lists of columns, the result apart, and how many are left out."""
+    rows = [(event.time, event.source, event.kind, _text(event)) for event in islice(recorded.events(), MOST_EVENTS)]
+    result: dict[str, Any] | None = None
+    for event in recorded.events():
+        if event.kind == "result":
+            result = dict(event.data)
+    return {"rows": rows, "more": recorded.event_count - len(rows), "result": None if result is None else _plain(result)}
+
+
+def _plain(values: Mapping[str, Any]) -> dict[str, str]:
+    """Returns names and values as texts."""
+    return {str(name): value if isinstance(value, str) else to_json(value) for name, value in values.items()}
+
+
+def _text(event: TraceEvent) -> str:
+    """Returns what an event tells, in a line."""
+    data = event.data
+    if event.kind == "fire":
+        text = str(data.get("production"))
+    elif event.kind == "output":
+        text = str(data.get("text"))
+    else:
+        text = ", ".join(f"{name}: {value if isinstance(value, str) else to_json(value)}" for name, value in data.items())
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+
+
+def _scene(recorded: Recorded) -> dict[str, Any] | None:
+    """Returns the shapes, and how they stand at each moment that is shown; None without a world."""
+    facts = recorded.facts
+    if "compiled" not in facts:
+        return None
+    model, period = loaded(from_text(facts["compiled"])), facts["period_us"]
+    shapes = shapes_of(model)
+    bodies = [shape["body"] for shape in shapes]
+    ticks = recorded.ticks
+    most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (7 * max(1, len(bodies)))))
+    every = max(1, round(MICROSECONDS / RATE / period), stride(ticks + 1, most - 1))
+    times: list[float] = []
+
+    def states() -> Iterator[bytes]:
+        for _, tick, state, _ in recorded.states():
+            if tick % every == 0 or tick == ticks:
+                times.append(seconds(tick * period))
+                yield state
+
+    poses = poses_of(model, bodies, states())
+    return {
+        "shapes": shapes,
+        "grounds": grounds_of(model),
+        "times": packed(times, "<f4"),
+        "poses": packed(poses, "<f4"),
+        "follow": _followed(facts["world"], bodies),
+    }
+
+
+def _followed(world: dict[str, Any], bodies: list[int]) -> int:
+    """Returns which of the shapes is looked at: the first body's root, or what comes next of it."""
+    roots = [body["root"] for body in world["bodies"].values()]
+    return next((number for number, body in enumerate(bodies) if roots and body >= roots[0]), 0)

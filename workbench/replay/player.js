@@ -1,0 +1,84 @@
+"use strict";
+// Plays: one time for the scene, the events and the slider.
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const get = (id) => document.getElementById(id);
+
+function table(id, values) {
+  const rows = Object.entries(values || {}).map(([name, value]) => {
+    const row = document.createElement("tr"), head = document.createElement("th"), cell = document.createElement("td");
+    head.textContent = name;
+    cell.textContent = value;
+    row.append(head, cell);
+    return row;
+  });
+  get(id).hidden = !rows.length;
+  get(id).tBodies[0].replaceChildren(...rows);
+}
+
+table("parameters", data.parameters);
+table("result", data.events.result);
+const came = data.events.result && data.events.result.outcome;
+const ENDINGS = { stop: "a mind said stop", done: "no mind had anything left to do", end: "the program was over" };
+get("outcome").textContent =
+  (came ? `Outcome: ${came}. ` : "") + (data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : "It was broken off, or was still going on.");
+
+let drawing = null;
+try {
+  if (data.scene) drawing = new Drawing(get("canvas"), data.scene);
+} catch (error) {
+  get("empty").textContent = error.message;
+}
+if (!drawing) {
+  get("canvas").hidden = true;
+  get("empty").hidden = false;
+  get("empty").textContent ||= "This run has no world to show.";
+}
+
+let now = 0, playing = false, before = 0;
+const rows = data.events.rows;
+const end = Math.max(drawing ? drawing.times[drawing.times.length - 1] : 0, rows.length ? rows[rows.length - 1][0] : 0);
+const events = new Events(data.events, (time) => goTo(time));
+get("time").max = end;
+
+function goTo(time) {
+  now = Math.min(end, Math.max(0, time));
+  get("time").value = now;
+  get("clock").textContent = `${now.toFixed(2)} s`;
+  events.mark(now);
+  if (drawing) drawing.draw(now);
+}
+
+function play(on) {
+  playing = on;
+  if (on && now >= end) goTo(0);
+  get("play").textContent = on ? "Pause" : "Play";
+  get("play").setAttribute("aria-pressed", String(on));
+  before = performance.now();
+  if (on) requestAnimationFrame(frame);
+}
+
+function frame(at) {
+  if (!playing) return;
+  const passed = Math.max(0, at - before) / 1000;
+  before = at;
+  goTo(now + passed * Number(get("speed").value));
+  if (now >= end) play(false);
+  else requestAnimationFrame(frame);
+}
+
+get("play").addEventListener("click", () => play(!playing));
+get("time").addEventListener("input", (event) => goTo(Number(event.target.value)));
+get("follow").addEventListener("change", (event) => {
+  if (drawing) drawing.following = event.target.checked;
+  goTo(now);
+});
+document.addEventListener("keydown", (event) => {
+  if (event.target.closest("input, select, button")) return;
+  if (event.key === " ") play(!playing);
+  else if (event.key === "ArrowRight") goTo(now + (event.shiftKey ? 1 : 0.05));
+  else if (event.key === "ArrowLeft") goTo(now - (event.shiftKey ? 1 : 0.05));
+  else return;
+  event.preventDefault();
+});
+goTo(0);

@@ -1,0 +1,43 @@
+"""Viser's server: on loopback, for nobody but the bridge, and without a way out."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from typing import Any
+
+BRIDGE_HEADER = "x-workbench-bridge"
+"""With it the bridge says that it is the bridge: any page of the user's browser could find a port on loopback."""
+
+
+def start_viser(secret: str) -> Any:
+    """Starts viser's server, which lets nobody in but who knows a secret, and opens no tunnel.
+
+    Args:
+        secret: What the bridge says.
+    """
+    import rich
+    import viser
+    from viser import _messages
+
+    rich.get_console().quiet = True  # viser prints its own address, which is not for users
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    inner: Any = server._websock_server
+
+    async def check(client: Any) -> None:
+        connection = inner._live_connections.get(client.client_id)
+        told = connection.request.headers.get(BRIDGE_HEADER, "") if connection is not None else ""
+        if not secrets.compare_digest(told, secret):
+            inner._live_connections.pop(client.client_id, None)
+            inner._client_state_from_id.pop(client.client_id, None)
+            if connection is not None:
+                await connection.close(1008, "only the workbench's bridge may connect")
+            raise asyncio.CancelledError  # which ends this connection's task, and nothing else
+
+    inner._client_connect_cb.insert(0, check)
+    # Any browser could ask for a tunnel that opens this server to the world.
+    inner.unregister_handler(_messages.ShareUrlRequest)
+    inner.unregister_handler(_messages.ShareUrlDisconnect)
+    inner.disconnect_all_clients()
+    server.scene.set_up_direction("+z")
+    return server
