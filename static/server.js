@@ -9,13 +9,14 @@ let shown = null;
 let number = 0;
 const waiting = new Map();
 
-/** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. */
-export async function call(method, path, body) {
+/** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. An AbortSignal
+ * ends the waiting. */
+export async function call(method, path, body, signal) {
   // Whatever changes something is sent as JSON with a header of ours, which no form of another site can do.
   const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
   let response;
   try {
-    response = await fetch(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body) });
+    response = await fetch(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
   } catch {
     throw Object.assign(new Error("the workbench does not answer; is it still running?"), { status: 0, told: null });
   }

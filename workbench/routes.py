@@ -252,9 +252,7 @@ def recordings(
 @router.get("/recordings/{recording}")
 def recording(request: Request, recording: Id) -> Response:
     """Tells of a recording."""
-    sessions = _sessions(request)
-    told = {**vars(sessions.recordings.summary(recording)), "session": sessions.writing().get(recording)}
-    return Response(to_json(told).encode(errors="replace"), media_type="application/json")
+    return Response(to_json(_recording(_sessions(request), recording)).encode(errors="replace"), media_type="application/json")
 
 
 @router.get("/recordings/{recording}/file")
@@ -270,9 +268,14 @@ async def download(
     if form == "sqlite":
         return FileResponse(path, media_type="application/vnd.sqlite3", filename=name)
     make: Callable[[Path], Iterator[str]] = events_csv if form == "events.csv" else states_csv
-    Recorded(path).close()  # once the answer has begun, it is too late to say that it cannot be read
+    await asyncio.to_thread(_check_readable, path)  # once the answer has begun, it is too late to say that it cannot be read
     headers = {"content-disposition": f'attachment; filename="{name}"'}
     return StreamingResponse(make(path), media_type="text/csv; charset=utf-8", headers=headers)
+
+
+def _check_readable(path: Path) -> None:
+    """Raises `RecordingError` where a file is no recording."""
+    Recorded(path).close()
 
 
 @router.get("/recordings/{recording}/curves")
@@ -315,7 +318,13 @@ def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
 @router.post("/compare")
 def compare_recordings(request: Request, body: Pair) -> Response:
     """Says where two recordings differ: parameters, the lines of the model, and the first event that is not the same."""
-    recordings = _sessions(request).recordings
-    first, second = recordings.path(body.first), recordings.path(body.second)
-    told = {"runs": [vars(recordings.summary(name)) for name in (body.first, body.second)], **compare(first, second, body.kinds)}
+    sessions = _sessions(request)
+    names = (body.first, body.second)
+    first, second = [sessions.recordings.path(name) for name in names]
+    told = {"runs": [_recording(sessions, name) for name in names], **compare(first, second, body.kinds)}
     return Response(to_json(told).encode(errors="replace"), media_type="application/json")
+
+
+def _recording(sessions: Sessions, name: str) -> dict[str, Any]:
+    """Returns what is told of a recording."""
+    return {**vars(sessions.recordings.summary(name)), "session": sessions.writing().get(name)}

@@ -41,6 +41,8 @@ class Summary:
     """Which of these are not what the model's text has as defaults."""
     ended: str | None = None
     """How it ended; None where it was broken off, or goes on."""
+    failed: str | None = None
+    """What the model raised, where it was over for that."""
     result: dict[str, Any] | None = None
     """What was measured of it, if anything was."""
     time: float = 0.0
@@ -131,6 +133,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         parameters=parameters,
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
         ended=None if ended is None else str(ended["by"]),
+        failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),
         time=seconds(recorded.ticks * facts["period_us"] if "period_us" in facts else last[-1][0] if last else 0),
         events=recorded.event_count,

@@ -1,3 +1,72 @@
-import { html } from "../vendor/preact.js";
+// The recordings: what was run, with what, what came of it; to open, run again, compare, delete, take away.
 
-export const runs = { id: "runs", title: "Runs", View: () => html`<p class="empty">Runs</p>` };
+import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
+import { Comparison } from "../compare/compare.js";
+import { Icon } from "../parts/icon.js";
+import { Chosen } from "../runs/chosen.js";
+import { deleteRuns, openRun } from "../runs/doing.js";
+import { follow, listRuns, loading, problem, runs as list, total } from "../runs/list.js";
+import { chosen, sorted, Table } from "../runs/table.js";
+import { textOf } from "../runs/words.js";
+
+/** Returns the recordings in which every word of a search stands. */
+function found(all, search) {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  if (words.length === 0) return all;
+  return all.filter((run) => {
+    const text = textOf(run);
+    return words.every((word) => text.includes(word));
+  });
+}
+
+/** Tells of a recording of which nothing was ever run, such as of a model that was only looked at. */
+function isIdle(run) {
+  return run.time === 0 && !run.ended && !run.failed && !run.session && !run.problem;
+}
+
+function Runs() {
+  const search = useSignal("");
+  const withIdle = useSignal(false);
+  useEffect(follow, []);
+  const whole = list.value ?? [];
+  const all = useMemo(() => (withIdle.value ? whole : whole.filter((run) => !isIdle(run))), [whole, withIdle.value]);
+  const idle = whole.length - all.length;
+  const shown = useMemo(() => found(all, search.value), [all, search.value]);
+  const ordered = sorted(shown);
+  const picked = ordered.filter((run) => chosen.value.has(run.id));
+
+  function press(event) {
+    if (event.target.tagName === "INPUT" && event.target.type === "search") return;
+    if (event.key === "Delete" && picked.length > 0) deleteRuns(picked);
+    else if (event.key === "Enter" && event.target.type === "checkbox" && picked.length === 1) openRun(picked[0]);
+    else return;
+    event.preventDefault();
+  }
+
+  return html`<div class="runs" onKeyDown=${press}>
+    <div class="tools">
+      <input type="search" aria-label="Search recordings" placeholder="Search: model, parameter, outcome …" value=${search.value} onInput=${(event) => (search.value = event.currentTarget.value)} />
+      <span class="quiet number" role="status">${countText(shown.length, all.length, whole.length)}</span>
+      <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listRuns}><${Icon} name="restart" /></button>
+    </div>
+    ${problem.value ? html`<p class="problem bad" role="alert">The recordings cannot be listed: ${problem.value} <button onClick=${listRuns}>Try again</button></p>` : null}
+    ${body(all, ordered, search)}
+    ${idle > 0 ? html`<p class="left-out">${idle} never begun ${idle === 1 ? "is" : "are"} left out <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
+    <${Chosen} list=${picked} />
+    <${Comparison} />
+  </div>`;
+}
+
+function body(all, ordered, search) {
+  if (list.value === null) return html`<p class="empty runs-list" role="status">${problem.value ? "" : "Reading the recordings …"}</p>`;
+  if (all.length === 0) return html`<p class="empty runs-list">No recordings yet. Press Run: each run is recorded, and listed here.</p>`;
+  if (ordered.length > 0) return html`<${Table} list=${ordered} open=${openRun} />`;
+  return html`<p class="empty runs-list">No recording has all these words. <button onClick=${() => (search.value = "")}>Show all</button></p>`;
+}
+
+function countText(shown, known, read) {
+  if (loading.value && read < total.value) return `reading ${read} of ${total.value} …`;
+  return shown === known ? `${known}` : `${shown} of ${known}`;
+}
+
+export const runs = { id: "runs", title: "Runs", View: Runs };

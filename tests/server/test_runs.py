@@ -52,6 +52,40 @@ def test_a_list_tells_the_result_and_what_is_not_the_default(desk: Desk, tmp_pat
         assert summary.time == pytest.approx(sum(1 for _, tick, _, _ in recorded.states() if tick) / 100)
 
 
+FAILING = """from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("begin")
+    def fail(goal="begin"):
+        raise ValueError("too far")
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+"""
+
+
+@pytest.mark.parametrize("source", [FAILING, "print('begun')\nraise ValueError('too far')\n"], ids=["built", "program"])
+def test_a_list_tells_what_a_model_raised(desk: Desk, tmp_path: Path, source: str) -> None:
+    talk = desk.begin(tmp_path, source, record=True, run=True, wait="failed")
+    desk.do(talk.session.stop())
+    summary = talk.sessions.recordings.list()[1][0]
+    assert summary.ended is None
+    assert "ValueError: too far" in str(summary.failed)
+
+
+def test_a_run_that_goes_another_way_before_it_failed_has_not_failed(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, FAILING, record=True, run=True, wait="failed")
+    talk.say("seek", time=0.01)
+    talk.until("paused", time=0.01)
+    talk.say("say", body="walker", word="walk", values=[1.0])
+    desk.do(talk.session.stop())
+    assert talk.sessions.recordings.list()[1][0].failed is None
+
+
 def test_a_list_has_the_newest_first_and_tells_what_cannot_be_read(tmp_path: Path) -> None:
     written(tmp_path, "m-20260102-000000-aaaa", firing(3))
     written(tmp_path, "m-20260103-000000-aaaa", firing(2))

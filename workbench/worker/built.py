@@ -60,6 +60,7 @@ class BuiltRun:
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
+        self._failed = False
         self._past = Past()
         self._simulation: Simulation
 
@@ -124,6 +125,7 @@ class BuiltRun:
                 self._conclude()
         except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
             conductor.link.post(notice_of(error))
+            self._tell_failure(told_of(error))
             conductor.end("failed", told_of(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
@@ -220,11 +222,19 @@ class BuiltRun:
         self._simulation.command(word, *values, body=body, **named)
         self._past.cut(self._simulation.ticks)
         self._drawings.cut(self._simulation.ticks)
+        if self._failed:
+            self._tell_failure(None)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
                 self._recording.fact("ended", None)
         self._conductor.goes_another_way(before)
+
+    def _tell_failure(self, text: str | None) -> None:
+        """Records what the model raised; None where the run goes another way now."""
+        self._failed = text is not None
+        if self._recording is not None:
+            self._recording.fact("failed", text)
 
     def _seek(self, tick: int) -> None:
         self._simulation.seek(seconds(tick * self.period))

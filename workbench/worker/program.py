@@ -117,6 +117,8 @@ class ProgramRun:
             if self._left:
                 return
             conductor.link.post(notice_of(error))
+            if self._recording is not None:
+                self._recording.fact("failed", told_of(error))
             self._end("failed", told_of(error))
             return
         if not self._left:

@@ -1,0 +1,82 @@
+// Two recordings side by side, over the whole page: what they began with, what came of them, where their traces part, their curves.
+
+import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { Icon } from "../parts/icon.js";
+import { call } from "../server.js";
+import { whenText } from "../runs/words.js";
+import { COLOURS, Curves } from "./curves.js";
+import { Difference } from "./difference.js";
+import { Changes, SideBySide } from "./sides.js";
+
+/** The ids of the two; null where none are compared. */
+const pair = signal(null);
+
+/** Shows two recordings beside each other. */
+export function compareRuns(first, second) {
+  pair.value = [first, second];
+}
+
+function useComparison(kinds) {
+  const told = useSignal({ answer: null, error: null, waiting: true });
+  const key = JSON.stringify([pair.value, kinds]);
+  useEffect(() => {
+    const leave = new AbortController();
+    const [first, second] = pair.value;
+    told.value = { ...told.value, waiting: true };
+    call("POST", "/api/compare", { first, second, kinds }, leave.signal)
+      .then((answer) => (told.value = { answer, error: null, waiting: false }))
+      .catch((error) => !leave.signal.aborted && (told.value = { answer: null, error: error.message, waiting: false }));
+    return () => leave.abort();
+  }, [key]);
+  return told.value;
+}
+
+function Head({ runs }) {
+  return html`<div class="compare-runs">
+    ${runs.map(
+      (run, n) => html`<span key=${n} class="compare-run" title=${run.id}>
+        <svg width="14" height="14" aria-hidden="true"><rect width="14" height="14" rx="3" fill="var(--${COLOURS[n]})" /></svg>
+        <b>${run.model}</b> <span class="number">${whenText(run.made)}</span>${run.session ? html` <b class="mark">present</b>` : null}
+      </span>`,
+    )}
+  </div>`;
+}
+
+function Contents({ answer, waiting, error, kinds }) {
+  if (error) return html`<p class="problem bad" role="alert">They cannot be compared: ${error}</p>`;
+  if (!answer) return html`<p class="empty" role="status"><progress aria-label="Comparing"></progress> Comparing …</p>`;
+  const [one, other] = answer.runs;
+  return html`<div class="compare-parts" aria-busy=${waiting}>
+    <div class="compare-facts">
+      ${one.model === other.model ? null : html`<p class="note">These are two different models: what they have in common is compared, and their traces differ from the start.</p>`}
+      <${SideBySide} runs=${answer.runs} different=${answer.parameters} />
+      <${Changes} lines=${answer.text} />
+    </div>
+    <div class="compare-course">
+      <${Difference} answer=${answer} waiting=${waiting} kinds=${kinds} />
+      <${Curves} runs=${answer.runs} />
+    </div>
+  </div>`;
+}
+
+function Dialog() {
+  const box = useRef(null);
+  const kinds = useSignal([]);
+  const told = useComparison(kinds.value);
+  useEffect(() => box.current.showModal(), []);
+
+  return html`<dialog ref=${box} class="compare" aria-labelledby="compare-title" onClose=${() => (pair.value = null)}>
+    <header>
+      <h2 id="compare-title">Two runs</h2>
+      ${told.answer ? html`<${Head} runs=${told.answer.runs} />` : html`<span class="stretch"></span>`}
+      <button class="bare" title="Change sides" onClick=${() => (pair.value = pair.value.toReversed())}>Change sides</button>
+      <button class="bare" aria-label="Close" title="Close (Esc)" onClick=${() => box.current.close()}><${Icon} name="close" /></button>
+    </header>
+    <${Contents} ...${told} kinds=${kinds} />
+  </dialog>`;
+}
+
+/** The place of the comparison. */
+export function Comparison() {
+  return pair.value ? html`<${Dialog} />` : null;
+}

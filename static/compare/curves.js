@@ -1,0 +1,118 @@
+// The curves of two runs, one over the other, aligned in time.
+
+import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
+import { Plot } from "../parts/plot.js";
+import { call } from "../server.js";
+import { nameOf, whenText } from "../runs/words.js";
+
+/** The colours of the two, in plots and heads. */
+export const COLOURS = ["series-1", "series-2"];
+const MOST = 2000; // moments a curve
+const AT_FIRST = 3; // so many curves are shown before the user has chosen any
+const SIDES = ["first", "second"];
+const DASHES = [null, [6, 3]];
+
+function query(names) {
+  return names.map((name) => `name=${encodeURIComponent(name)}`).join("&");
+}
+
+async function read(run, names) {
+  return call("GET", `/api/recordings/${run.id}/curves?most=${MOST}&${query(names)}`);
+}
+
+/** Returns which curves to begin with: how fast it goes, how much room it has, and the joint that moves most. */
+async function first(runs, known) {
+  const joints = known.filter(({ group }) => group === "joint").map(({ name }) => name);
+  const told = await call("GET", `/api/recordings/${runs[0].id}/curves?most=100&${query(joints.slice(0, 100))}`);
+  const reach = (name) => Math.max(...told.curves[name]) - Math.min(...told.curves[name]);
+  const moving = joints.filter((name) => name in told.curves).sort((one, other) => reach(other) - reach(one))[0];
+  const of = (wanted) => known.find(({ group }) => group === wanted)?.name;
+  return [moving, of("speed"), of("clearance")].filter(Boolean).slice(0, AT_FIRST);
+}
+
+/** Knows which curves there are, which are chosen, and both runs' values of these. */
+function useCurves(runs) {
+  const known = useSignal(null); // [{name, unit, group}] of either
+  const chosen = useSignal([]);
+  const told = useSignal({}); // by run and name: {times, values}
+  const error = useSignal(null);
+  const key = runs.map(({ id }) => id).join();
+
+  useEffect(() => {
+    let over = false;
+    known.value = null;
+    async function begin() {
+      const both = await Promise.all(runs.map((run) => call("GET", `/api/recordings/${run.id}/curves?most=2&name=-`)));
+      const all = new Map(both.flatMap(({ names }) => names).map((curve) => [curve.name, curve]));
+      const names = [...all.values()];
+      const shown = names.length > 0 ? await first(runs, names) : [];
+      if (!over) [known.value, chosen.value, error.value] = [names, shown, null];
+    }
+    begin().catch((reason) => !over && (error.value = reason.message));
+    return () => (over = true);
+  }, [key]);
+
+  useEffect(() => {
+    let over = false;
+    async function complete(run) {
+      const missing = chosen.value.filter((name) => !told.value[`${run.id} ${name}`]);
+      if (missing.length === 0) return;
+      const { times, curves } = await read(run, missing);
+      if (over) return;
+      const more = missing.map((name) => [`${run.id} ${name}`, { times, values: curves[name] ?? [] }]);
+      told.value = { ...told.value, ...Object.fromEntries(more) };
+    }
+    Promise.all(runs.map(complete)).catch((reason) => !over && (error.value = reason.message));
+    return () => (over = true);
+  }, [key, chosen.value]);
+
+  return { known: known.value, chosen, told: told.value, error: error.value };
+}
+
+function Choice({ known, chosen }) {
+  const groups = [...Map.groupBy(known, ({ group }) => group)];
+  const toggle = (name) => (chosen.value = chosen.value.includes(name) ? chosen.value.filter((each) => each !== name) : [...chosen.value, name]);
+  const add = (event) => {
+    const name = event.currentTarget.value;
+    event.currentTarget.value = "";
+    if (name && !chosen.value.includes(name)) toggle(name);
+  };
+  return html`<select aria-label="Add a curve" value="" onChange=${add}>
+      <option value="">Add a curve …</option>
+      ${groups.map(([group, list]) => html`<optgroup key=${group} label=${group}>
+        ${list.map(({ name }) => html`<option key=${name} value=${name} disabled=${chosen.value.includes(name)}>${name}</option>`)}
+      </optgroup>`)}
+    </select>
+    <span class="picked">
+      ${chosen.value.map((name) => html`<button key=${name} aria-label="Remove ${name}" title="Remove" onClick=${() => toggle(name)}>${name} <span aria-hidden="true">✕</span></button>`)}
+    </span>`;
+}
+
+function Overlaid({ curve, runs, told, cursor, span }) {
+  const both = runs.map((run) => told[`${run.id} ${curve.name}`]);
+  const series = useMemo(
+    () =>
+      both.flatMap((of, n) =>
+        of?.values.some((value) => value !== null) ? [{ name: `${SIDES[n]} ${whenText(runs[n].made)}`, unit: curve.unit, times: of.times, values: of.values, colour: COLOURS[n], dash: DASHES[n] }] : [],
+      ),
+    [...both],
+  );
+  if (both.some((of) => !of)) return html`<p class="waiting quiet" role="status"><progress aria-label="Reading"></progress> ${curve.name} …</p>`;
+  if (series.length === 0) return html`<p class="waiting quiet">Neither run has values of ${curve.name}.</p>`;
+  return html`<${Plot} title=${curve.name} series=${series} span=${span} cursor=${cursor} height=${130} source="of ${runs.map(nameOf).join(" and ")}" />`;
+}
+
+/** @param runs Both, as the server tells of them. */
+export function Curves({ runs }) {
+  const { known, chosen, told, error } = useCurves(runs);
+  const cursor = useSignal(null);
+  const span = { from: 0, to: Math.max(0.01, ...runs.map(({ time }) => time)) };
+  return html`<section class="overlaid" aria-label="Curves">
+    <header><h3>Curves</h3>${known?.length ? html`<${Choice} known=${known} chosen=${chosen} />` : null}</header>
+    ${error ? html`<p class="problem bad" role="alert">The curves cannot be read: ${error}</p>` : null}
+    ${!known && !error ? html`<p class="waiting quiet" role="status"><progress aria-label="Reading"></progress> Reading the curves …</p>` : null}
+    ${known?.length === 0 ? html`<p class="empty">Neither run has a body in a world, or they were recorded before curves were kept.</p>` : null}
+    ${known && known.length > 0 && chosen.value.length === 0 ? html`<p class="empty">Add a curve to see both runs over one another.</p>` : null}
+    ${(known ?? []).length > 0 ? chosen.value.map((name) => html`<${Overlaid} key=${name} curve=${known.find((curve) => curve.name === name)} runs=${runs} told=${told} cursor=${cursor} span=${span} />`) : null}
+  </section>`;
+}

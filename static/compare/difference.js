@@ -1,0 +1,71 @@
+// Where the traces of two runs part: the first event that is not the same, with what comes before and after it.
+
+import { html } from "../vendor/preact.js";
+import { chunkText, valueText } from "../parts/chunk.js";
+
+const KINDS = [
+  ["all events", []],
+  ["firings", ["fire"]],
+  ["firings and requests", ["fire", "request"]],
+  ["what the body is told", ["request", "move", "moved", "answer"]],
+  ["what the eye sees", ["search", "sight"]],
+  ["output", ["output"]],
+];
+
+function Cells({ event, none }) {
+  if (!event) return html`<td colspan="4" class="empty">${none}</td>`;
+  const [time, source, kind, data] = event;
+  return html`
+    <td class="number">${(time / 1e6).toFixed(3)}</td><td class="mono" title=${source}>${source}</td><td>${kind}</td>
+    <td class="mono particulars" title=${chunkText(data)}>${chunkText(data)}</td>
+  `;
+}
+
+function headline({ same_events: same, whole, difference }) {
+  const count = same.toLocaleString("en");
+  if (!difference) return whole ? `The traces are the same: ${count} events.` : `The first ${count} events are the same; no more are compared.`;
+  const [one, other] = difference.events;
+  if (!one || !other) return `The first ${count} events are the same; then the ${one ? "second" : "first"} run has no more.`;
+  if (same === 0) return `The traces differ from the first event on, at ${difference.time.toFixed(3)} s.`;
+  return `The first ${count} events are the same; the traces part at ${difference.time.toFixed(3)} s.`;
+}
+
+function What({ what }) {
+  if (what.length === 0) return null;
+  return html`<ul class="what" aria-label="What differs">
+    ${what.map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono"><span class="dot first"></span>${valueText(one)}</span> <span class="mono"><span class="dot second"></span>${valueText(other)}</span></li>`)}
+  </ul>`;
+}
+
+function Rows({ difference }) {
+  const { before, events, after } = difference;
+  const rest = Array.from({ length: Math.max(after[0].length, after[1].length) }, (_, n) => [after[0][n], after[1][n]]);
+  const over = "no more events";
+  return html`<div class="parting"><table aria-label="Events around the first difference">
+    <thead><tr>${["first", "second"].map((side) => html`<th class="number" scope="col"><span class="dot ${side}"></span>time</th><th scope="col">source</th><th scope="col">kind</th><th scope="col">data</th>`)}</tr></thead>
+    <tbody>
+      ${before.map((event, n) => html`<tr key="b${n}" class="same"><${Cells} event=${event} /><${Cells} event=${event} /></tr>`)}
+      <tr class="here"><${Cells} event=${events[0]} none=${over} /><${Cells} event=${events[1]} none=${over} /></tr>
+      ${rest.map(([one, other], n) => html`<tr key="a${n}"><${Cells} event=${one} none="" /><${Cells} event=${other} none="" /></tr>`)}
+    </tbody>
+  </table></div>`;
+}
+
+/**
+ * @param answer What `POST /api/compare` tells.
+ * @param kinds A signal with the kinds of events that are compared; none for all.
+ */
+export function Difference({ answer, waiting, kinds }) {
+  const { difference } = answer;
+  const chosen = Math.max(0, KINDS.findIndex(([, list]) => list.join() === kinds.value.join()));
+  return html`<section class="difference" aria-label="First difference">
+    <header>
+      <h3>Traces</h3>
+      <select aria-label="Which events are compared" value=${String(chosen)} onChange=${(event) => (kinds.value = KINDS[event.currentTarget.value][1])}>
+        ${KINDS.map(([text], n) => html`<option key=${n} value=${String(n)}>${text}</option>`)}
+      </select>
+      <p role="status" class="headline">${waiting ? html`<progress aria-label="Comparing"></progress> ` : null}${headline(answer)}</p>
+    </header>
+    ${difference ? html`<${What} what=${difference.what} /><${Rows} difference=${difference} />` : null}
+  </section>`;
+}

@@ -1,0 +1,71 @@
+// What two runs began with and what came of them, in two columns; and how the texts of their models differ.
+
+import { html } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { remembered } from "../remembered.js";
+import { endedText, labelOf, measureText, sizeText, whenText } from "../runs/words.js";
+
+const onlyOthers = remembered("compare only differences", false);
+
+function namesOf(runs, part) {
+  return [...new Set(runs.flatMap((run) => Object.keys(run[part] ?? {})))];
+}
+
+/** Returns the rows of a part of both: [name, one, other, whether they differ]. */
+function rowsOf(runs, part, word, label = (name) => name) {
+  return namesOf(runs, part).map((name) => {
+    const values = runs.map((run) => (name in (run[part] ?? {}) ? run[part][name] : undefined));
+    const [one, other] = values.map((value) => (value === undefined ? "–" : word(name, value)));
+    return [label(name), one, other, JSON.stringify(values[0]) !== JSON.stringify(values[1])];
+  });
+}
+
+function Part({ title, rows, none }) {
+  const shown = onlyOthers.value ? rows.filter(([, , , differs]) => differs) : rows;
+  return html`<tbody>
+    <tr class="part"><th colspan="3" scope="rowgroup">${title}</th></tr>
+    ${shown.length === 0 ? html`<tr><td colspan="3" class="empty">${rows.length === 0 ? none : "no difference"}</td></tr>` : null}
+    ${shown.map(
+      ([name, one, other, differs]) => html`<tr key=${name} class=${differs ? "other" : ""}>
+        <th scope="row">${differs ? html`<span class="unlike" title="They differ" aria-label="differs">≠</span>` : null}${name}</th>
+        <td class="number">${one}</td><td class="number">${other}</td>
+      </tr>`,
+    )}
+  </tbody>`;
+}
+
+/** @param runs Both, as the server tells of them. */
+export function SideBySide({ runs }) {
+  const [one, other] = runs;
+  const line = (name, of) => [name, of(one), of(other), of(one) !== of(other)];
+  const own = [
+    line("model", (run) => run.model),
+    line("seed", (run) => String(run.seed)),
+    line("began", (run) => whenText(run.made)),
+    line("end", endedText),
+    line("simulated time", (run) => `${run.time.toFixed(2)} s`),
+    line("events", (run) => run.events.toLocaleString("en")),
+    line("size", (run) => sizeText(run.size)),
+  ];
+  return html`<table class="sides" aria-label="Side by side">
+    <thead><tr>
+      <th scope="col"><label><input type="checkbox" checked=${onlyOthers.value} onChange=${(event) => (onlyOthers.value = event.currentTarget.checked)} /> differences only</label></th>
+      <th scope="col" class="number"><span class="dot first"></span>first</th><th scope="col" class="number"><span class="dot second"></span>second</th>
+    </tr></thead>
+    <${Part} title="Parameters" rows=${rowsOf(runs, "parameters", (_, value) => valueText(value))} none="neither has parameters" />
+    <${Part} title="Results" rows=${rowsOf(runs, "result", measureText, labelOf)} none="nothing was measured of either" />
+    <${Part} title="Runs" rows=${own} />
+  </table>`;
+}
+
+const KINDS = { "-": "gone", "+": "come", "@": "place" };
+
+/** @param lines What differs between the texts of the models, as `diff -u` has it. */
+export function Changes({ lines }) {
+  if (lines.length === 0) return null;
+  const shown = lines.filter((line) => !line.startsWith("---") && !line.startsWith("+++"));
+  return html`<section class="changes" aria-label="What differs in the model's text">
+    <h3>The model's text differs</h3>
+    <pre>${shown.map((line, n) => html`<span key=${n} class=${KINDS[line[0]] ?? ""}>${line}\n</span>`)}</pre>
+  </section>`;
+}

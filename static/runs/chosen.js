@@ -1,0 +1,113 @@
+// What is chosen in the list, and what can be done with it.
+
+import { html, useEffect, useSignal } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { Icon } from "../parts/icon.js";
+import { compareRuns } from "../compare/compare.js";
+import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./doing.js";
+import { present } from "./list.js";
+import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./words.js";
+
+const FORMS = [
+  ["sqlite", "SQLite", "The recording as it is"],
+  ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
+  ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
+  ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick"],
+];
+
+function Downloads({ run }) {
+  const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => form !== "replay.html" || run.kind === "simulation");
+  return html`<span class="downloads">
+    <${Icon} name="download" />
+    ${forms.map(([form, text, title]) => html`<a key=${form} href="/api/recordings/${run.id}/file?form=${form}" download title=${title}>${text}</a>`)}
+  </span>`;
+}
+
+function Replayed({ run }) {
+  const told = replays.value[run.id];
+  const passed = useSignal(0);
+  const since = told?.since;
+  useEffect(() => {
+    if (!since) return undefined;
+    passed.value = 0;
+    const clock = setInterval(() => (passed.value = (Date.now() - since) / 1000), 200);
+    return () => clearInterval(clock);
+  }, [since]);
+  if (!told) return null;
+  if (since) {
+    return html`<div class="replayed" role="status">
+      <progress aria-label="Running again"></progress> running again … <span class="number">${passed.value.toFixed(0)} s</span>
+      <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
+    </div>`;
+  }
+  const head = told.agrees === true ? "Every byte agrees." : told.agrees === false ? "It differs." : "It cannot tell.";
+  const text = told.text.replace(/^(every byte agrees|differs): /, "");
+  return html`<div class="replayed" role="status"><b class=${told.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
+}
+
+function Facts({ run }) {
+  const rows = [
+    ["began", whenInFull(run.made)],
+    ["end", endedText(run)],
+    ["seed", String(run.seed)],
+    ["events", run.events.toLocaleString("en")],
+    ["file", run.id],
+  ];
+  return html`<div class="facts">
+    <table aria-label="Result"><tbody>
+      ${Object.entries(run.result ?? {}).map(([name, value]) => html`<tr key=${name}><th scope="row">${labelOf(name)}</th><td class="number">${measureText(name, value)}</td></tr>`)}
+      ${rows.map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}
+    </tbody></table>
+    <table aria-label="Parameters"><tbody>
+      ${Object.keys(run.parameters).length === 0 ? html`<tr><td class="empty">no parameters</td></tr>` : null}
+      ${Object.entries(run.parameters).map(([name, value]) => {
+        const other = run.different.includes(name);
+        return html`<tr key=${name} class=${other ? "other" : ""}><th scope="row" title=${other ? "Not the default" : ""}>${name}</th><td class="mono">${valueText(value)}</td></tr>`;
+      })}
+    </tbody></table>
+  </div>`;
+}
+
+function One({ run }) {
+  const idle = busy.value !== null || Boolean(run.problem);
+  const own = run.id === present.value;
+  const noCompare = own ? "It is the present run" : present.value ? "Beside the present run" : "The present run is not recorded";
+  return html`
+    <div class="actions" role="toolbar" aria-label="The chosen run">
+      <button class="primary" disabled=${idle} title="Live through it again (double-click)" onClick=${() => openRun(run)}>Open</button>
+      <button disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay</button>
+      <button disabled=${idle || own || !present.value} title=${noCompare} onClick=${() => compareRuns(run.id, present.value)}>Compare with the present run</button>
+      <span class="stretch"></span>
+      <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>
+    </div>
+    <${Downloads} run=${run} />
+    <${Replayed} run=${run} key=${run.id} />
+    ${run.problem ? html`<p class="problem bad">This recording cannot be opened: ${run.problem}</p>` : html`<${Facts} run=${run} />`}
+  `;
+}
+
+function Many({ list }) {
+  const two = list.length === 2 && !list.some(({ problem }) => problem);
+  return html`
+    <div class="actions" role="toolbar" aria-label="The chosen runs">
+      <b>${list.length} chosen</b>
+      <button class=${two ? "primary" : ""} disabled=${!two} title=${two ? "" : "Choose two that can be read"} onClick=${() => compareRuns(list[0].id, list[1].id)}>Compare</button>
+      <span class="stretch"></span>
+      <button class="danger" disabled=${busy.value !== null} onClick=${() => deleteRuns(list)}><${Icon} name="trash" />Delete ${list.length}</button>
+    </div>
+    <ul class="many">${list.slice(0, 30).map((run) => html`<li key=${run.id}><span class="mono">${run.id}</span> ${outcomeText(run)}</li>`)}
+      ${list.length > 30 ? html`<li class="quiet">and ${list.length - 30} more</li>` : null}
+    </ul>
+  `;
+}
+
+/** @param list The chosen recordings, in the order of the list. */
+export function Chosen({ list }) {
+  const doing = busy.value;
+  return html`<section class="runs-chosen" aria-label="Chosen">
+    ${doing ? html`<div class="replayed" role="status"><progress value=${doing.done} max=${doing.of} aria-label=${doing.text}></progress> ${doing.text}${doing.of ? ` ${doing.done} of ${doing.of}` : ""}</div>` : null}
+    ${list.length === 0 ? html`<p class="empty">Choose a run to open, replay or download it; two to compare them.</p>` : null}
+    ${list.length === 1 ? html`<${One} run=${list[0]} />` : null}
+    ${list.length > 1 ? html`<${Many} list=${list} />` : null}
+  </section>`;
+}

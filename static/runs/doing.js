@@ -1,0 +1,88 @@
+// What can be done with recordings: open, run again, delete. What goes on and what came of it is known here.
+
+import { signal } from "../vendor/preact.js";
+import { confirmed } from "../parts/dialog.js";
+import { call, show } from "../server.js";
+import { complain, session } from "../store.js";
+import { forgetRun, listRuns } from "./list.js";
+import { chosen } from "./table.js";
+import { whenText } from "./words.js";
+
+/** By their ids, what came of running recordings again: {since} while that goes on, then {agrees, text}. */
+export const replays = signal({});
+/** What is being done and takes a while; null for nothing: {text, done?, of?}. */
+export const busy = signal(null);
+
+const cancels = new Map();
+
+/** Begins a session that lives through a recording again, and shows it; one that was only looked at is ended. */
+export async function openRun(run) {
+  if (busy.value || run.problem) return;
+  busy.value = { text: "Opening …" };
+  try {
+    await leaveUnwatched();
+    const { id } = await call("POST", `/api/recordings/${run.id}/open`, {});
+    relived.add(id);
+    show(id);
+  } catch (error) {
+    complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
+  }
+  busy.value = null;
+}
+
+const relived = new Set();
+
+/** Ends the sessions that this page began to look at recordings, and that nobody looks at any more. */
+async function leaveUnwatched() {
+  const { sessions } = await call("GET", "/api/sessions");
+  const left = sessions.filter(({ id, watching }) => relived.has(id) && id !== session.value?.id && watching.length === 0);
+  for (const { id } of left) {
+    relived.delete(id);
+    await call("POST", `/api/sessions/${id}/close`, {}).catch(() => null); // another page may have closed it
+  }
+}
+
+function note(id, told) {
+  replays.value = { ...replays.value, [id]: told };
+}
+
+/** Runs a recording again in a process of its own; what comes of it stands in `replays`. */
+export async function replayRun(run) {
+  const cancel = new AbortController();
+  cancels.set(run.id, cancel);
+  note(run.id, { since: Date.now() });
+  try {
+    note(run.id, await call("POST", `/api/recordings/${run.id}/replay`, {}, cancel.signal));
+  } catch (error) {
+    note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
+  }
+  cancels.delete(run.id);
+}
+
+export function cancelReplay(id) {
+  cancels.get(id)?.abort();
+}
+
+/** Deletes recordings, after asking; but for those that a run is still writing. */
+export async function deleteRuns(all) {
+  const list = all.filter((run) => !run.session);
+  if (list.length < all.length) complain("The present run is still writing its recording. Restart it or show another model to delete that.");
+  if (list.length === 0) return;
+  const one = list.length === 1 ? `the recording of ${list[0].model || list[0].id}, ${whenText(list[0].made)}` : `${list.length} recordings`;
+  if (!(await confirmed(`Delete ${one}?`, "It cannot be undone: recordings do not go to the trash folder.", "Delete"))) return;
+  const refused = [];
+  for (const [n, run] of list.entries()) {
+    busy.value = { text: "Deleting", done: n, of: list.length };
+    try {
+      await call("POST", `/api/recordings/${run.id}/delete`, {});
+      forgetRun(run.id);
+    } catch (error) {
+      if (error.status === 404) forgetRun(run.id);
+      else refused.push(`${run.model}: ${error.message}`);
+    }
+  }
+  busy.value = null;
+  chosen.value = new Set();
+  if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
+  await listRuns();
+}

@@ -1,0 +1,138 @@
+// The table of recordings: only the rows that are seen are drawn, so that thousands cost no more than a few.
+
+import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
+import { remembered } from "../remembered.js";
+import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./words.js";
+
+const ROW = 44; // [px]; style.css has the same
+const AROUND = 6; // so many rows are drawn beyond what is seen
+
+/** What one can sort by: where its head stands, and what is compared. */
+const KEYS = {
+  made: { column: "when", text: "Began", of: (run) => run.made },
+  model: { column: "model", text: "Model", of: (run) => run.model },
+  seed: { column: "model", text: "Seed", of: (run) => run.seed ?? -1 },
+  outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(run.result?.peak_angle_deg ?? 0).toFixed(2).padStart(9, "0")}` },
+  ended: { column: "outcome", text: "End", of: endedText },
+  time: { column: "time", text: "Time", of: (run) => run.time },
+  size: { column: "time", text: "Size", of: (run) => run.size },
+};
+const COLUMNS = [...new Set(Object.values(KEYS).map(({ column }) => column))];
+
+const order = remembered("runs sorted", { by: "made", down: true });
+/** The ids of the chosen recordings. */
+export const chosen = signal(new Set());
+
+/** Returns recordings in the order that the user wants. */
+export function sorted(list) {
+  const { of } = KEYS[order.value.by] ?? KEYS.made;
+  const sign = order.value.down ? -1 : 1;
+  return list.toSorted((one, other) => {
+    const [a, b] = [of(one), of(other)];
+    return sign * (a < b ? -1 : a > b ? 1 : 0) || other.made - one.made;
+  });
+}
+
+function sortBy(key) {
+  const { by, down } = order.value;
+  order.value = { by: key, down: by === key ? !down : ["made", "time", "size"].includes(key) };
+}
+
+function Head({ column }) {
+  const keys = Object.entries(KEYS).filter(([, key]) => key.column === column);
+  const { by, down } = order.value;
+  const here = keys.some(([key]) => key === by);
+  return html`<th scope="col" class=${column} aria-sort=${here ? (down ? "descending" : "ascending") : "none"}>
+    ${keys.map(
+      ([key, { text }]) => html`<button class="bare" key=${key} aria-label="Sort by ${text.toLowerCase()}" onClick=${() => sortBy(key)}>
+        ${text}<span class="arrow" aria-hidden="true">${key === by ? (down ? "▾" : "▴") : ""}</span>
+      </button>`,
+    )}
+  </th>`;
+}
+
+function Row({ run, number, now, toggle, open }) {
+  const isChosen = chosen.value.has(run.id);
+  const different = differentText(run);
+  return html`<tr
+    class="${isChosen ? "chosen" : ""} ${run.session ? "present" : ""}"
+    aria-selected=${isChosen}
+    aria-rowindex=${number + 2}
+    data-run=${run.id}
+    onClick=${(event) => toggle(run.id, event)}
+    onDblClick=${() => open(run)}
+  >
+    <td class="pick">
+      <input type="checkbox" checked=${isChosen} aria-label="Choose ${run.model || run.id} of ${whenText(run.made)}" onClick=${(event) => { event.stopPropagation(); toggle(run.id, event, true); }} />
+    </td>
+    <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
+    <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
+      <span>${run.model || run.id}${run.session ? html` <b class="mark">present</b>` : null}</span>
+      <small>${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+    </td>
+    <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
+      <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>
+    </td>
+    <td class="time number"><span>${run.problem ? "" : `${run.time.toFixed(2)} s`}</span><small>${sizeText(run.size)}</small></td>
+  </tr>`;
+}
+
+/**
+ * @param list The recordings in their order.
+ * @param open Called with a recording that is to be opened.
+ */
+export function Table({ list, open }) {
+  const box = useRef(null);
+  const seen = useSignal({ top: 0, height: 600 });
+  const now = useSignal(Date.now() / 1000);
+  const last = useRef(null);
+
+  useLayoutEffect(() => {
+    const place = box.current;
+    const look = () => (seen.value = { top: place.scrollTop, height: place.clientHeight });
+    const watch = new ResizeObserver(look);
+    watch.observe(place);
+    place.addEventListener("scroll", look, { passive: true });
+    const clock = setInterval(() => (now.value = Date.now() / 1000), 20_000);
+    return () => {
+      watch.disconnect();
+      clearInterval(clock);
+    };
+  }, []);
+
+  const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.value.top / ROW) - AROUND));
+  const beyond = Math.min(list.length, first + Math.ceil(seen.value.height / ROW) + 2 * AROUND);
+
+  /** Chooses a row alone; with Ctrl, or its box, besides the others; with Shift all up to it. */
+  function toggle(id, event, besides = event.ctrlKey || event.metaKey) {
+    const ids = list.map((run) => run.id);
+    const from = ids.indexOf(last.current);
+    const next = new Set(besides || event.shiftKey ? chosen.value : []);
+    if (event.shiftKey && from >= 0) {
+      const [a, b] = [from, ids.indexOf(id)].sort((one, other) => one - other);
+      for (const each of ids.slice(a, b + 1)) next.add(each);
+    } else if (besides && next.has(id)) next.delete(id);
+    else next.add(id);
+    last.current = id;
+    chosen.value = next;
+  }
+
+  const all = list.length > 0 && list.every((run) => chosen.value.has(run.id));
+  const chooseAll = () => (chosen.value = new Set(all ? [] : list.map((run) => run.id)));
+
+  return html`<div class="runs-list" ref=${box} tabindex="-1">
+    <table class="runs-table" aria-label="Recordings" aria-multiselectable="true" aria-rowcount=${list.length + 1}>
+      <thead>
+        <tr aria-rowindex="1">
+          <th class="pick"><input type="checkbox" aria-label="Choose all that are listed" checked=${all} onClick=${chooseAll} /></th>
+          ${COLUMNS.map((column) => html`<${Head} key=${column} column=${column} />`)}
+        </tr>
+      </thead>
+      <tbody>
+        <tr class="space" aria-hidden="true" style=${{ height: `${first * ROW}px` }}></tr>
+        ${list.slice(first, beyond).map((run, n) => html`<${Row} key=${run.id} run=${run} number=${first + n} now=${now.value} toggle=${toggle} open=${open} />`)}
+        <tr class="space" aria-hidden="true" style=${{ height: `${(list.length - beyond) * ROW}px` }}></tr>
+      </tbody>
+    </table>
+  </div>`;
+}

@@ -1,0 +1,98 @@
+// Recordings in words: when, what was chosen, what came of them.
+
+import { valueText } from "../parts/chunk.js";
+
+const ENDED = {
+  stop: "a mind said stop",
+  done: "no mind had anything left to do",
+  end: "the program was over",
+  exit: "the program ended itself",
+  time: "its time was over",
+};
+
+const DAY = new Intl.DateTimeFormat(undefined, { day: "numeric", month: "short" });
+const DATE = new Intl.DateTimeFormat(undefined, { day: "numeric", month: "short", year: "numeric" });
+const CLOCK = new Intl.DateTimeFormat(undefined, { hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23" });
+const FULL = new Intl.DateTimeFormat(undefined, { dateStyle: "full", timeStyle: "medium" });
+const AGO = new Intl.RelativeTimeFormat("en", { numeric: "auto", style: "short" });
+const UNITS = [["year", 31_536_000], ["month", 2_592_000], ["day", 86_400], ["hour", 3600], ["minute", 60]];
+
+/** Says when a run began: the time of today, day and time of this year, or the date. */
+export function whenText(made) {
+  const then = new Date(1000 * made);
+  const today = then.toDateString() === new Date().toDateString();
+  if (then.getFullYear() !== new Date().getFullYear()) return DATE.format(then);
+  return today ? CLOCK.format(then) : `${DAY.format(then)} ${CLOCK.format(then).slice(0, 5)}`;
+}
+
+export function whenInFull(made) {
+  return FULL.format(new Date(1000 * made));
+}
+
+/** Names a recording: its model, and when it began. */
+export function nameOf(run) {
+  return `${run.model || run.id} ${whenText(run.made)}`;
+}
+
+/** Says how long ago something was. */
+export function agoText(made, now = Date.now() / 1000) {
+  const passed = now - made;
+  const [unit, length] = UNITS.find(([, seconds]) => passed >= seconds) ?? [];
+  return unit ? AGO.format(-Math.floor(passed / length), unit) : "just now";
+}
+
+export function sizeText(bytes) {
+  if (bytes < 1000) return `${bytes} B`;
+  if (bytes < 1e6) return `${(bytes / 1e3).toFixed(0)} kB`;
+  return bytes < 1e9 ? `${(bytes / 1e6).toFixed(1)} MB` : `${(bytes / 1e9).toFixed(1)} GB`;
+}
+
+/** Says the parameters that are not the defaults in one line. */
+export function differentText(run) {
+  return run.different.map((name) => `${name} ${valueText(run.parameters[name])}`).join(", ");
+}
+
+/** Says what came of a run in a few words. */
+export function outcomeText(run) {
+  if (run.problem) return "unreadable";
+  if (run.failed) return "failed";
+  if (run.result?.outcome) return String(run.result.outcome);
+  const first = Object.entries(run.result ?? {})[0];
+  if (first) return `${labelOf(first[0])} ${measureText(...first)}`;
+  if (run.ended) return "ended";
+  return run.session ? "present run" : "not finished";
+}
+
+/** Says the most telling number of a result. */
+export function resultText(run) {
+  const angle = run.result?.peak_angle_deg;
+  if (typeof angle === "number") return `${angle.toFixed(1)}°`;
+  return "";
+}
+
+/** Says how a run ended. */
+export function endedText(run) {
+  if (run.problem || run.failed) return run.problem ?? run.failed;
+  if (run.ended) return ENDED[run.ended] ?? run.ended;
+  return run.session ? "goes on, or waits" : "left before its end";
+}
+
+const UNIT_ENDS = [["_deg", "°"], ["_m_s", " m/s"], ["_m", " m"], ["_n", " N"], ["_s", " s"]];
+
+/** Says a name of the model without its unit: `peak_angle_deg` is `peak angle`. */
+export function labelOf(name) {
+  const unit = UNIT_ENDS.find(([end]) => name.endsWith(end));
+  return (unit ? name.slice(0, -unit[0].length) : name).replaceAll("_", " ");
+}
+
+/** Says a measured value with the unit that its name ends with. */
+export function measureText(name, value) {
+  if (typeof value !== "number") return value === null || value === undefined ? "–" : valueText(value);
+  return `${valueText(value)}${UNIT_ENDS.find(([end]) => name.endsWith(end))?.[1] ?? ""}`;
+}
+
+/** Returns all that a search looks at. */
+export function textOf(run) {
+  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), whenText(run.made)];
+  return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();
+}

@@ -1,0 +1,181 @@
+"""Recordings in a real browser: listed, opened, run again, compared, taken away, deleted."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from actr3d.recording import Recording
+from tests.browser.looking import PATIENCE, open_tab
+from tests.server.serving import Served
+
+
+def recorded(workbench: Served, model: str, **settings: Any) -> str:
+    """Runs a model to its end; returns its recording."""
+    session = workbench.post("/api/sessions", {"model": model, "seed": 1, "settings": settings, "run": True}).json()["id"]
+    end = time.monotonic() + 60
+    told: dict[str, Any] = {"state": None}
+    while told["state"] is None or told["state"]["status"] != "ended":
+        assert time.monotonic() < end, told
+        time.sleep(0.05)
+        told = workbench.get(f"/api/sessions/{session}").json()
+    workbench.post(f"/api/sessions/{session}/close")
+    return told["session"]["recording"]
+
+
+@pytest.fixture(scope="module")
+def recordings(workbench: Served) -> Iterator[Path]:
+    """The folder of recordings, empty before and after."""
+    folder = workbench.folder / ".workbench" / "recordings"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    yield folder
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(scope="module")
+def two(workbench: Served, recordings: Path) -> list[str]:
+    return [recorded(workbench, "doorway.py", width=width) for width in (0.5, 0.9)]
+
+
+def row(page: Page, name: str) -> Locator:
+    return page.locator(f"tr[data-run='{name}']")
+
+
+def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Page, recordings: Path, two: list[str]) -> None:
+    (recordings / "torn-20250101-101010-aaaa.sqlite").write_bytes(b"<img src=x onerror=alert(1)>" * 100)
+    with Recording(recordings / "old-20250102-101010-aaaa.sqlite", {"kind": "program", "form": "actr3d recording 1"}):
+        pass
+    open_tab(page, "Runs")
+    narrow, wide = row(page, two[0]), row(page, two[1])
+    expect(wide).to_contain_text(re.compile(r"doorway\.py.*width 0\.9 · seed 1.*ended.*a mind said stop.*6\.85 s.*1\.\d MB", re.DOTALL))
+    expect(narrow).not_to_contain_text("width")  # it is the default
+    expect(page.locator("tr.present")).to_have_count(1)
+    expect(row(page, "old-20250102-101010-aaaa")).to_contain_text("unreadable")
+    row(page, "torn-20250101-101010-aaaa").click()
+    expect(page.get_by_text("This recording cannot be opened: no recording: file is not a database")).to_be_visible()
+    expect(page.get_by_role("button", name="Open")).to_be_disabled()
+
+    page.get_by_role("button", name="Sort by time").click()
+    expect(page.get_by_role("columnheader").filter(has_text="Time")).to_have_attribute("aria-sort", "descending")
+    names = page.locator("tr[data-run]").evaluate_all("rows => rows.map(row => row.dataset.run)")
+    assert names[:2] == two[::-1]
+    page.get_by_role("button", name="Sort by time").click()
+    expect(page.locator("tr[data-run]").last).to_have_attribute("data-run", two[1])
+    page.get_by_label("Search recordings").fill("Doorway 0.9")
+    expect(page.locator("tr[data-run]")).to_have_count(1)
+    page.get_by_label("Search recordings").fill("nothing like this")
+    page.get_by_role("button", name="Show all").click()
+    expect(wide).to_be_visible()
+
+    present = page.locator("tr.present")
+    expect(present).to_contain_text("present run")
+    page.click("#run")
+    expect(present).to_contain_text("6.80 s", timeout=PATIENCE)
+    expect(present).to_contain_text("a mind said stop")
+
+
+def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, workbench: Served, recordings: Path, two: list[str]) -> None:
+    spare = [recorded(workbench, "counting.py") for _ in range(2)]
+    open_tab(page, "Runs")
+    row(page, two[1]).click()
+    page.get_by_role("button", name="Replay", exact=True).click()
+    expect(page.get_by_text("running again")).to_be_visible()
+    expect(page.get_by_text("Every byte agrees. 685 ticks")).to_be_visible(timeout=PATIENCE)
+    with page.expect_download() as taken:
+        page.get_by_role("link", name="CSV of events").click()
+    assert taken.value.suggested_filename == f"{two[1]}.events.csv"
+    assert Path(taken.value.path()).read_text().startswith("time [s],source,kind,data")
+
+    page.get_by_role("button", name="Open", exact=True).click()
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)
+    expect(page.locator("#width")).to_have_text(re.compile("90 cm"), timeout=PATIENCE)
+    expect(page.get_by_role("button", name="Compare with the present run")).to_be_disabled()  # it is not recorded once more
+
+    page.get_by_label("Search recordings").fill("counting.py ended")
+    page.get_by_label("Choose all that are listed").click()
+    page.keyboard.press("Delete")
+    page.get_by_role("button", name="Cancel").click()
+    assert all((recordings / f"{name}.sqlite").exists() for name in spare)
+    page.get_by_role("button", name="Delete 2").click()
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    expect(page.get_by_text("No recording has all these words.")).to_be_visible()
+    assert not any((recordings / f"{name}.sqlite").exists() for name in spare)
+
+
+def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], recordings: Path) -> None:
+    page = pages("counting.py")
+    open_tab(page, "Runs")
+    name = page.locator("tr.present").first.get_attribute("data-run")
+    page.locator("tr.present").first.click()
+    page.keyboard.press("Delete")
+    expect(page.locator(".toast")).to_contain_text("The present run is still writing")
+    assert (recordings / f"{name}.sqlite").exists()
+
+
+def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
+    open_tab(page, "Runs")
+    row(page, two[0]).locator("input").check()
+    row(page, two[1]).locator("input").check()
+    page.get_by_role("button", name="Compare", exact=True).click()
+    dialog = page.get_by_role("dialog", name="Two runs")
+    sides = dialog.get_by_role("table", name="Side by side")
+    expect(sides.locator("tr.other").first).to_have_text(re.compile("≠width0.[59]0.[59]"))
+    expect(sides).to_contain_text("seed11")
+    sides.get_by_label("differences only").check()
+    expect(sides).not_to_contain_text("seed")
+
+    expect(dialog.get_by_text(re.compile(r"The first \d+ events are the same; the traces part at"))).to_be_visible()
+    around = dialog.get_by_role("table", name="Events around the first difference")
+    expect(around.locator("tr.here")).to_have_count(1)
+    dialog.get_by_label("Which events are compared").select_option("firings")
+    expect(around.locator("tr.here")).to_contain_text(re.compile("walker.*fire.*production:turn.*fire.*production:|fire.*fire.*turn"))
+    expect(dialog.get_by_role("list", name="What differs")).to_contain_text("production")
+
+    expect(dialog.get_by_role("figure", name="walker speed")).to_be_visible(timeout=PATIENCE)
+    dialog.get_by_label("Add a curve").select_option("walker_torso_yaw speed")
+    plot = dialog.get_by_role("figure", name="walker_torso_yaw speed")
+    expect(plot.locator(".plot-of")).to_have_text([re.compile("first"), re.compile("second")])
+    with page.expect_download() as taken:
+        plot.get_by_role("button", name="SVG").click()
+    picture = Path(taken.value.path()).read_text()
+    assert picture.count("<path") + picture.count("<polyline") >= 2
+    assert "doorway.py" in picture
+    page.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+
+
+def test_a_recording_is_compared_with_the_present_run_of_another_model(page: Page, workbench: Served, two: list[str]) -> None:
+    page.get_by_label("Model", exact=True).select_option("counting.py")
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)
+    open_tab(page, "Runs")
+    row(page, two[0]).click()
+    page.get_by_role("button", name="Compare with the present run").click()
+    dialog = page.get_by_role("dialog", name="Two runs")
+    expect(dialog.get_by_text("These are two different models")).to_be_visible()
+    expect(dialog.locator(".compare-run").nth(1)).to_contain_text("present")
+    expect(dialog.get_by_role("figure", name="walker speed").locator(".plot-of")).to_have_count(1, timeout=PATIENCE)
+
+
+def test_of_a_thousand_recordings_only_those_are_drawn_that_are_seen(page: Page, workbench: Served, recordings: Path) -> None:
+    name = recorded(workbench, "counting.py")
+    copies = [recordings / f"many-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(1000)]
+    for copy in copies:
+        shutil.copy(recordings / f"{name}.sqlite", copy)
+    open_tab(page, "Runs")
+    page.get_by_label("Search recordings").fill("many")
+    expect(page.get_by_text(re.compile(r"^1000 of \d+$"))).to_be_visible(timeout=PATIENCE)
+    assert page.locator("tr[data-run]").count() < 50
+    page.locator(".runs-list").evaluate("list => list.scrollTop = list.scrollHeight")
+    expect(row(page, copies[0].stem)).to_be_visible()
+    page.get_by_role("button", name="Sort by began").click()
+    expect(row(page, copies[-1].stem)).to_be_visible()
+    for copy in copies:
+        copy.unlink()
