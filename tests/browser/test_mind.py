@@ -135,11 +135,14 @@ def test_the_trace_goes_back_and_says_why(pages: Pages, workbench: Served) -> No
     rows.nth(2).hover()
     rows.nth(2).get_by_role("button", name="Why at 0.250 s").click()  # ahead of the present moment
     expect(page.get_by_role("alert")).to_contain_text("lies ahead; it is 0.15 s now")
+    page.get_by_role("button", name="Go to 0.2 s").click()
+    shows(page, "#time", "0.20 s")
+    expect(why).to_contain_text("count_on: matches, and is about to fire")
     page.get_by_role("button", name="Now", exact=True).click()
     rows.nth(0).hover()
     rows.nth(0).get_by_role("button", name="Why at 0.050 s").click()
     expect(why).to_contain_text("start_counting: matches, and is about to fire")
-    shows(page, "#time", "0.15 s")  # the run stays where it is
+    shows(page, "#time", "0.20 s")  # the run stays where it is
     moment = page.get_by_label("Explain the time [s]")
     moment.fill("0.12")
     moment.press("Enter")
@@ -273,8 +276,7 @@ def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> Non
     expect(page.locator("#why-text")).to_contain_text("loop: matches, and is about to fire")
     page.click("#run")
     shows(page, "#status", "busy at line")
-    page.get_by_label("Explain the time [s]").fill("0")
-    page.get_by_label("Explain the time [s]").press("Enter")
+    expect(page.locator("#reasons-panel")).to_contain_text(re.compile(r"The model is busy at line \d+; it answers after this step"))
     page.click("#stop")
     shows(page, "#status", "stopped")
     expect(page.locator("#reasons-panel")).to_contain_text("Restart it")
@@ -293,3 +295,16 @@ def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pa
     expect(schema.get_by_role("row", name=re.compile(r"rotate_torso done maximum 0\.\d{3}"))).to_be_visible()
     page.get_by_role("button", name="Seen").click()
     expect(page.get_by_role("region", name="Search of walker.vision").first).to_contain_text("feature:opening")
+
+
+def test_a_past_moment_is_explained_while_the_run_goes_on(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "doorway.py")
+    open_tab(page, "Productions")
+    page.get_by_label("Speed").select_option(label="1/4 x")
+    page.click("#cycle")
+    page.click("#run")
+    moment = page.get_by_label("Explain the time [s]")
+    moment.fill("0.02")
+    moment.press("Enter")
+    expect(page.locator("#why-text")).to_contain_text("look: matches, and is about to fire")
+    shows(page, "#status", "running")
