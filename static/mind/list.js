@@ -83,7 +83,7 @@ export function ProductionList({ all, chosen }) {
           </ul>
         </div>`,
       )}
-      ${shown.length === 0 ? html`<p class="empty">${all.length ? "No production of that name." : "This model has no productions."}</p>` : null}
+      ${shown.length === 0 ? html`<p class="empty">${all.length ? "No production of that name." : Object.keys(state.value?.parts ?? {}).length ? "This model has no productions." : "The program has not made a model yet."}</p>` : null}
     </div>
   </div>`;
 }

@@ -8,8 +8,9 @@ import { Rows } from "./rows.js";
 /** Returns rows in order; what is not known comes last. */
 export function sorted(rows, { by, down }) {
   const value = (row) => (by === "chunk" ? row.chunk : by === "activation" ? row.activation : row.parts[by]);
-  const known = rows.filter((row) => value(row) !== null && value(row) !== undefined);
-  const unknown = rows.filter((row) => !known.includes(row) && (value(row) === null || value(row) === undefined));
+  const isKnown = (row) => value(row) !== null && value(row) !== undefined;
+  const known = rows.filter(isKnown);
+  const unknown = rows.filter((row) => !isKnown(row));
   const sign = down ? -1 : 1;
   known.sort((one, other) => sign * (typeof value(one) === "number" ? value(one) - value(other) : String(value(one)).localeCompare(String(value(other)), "en", { numeric: true })));
   return [...known, ...unknown];

@@ -93,7 +93,7 @@ export function FiringTrace() {
     return html`<${Row} key=${number} number=${number} event=${eventAt(number)} ahead=${number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
   const nothing = list.length === 0 ? "Nothing has happened yet. Run the model, or step it." : "None of the events so far is one of those that are shown.";
-  return html`<section class="trace" aria-label="Firing trace">
+  return html`<section class="trace">
     <div class="tools">
       <input type="search" aria-label="Filter the trace" placeholder="Filter" value=${wantedWords.value} onInput=${(event) => (wantedWords.value = event.currentTarget.value)} />
       ${several

@@ -9,8 +9,7 @@ export function Waiting({ told }) {
   if (!alive.value) {
     return html`<p class="empty">${loading ? "The model is being loaded …" : "No run to look at. Restart it, or choose a model above."}</p>`;
   }
+  if (stuck) return html`<p class="late" role="status">The model is busy${stuck.line ? ` at line ${stuck.line}` : ""}; it answers after this step. Stop ends it.</p>`;
   if (told.error) return html`<p class="trouble" role="alert">${told.error}</p>`;
-  if (!told.waiting) return null;
-  const where = stuck?.line ? ` at line ${stuck.line}` : "";
-  return html`<p class="late" role="status">${stuck ? `The model is busy${where}; it answers after this step. Stop ends it.` : "Asking the run …"}</p>`;
+  return told.waiting ? html`<p class="late" role="status">Asking the run …</p>` : null;
 }

@@ -10,8 +10,10 @@ import { FiringTrace } from "../mind/trace.js";
 import { Waiting } from "../mind/waiting.js";
 import { Why } from "../mind/why.js";
 import { useAnswer } from "../parts/answer.js";
+import { valueText } from "../parts/chunk.js";
 import { Splitter } from "../parts/splitter.js";
 import { remembered } from "../remembered.js";
+import { order } from "../server.js";
 import { running, state } from "../store.js";
 
 const below = remembered("reasons height", 270);
@@ -33,6 +35,15 @@ function Moment({ told }) {
     <button aria-pressed=${at.value === null} title="Explain the present moment" onClick=${() => (at.value = null)}>Now</button>`;
 }
 
+/** What to do where the run cannot explain the moment that was asked for. */
+function Elsewhere() {
+  const known = at.value <= (state.value?.furthest ?? 0) && at.value > (state.value?.time ?? 0);
+  return html`<p class="elsewhere">
+    ${known ? html`<button onClick=${() => order({ type: "seek", time: at.value })}>Go to ${valueText(at.value)} s</button>` : null}
+    <button onClick=${() => (at.value = null)}>Explain the present moment</button>
+  </p>`;
+}
+
 const VIEWS = [
   { id: "why", text: "Why" },
   { id: "conflict", text: "Conflict set" },
@@ -40,7 +51,7 @@ const VIEWS = [
 ];
 
 function Reasons() {
-  const told = useAnswer(question.value);
+  const told = useAnswer(question.value, { once: at.value !== null });
   const explanations = told.answer ?? [];
   const shown = VIEWS.some(({ id }) => id === shownReasons.value) ? shownReasons.value : "why";
   const all = productionsOf(
@@ -71,6 +82,7 @@ function Reasons() {
       ${shown === "why" ? html`<${ProductionList} all=${all} chosen=${chosen} />` : null}
       <div class="reasons-text" tabindex="0" role="region" aria-label="Explanation">
         <${Waiting} told=${told} />
+        ${told.error && at.value !== null ? html`<${Elsewhere} />` : null}
         ${shown === "why" ? html`<div id="why-text">${told.error ? null : html`<${Why} item=${chosen} />`}</div>` : null}
         ${shown === "conflict" ? html`<${ConflictSets} />` : null}
         ${shown === "retrievals" && told.answer ? html`<${Retrievals} explanations=${explanations} />` : null}

@@ -12,9 +12,10 @@ const WHILE_RUNNING = 100;
  *
  * @param question What is asked; null for nothing.
  * @param live Whether it is also asked while the run goes on.
+ * @param once Whether it is asked once while the run goes on, as a question about a past moment.
  * @returns {answer, error, waiting}: the newest answer (kept until the next one is there), or why there is none.
  */
-export function useAnswer(question, { live = false } = {}) {
+export function useAnswer(question, { live = false, once = false } = {}) {
   const [told, setTold] = useState({ answer: null, error: null, waiting: false });
   const key = JSON.stringify(question);
   const newest = useRef(key);
@@ -26,7 +27,7 @@ export function useAnswer(question, { live = false } = {}) {
     let over = false;
     let timer = 0;
     async function ask() {
-      if (busy || over || !alive.peek() || (running.peek() && !live) || asked === moment.peek()) return;
+      if (busy || over || !alive.peek() || (running.peek() && !live && !(once && asked === "")) || asked === moment.peek()) return;
       asked = moment.peek();
       busy = true;
       setTold((before) => ({ ...before, waiting: true }));
@@ -49,6 +50,6 @@ export function useAnswer(question, { live = false } = {}) {
       clearTimeout(timer);
       end();
     };
-  }, [key, live]);
+  }, [key, live, once]);
   return told;
 }

@@ -2,11 +2,11 @@
 // `npm install --no-package-lock && node build.mjs`, in this folder.
 
 import { createHash } from "node:crypto";
-import { copyFileSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
 
 const out = new URL("..", import.meta.url).pathname;
-const bundles = ["preact", "codemirror", "uplot"];
+const bundles = ["preact", "codemirror"];
 const { metafile } = await build({
   entryPoints: bundles.map((name) => `${name}.js`),
   outdir: out,
@@ -18,7 +18,6 @@ const { metafile } = await build({
   legalComments: "none",
   metafile: true,
 });
-copyFileSync("node_modules/uplot/dist/uPlot.min.css", `${out}/uplot.css`);
 
 const packageOf = (path) => path.match(/node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1];
 const facts = (name) => JSON.parse(readFileSync(`node_modules/${name}/package.json`));
@@ -31,5 +30,5 @@ const licences = packages.map(({ name, version }) => {
 writeFileSync(`${out}/LICENSES.txt`, licences.join(`\n${"-".repeat(78)}\n\n`));
 
 const hash = (file) => createHash("sha256").update(readFileSync(`${out}/${file}`)).digest("hex");
-const files = [...bundles.map((name) => `${name}.js`), "uplot.css", "LICENSES.txt"].map((name) => ({ name, sha256: hash(name) }));
+const files = [...bundles.map((name) => `${name}.js`), "LICENSES.txt"].map((name) => ({ name, sha256: hash(name) }));
 writeFileSync(`${out}/manifest.json`, `${JSON.stringify({ files, packages }, null, 2)}\n`);

@@ -1,2 +1,0 @@
-// Plots of curves over time.
-export { default as uPlot } from "uplot";

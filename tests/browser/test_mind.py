@@ -1,0 +1,310 @@
+"""The panels that show the mind: buffers and modules, productions and why, memory; walked through with real models."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.looking import open_tab, shows
+from tests.server.serving import MODELS, Served
+
+Pages = Callable[..., Page]
+
+QUIET = """
+from actr3d.actr import *
+
+class Quiet(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('state:waiting')
+    def never(goal='state:ready'):
+        pass
+
+Quiet().run()
+"""
+
+CHOOSES = """
+from actr3d.actr import *
+
+class Chooses(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, threshold=5)
+    noise = PMNoise(noise=0.01)
+    base = DMBaseLevel(memory)
+    def init():
+        goal.set('turn:1')
+        memory.add('animal:cat')
+        memory.add('animal:dog legs:4')
+    def left(goal='turn:?n', utility=1):
+        goal.clear()
+        memory.request('animal:?which legs:?legs')
+    def right(goal='turn:1', utility=3):
+        goal.set('turn:2')
+
+Chooses().run(1)
+"""
+
+
+LOOPS = """
+from actr3d.actr import *
+
+class Loops(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('go')
+    def loop(goal='go'):
+        while True:
+            pass
+
+Loops().run()
+"""
+
+
+def opened(pages: Pages, workbench: Served, name: str, text: str | None = None, **options: object) -> Page:
+    """Opens a page with a model at its start: one that is shipped, or one with this text. What tests before have left is closed."""
+    for session in workbench.get("/api/sessions").json()["sessions"]:
+        workbench.post(f"/api/sessions/{session['id']}/close")
+    source = text or next(MODELS.rglob(name)).read_text(encoding="utf-8")
+    (workbench.folder / name).write_text(source, encoding="utf-8")
+    page = pages(name, **options)
+    shows(page, "#status", "at its start")
+    return page
+
+
+def buffer(page: Page, name: str) -> Locator:
+    return page.locator(f"tr[data-path='{name}'] .chunk")
+
+
+def module(page: Page, name: str) -> Locator:
+    return page.locator(f"details[data-path='{name}']")
+
+
+def test_buffers_and_modules_are_shown_and_what_changed_lights_up(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "counting.py")
+    page.click("#cycle")
+    expect(buffer(page, "goal")).to_have_text("taskcountnumber2last5")
+    expect(module(page, "memory").locator("summary")).to_contain_text("waits for '0:count 1:2 2:?next', asked at 0.050 s")
+    expect(module(page, "memory").get_by_label("busy", exact=True)).to_be_visible()
+    place = module(page, "memory").bounding_box()
+    page.click("#cycle")
+    expect(buffer(page, "goal").locator(".changed")).to_have_text("number3")
+    expect(buffer(page, "goal")).to_have_text("taskcountnumber3last5")
+    expect(buffer(page, "goal").locator(".changed")).to_have_count(0)  # once
+    page.click("#run")
+    shows(page, "#status", "ended")
+    expect(buffer(page, "goal")).to_have_text("empty")
+    assert module(page, "memory").bounding_box() == place, "nothing moves when a buffer is emptied"
+    expect(module(page, "memory").get_by_role("row", name="threshold")).not_to_be_visible()
+    module(page, "memory").locator("summary").press("Enter")
+    expect(module(page, "memory").get_by_role("row", name="threshold 0")).to_be_visible()
+
+
+def test_two_agents_are_told_apart(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "two_agents.py")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    for name in ("ada", "ben"):
+        expect(page.get_by_role("table", name=f"Buffers of {name}")).to_contain_text("goal")
+    open_tab(page, "Productions")
+    expect(page.locator("#events")).to_contain_text("ben")
+    page.get_by_label("Agent of the trace").select_option("ada")
+    expect(page.locator("#events")).not_to_contain_text("ben")
+
+
+def test_the_trace_goes_back_and_says_why(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "counting.py")
+    open_tab(page, "Productions")
+    why, rows = page.locator("#why-text"), page.locator("#events tbody tr")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    expect(rows.last).to_contain_text("prints5")
+    page.get_by_label("Filter the trace").fill("prints 3")
+    expect(rows).to_have_count(1)
+    page.get_by_label("Filter the trace").fill("count")
+    expect(rows).to_have_count(5)
+    rows.nth(1).click()  # to a moment of the past; what comes after it stays, in grey
+    shows(page, "#time", "0.15 s")
+    expect(page.locator("#events tr.ahead")).to_have_count(3)
+    page.get_by_role("button", name="does not match stop_counting").click()
+    expect(why).to_contain_text("stop_counting: does not match")
+    expect(why.get_by_role("row", name="holds goal task:count")).to_be_visible()
+    expect(why.get_by_role("row", name="does not hold goal last:?now")).to_contain_text("expected '3' (?now), found '5'")
+    rows.nth(2).hover()
+    rows.nth(2).get_by_role("button", name="Why at 0.250 s").click()  # ahead of the present moment
+    expect(page.get_by_role("alert")).to_contain_text("lies ahead; it is 0.15 s now")
+    page.get_by_role("button", name="Go to 0.2 s").click()
+    shows(page, "#time", "0.20 s")
+    expect(why).to_contain_text("count_on: matches, and is about to fire")
+    page.get_by_role("button", name="Now", exact=True).click()
+    rows.nth(0).hover()
+    rows.nth(0).get_by_role("button", name="Why at 0.050 s").click()
+    expect(why).to_contain_text("start_counting: matches, and is about to fire")
+    shows(page, "#time", "0.20 s")  # the run stays where it is
+    moment = page.get_by_label("Explain the time [s]")
+    moment.fill("0.12")
+    moment.press("Enter")
+    expect(why).to_contain_text("start_counting: does not match")
+    page.get_by_label("Search productions").fill("on")
+    expect(page.get_by_role("list", name="Productions of top").get_by_role("listitem")).to_have_count(1)
+
+
+def test_the_keyboard_alone_does_for_the_trace_and_the_productions(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "counting.py")
+    open_tab(page, "Productions")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.get_by_role("region", name="Firing trace").focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowDown")
+    expect(page.locator("#events [aria-selected=true]")).to_contain_text("count_on")
+    page.keyboard.press("w")
+    expect(page.locator("#why-text")).to_contain_text("count_on: matches, and is about to fire")
+    page.keyboard.press("Enter")
+    shows(page, "#time", "0.15 s")
+    page.locator(".production-names [aria-current=true]").focus()
+    page.keyboard.press("ArrowDown")
+    expect(page.locator("#why-text")).to_contain_text("start_counting:")
+    page.keyboard.press("b")
+    expect(page.get_by_role("button", name="Breakpoint on start_counting")).to_have_attribute("aria-pressed", "true")
+    page.keyboard.press("b")
+    expect(page.get_by_role("button", name="Breakpoint on start_counting")).to_have_attribute("aria-pressed", "false")
+
+
+def test_a_breakpoint_pauses_and_is_shared(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "counting.py")
+    open_tab(page, "Productions")
+    page.click("#step")
+    other = pages("counting.py")
+    open_tab(other, "Productions")
+    page.get_by_role("button", name="Breakpoint on count_on").click()
+    expect(other.get_by_role("button", name="Breakpoint on count_on")).to_have_attribute("aria-pressed", "true")
+    page.click("#run")
+    for one in (page, other):
+        expect(one.locator(".held")).to_contain_text("Paused at the breakpoint on count_on")
+    shows(page, "#time", "0.15 s")
+    page.get_by_role("button", name="Go on").click()
+    shows(page, "#time", "0.25 s")
+    other.get_by_role("button", name="Remove it").click()
+    expect(page.get_by_role("button", name="Breakpoint on count_on")).to_have_attribute("aria-pressed", "false")
+    page.click("#run")
+    shows(page, "#status", "ended")
+
+
+def test_the_conflict_set_and_a_failed_retrieval(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "chooses.py", CHOOSES)
+    open_tab(page, "Productions")
+    page.click("#cycle")
+    page.get_by_role("tab", name="Conflict set").click()
+    conflict = page.get_by_role("region", name="Conflict set of top")
+    expect(conflict).to_contain_text("1 matched, left is chosen")
+    moment = page.get_by_label("Explain the time [s]")
+    moment.fill("0.01")
+    moment.press("Enter")
+    expect(conflict).to_contain_text("2 matched, right is chosen, and about to fire")
+    expect(conflict.get_by_role("columnheader", name=re.compile("noise"))).to_be_visible()
+    expect(conflict.get_by_role("row", name="left")).to_contain_text("n=1")
+    page.get_by_role("button", name="Now", exact=True).click()
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.get_by_role("tab", name="Retrievals").click()
+    retrieval = page.get_by_role("region", name="Retrieval from memory")
+    expect(retrieval).to_contain_text("no candidate reaches the threshold of 5")
+    expect(retrieval.get_by_role("row", name="animal:dog legs:4")).to_contain_text("below the threshold by")
+    expect(retrieval.get_by_role("columnheader", name="base level")).to_be_visible()
+
+
+def test_memory_is_searched_and_sorted(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "base_level.py")
+    open_tab(page, "Memory")
+    page.click("#cycle")
+    page.click("#cycle")
+    chunks = page.locator("#chunks tbody tr")
+    expect(chunks).to_have_count(4)
+    head = page.locator("#chunks").get_by_role("columnheader", name="Activation")
+    expect(head).to_have_attribute("aria-sort", "descending")
+    page.locator("#chunks").get_by_role("button", name="Chunk").click()
+    expect(chunks).to_have_text([re.compile(f"word:{word}") for word in ("anchor", "button", "candle", "dragon")])
+    page.get_by_label("Search the memory").fill("CAND")
+    expect(chunks).to_have_count(1)
+    chunks.first.click()
+    expect(page.get_by_role("region", name="The chosen chunk")).to_contain_text(re.compile("Activation .* = base level"))
+    page.get_by_label("Search the memory").fill("nothing like it")
+    expect(page.locator(".memory")).to_contain_text("No chunk has all of these words.")
+
+
+def test_a_mind_with_nothing_in_it_says_so(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "quiet.py", QUIET)
+    expect(page.locator("#panel-buffers")).to_contain_text("The program has not made a model yet")
+    open_tab(page, "Productions")
+    expect(page.locator("#panel-productions")).to_contain_text("Nothing has happened yet")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    expect(page.locator("#why-text")).to_contain_text("never: does not match")
+    page.get_by_role("tab", name="Conflict set").click()
+    expect(page.locator("#reasons-panel")).to_contain_text("No production has matched yet")
+    page.get_by_role("tab", name="Retrievals").click()
+    expect(page.locator("#reasons-panel")).to_contain_text("Nothing had been asked of a memory")
+    open_tab(page, "Memory")
+    expect(page.locator("#panel-memory")).to_have_text("This model has no declarative memory.")
+
+
+def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "long.py", "for n in range(60000):\n    print('line', n)\n")
+    open_tab(page, "Productions")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    rows = page.locator("#events tbody tr:not(.gap)")
+    expect(rows.last).to_contain_text("line 59999")
+    assert rows.count() < 200, "only what is in sight is drawn"
+    page.reload()  # the server keeps fewer than all
+    shows(page, ".gap-note", "^10,000 earlier events are not shown$")
+    expect(rows.last).to_contain_text("line 59999")
+    page.get_by_role("region", name="Firing trace").focus()
+    page.keyboard.press("Home")
+    expect(rows.first).to_contain_text("line 10000")
+    page.get_by_role("button", name="To the present").click()
+    expect(rows.last).to_contain_text("line 59999")
+
+
+def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "loops.py", LOOPS)
+    open_tab(page, "Productions")
+    page.click("#step")
+    expect(page.locator("#why-text")).to_contain_text("loop: matches, and is about to fire")
+    page.click("#run")
+    shows(page, "#status", "busy at line")
+    expect(page.locator("#reasons-panel")).to_contain_text(re.compile(r"The model is busy at line \d+; it answers after this step"))
+    page.click("#stop")
+    shows(page, "#status", "stopped")
+    expect(page.locator("#reasons-panel")).to_contain_text("Restart it")
+
+
+def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "aperture_passage.py")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    result = page.get_by_role("region", name="Result")
+    expect(result).to_contain_text("Result: passed")
+    expect(result).to_contain_text(re.compile(r"Peak angle\s*\d+\.\d\s*°"))
+    open_tab(page, "Memory")
+    page.get_by_role("button", name="Body schema").click()
+    schema = page.get_by_role("region", name="Body schema")
+    expect(schema.get_by_role("row", name=re.compile(r"rotate_torso done maximum 0\.\d{3}"))).to_be_visible()
+    page.get_by_role("button", name="Seen").click()
+    expect(page.get_by_role("region", name="Search of walker.vision").first).to_contain_text("feature:opening")
+
+
+def test_a_past_moment_is_explained_while_the_run_goes_on(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "doorway.py")
+    open_tab(page, "Productions")
+    page.get_by_label("Speed").select_option(label="1/4 x")
+    page.click("#cycle")
+    page.click("#run")
+    moment = page.get_by_label("Explain the time [s]")
+    moment.fill("0.02")
+    moment.press("Enter")
+    expect(page.locator("#why-text")).to_contain_text("look: matches, and is about to fire")
+    shows(page, "#status", "running")
