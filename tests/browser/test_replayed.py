@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+import httpx
 import pytest
 from playwright.sync_api import expect
 
@@ -28,7 +29,8 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
         recording = told["session"]["recording"]
         server.post(f"/api/sessions/{name}/close")
         file = folder / "replay.html"
-        file.write_bytes(server.get(f"/api/recordings/{recording}/file", params={"form": "replay.html"}).content)
+        address = f"{server.url}/api/recordings/{recording}/file"
+        file.write_bytes(httpx.get(address, headers=server.headers, params={"form": "replay.html"}, timeout=150).content)
         return file
 
 

@@ -55,6 +55,8 @@ def drawn(talk: Talk, tick: int, kinds: tuple[str, ...] = ALL) -> dict[str, Any]
 
 
 async def draw(talk: Talk, kinds: tuple[str, ...]) -> None:
+    """Asks for overlays in place of the 3D view, which asks for none where no browser shows it."""
+    talk.sessions._views[talk.session.name]._task.cancel()
     talk.session.draw(kinds)
 
 
