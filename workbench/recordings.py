@@ -22,10 +22,13 @@ from actr3d.errors import Actr3dError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
 from workbench.files import OWN
+from workbench.keeping import Keeping, superfluous
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 MOST = 1_000
 """So many recordings are listed, the newest first."""
+BESIDE = ("-wal", "-shm", "-journal")
+"""Files with these endings lie beside a recording that is being written."""
 
 
 class NoSuchRecordingError(Actr3dError):
@@ -52,6 +55,8 @@ class Summary:
     """[bytes]"""
     made: float
     """When it was last written [s since 1970]."""
+    problem: str | None = None
+    """Why it cannot be opened; then no more is known of it than its size and when it was written."""
 
 
 class Recordings:
@@ -83,20 +88,41 @@ class Recordings:
         return path
 
     def list(self) -> list[Summary]:
-        """Returns what there is, the newest first; what cannot be read is left out."""
-        files = sorted(self._folder.glob("*.sqlite"), key=lambda path: path.stat().st_mtime, reverse=True) if self._folder.is_dir() else []
-        return [summary for path in files[:MOST] if (summary := _summary(path)) is not None]
+        """Returns what there is, the newest first; of what cannot be read, why."""
+        files = sorted(self._files(), key=lambda path: path.stat().st_mtime, reverse=True)
+        return [_summary(path) for path in files[:MOST]]
+
+    def _files(self) -> Sequence[Path]:
+        return [path for path in self._folder.glob("*.sqlite") if path.is_file() and not path.is_symlink()] if self._folder.is_dir() else []
+
+    def tidy(self, keeping: Keeping) -> None:
+        """Deletes the oldest recordings that no user has named, where there are too many."""
+        for path in superfluous(self._files(), keeping):
+            _delete(path)
+
+    def rename(self, name: str, to: str) -> None:
+        """Gives a recording another name; one that a user has named is kept until a user deletes it.
+
+        Raises:
+            NoSuchRecordingError: If there is none of that name.
+            RecordingError: If the other name cannot be had, or the recording is still being written.
+        """
+        path, target = self.path(name), self._folder / f"{to}.sqlite"
+        if _NAME.fullmatch(to) is None:
+            raise RecordingError("a recording's name has letters, digits, '_', '.' and '-', and no more than 150 of them")
+        if any(path.with_name(path.name + end).exists() for end in BESIDE):
+            raise RecordingError("the recording is still being written: stop or restart its run first")
+        if target.exists():
+            raise RecordingError(f"there is a recording '{to}' already")
+        path.rename(target)
 
     def summary(self, name: str) -> Summary:
         """Returns what is known of one.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name, or it cannot be read.
+            NoSuchRecordingError: If there is none of that name.
         """
-        summary = _summary(self.path(name))
-        if summary is None:
-            raise NoSuchRecordingError("there is no such recording")
-        return summary
+        return _summary(self.path(name))
 
     def delete(self, name: str) -> None:
         """Deletes a recording.
@@ -104,12 +130,15 @@ class Recordings:
         Raises:
             NoSuchRecordingError: If there is none of that name.
         """
-        path = self.path(name)
-        for each in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm", "-journal"))):
-            each.unlink(missing_ok=True)
+        _delete(self.path(name))
 
 
-def _summary(path: Path) -> Summary | None:
+def _delete(path: Path) -> None:
+    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
+        each.unlink(missing_ok=True)
+
+
+def _summary(path: Path) -> Summary:
     try:
         with Recorded(path) as recorded:
             facts = recorded.facts
@@ -128,8 +157,26 @@ def _summary(path: Path) -> Summary | None:
                 size=path.stat().st_size,
                 made=path.stat().st_mtime,
             )
-    except (RecordingError, OSError, KeyError, ValueError):
-        return None
+    except (RecordingError, OSError, KeyError, ValueError) as error:
+        return _unreadable(path, f"it lacks {error}" if isinstance(error, KeyError) else str(error))
+
+
+def _unreadable(path: Path, problem: str) -> Summary:
+    """Returns what is known of a recording of another version, or of a file that is none."""
+    size, made = (path.stat().st_size, path.stat().st_mtime) if path.exists() else (0, 0.0)
+    return Summary(
+        id=path.stem,
+        model="",
+        kind="unreadable",
+        seed=None,
+        parameters={},
+        ended=None,
+        time=0.0,
+        events=0,
+        size=size,
+        made=made,
+        problem=problem,
+    )
 
 
 def _last_time(recorded: Recorded) -> float:

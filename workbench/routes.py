@@ -81,6 +81,12 @@ class Saying(say.Said):
     say: say.Anything
 
 
+class Naming(say.Said):
+    """A recording's other name."""
+
+    to: Annotated[str, Field(min_length=1, max_length=150)]
+
+
 class Pair(say.Said):
     """Two recordings."""
 
@@ -271,6 +277,13 @@ async def replay(request: Request, recording: Id) -> dict[str, Any]:
             process.kill()
             await asyncio.shield(process.wait())
     return {"agrees": {0: True, 1: False}.get(process.returncode or 0), "text": output.decode(errors="replace").strip()}
+
+
+@router.post("/recordings/{recording}/rename")
+def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
+    """Gives a recording another name; one that a user has named is not removed to make place for others."""
+    _sessions(request).recordings.rename(recording, body.to)
+    return {"renamed": body.to}
 
 
 @router.post("/recordings/{recording}/delete")
