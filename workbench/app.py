@@ -17,6 +17,7 @@ from actr3d.errors import Actr3dError
 from workbench import page, routes
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
+from workbench.keeping import Keeping
 from workbench.recordings import Recordings
 from workbench.sessions import Sessions
 from workbench.shipped import static
@@ -25,13 +26,14 @@ from workbench.worker.spawn import MEMORY, Zygote
 from workbench.worker.workers import Workers
 
 
-def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, zygote: Zygote | None = None) -> FastAPI:
+def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, zygote: Zygote | None = None) -> FastAPI:
     """Makes the application. Its `state.leave` ends all that runs.
 
     Args:
         models: The models folder.
         gate: Whom it lets in.
         memory: How much memory a model may take [MB]; 0 for no limit.
+        keeping: How many recordings are kept; the usual number where it is not said.
         zygote: The process from which workers are forked, where it has been started already.
     """
     folder = ModelFolder(models)
@@ -51,8 +53,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, zygote: Zygote |
 
         app.state.later = later
         workers.begin()
+        tidying = asyncio.create_task(asyncio.to_thread(sessions.recordings.tidy, keeping or Keeping()))
         yield
         await leave()
+        await asyncio.wait([tidying])
 
     app = FastAPI(title="ACT-R 3D workbench", docs_url=None, redoc_url=None, openapi_url="/api/openapi.json", lifespan=life)
     app.state.leave = leave

@@ -10,13 +10,15 @@ import tempfile
 import threading
 import time
 import webbrowser
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 from workbench.auth import LOOPBACK, Gate, Token
+from workbench.keeping import MOST as KEPT
+from workbench.keeping import MOST_MEGABYTES, Keeping
 from workbench.shipped import models_folder
-from workbench.worker.spawn import MEMORY, Zygote, spawn
+from workbench.worker.spawn import MEMORY, spawn
 
 READ_TIME = 20.0
 """So long a browser may take to start and to read the file that leads it here [s]."""
@@ -31,6 +33,16 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
     parser.add_argument(
         "--memory", type=int, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: any)"
+    )
+    parser.add_argument(
+        "--recordings", type=int, default=KEPT, metavar="N", help=f"how many recordings are kept (default {KEPT}; 0: any number)"
+    )
+    parser.add_argument(
+        "--recordings-size",
+        type=int,
+        default=MOST_MEGABYTES,
+        metavar="MB",
+        help=f"and how much of them (default {MOST_MEGABYTES}; 0: any size); the oldest that nobody has named go at the start",
     )
     return parser
 
@@ -52,8 +64,8 @@ def _listen(host: str, port: int) -> socket.socket:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command until it is interrupted; returns its exit code."""
     options = _parser().parse_args(arguments)
-    if not 0 <= options.port < 65536 or options.memory < 0:
-        print("error: a port is a number from 0 to 65535, and memory not below 0", file=sys.stderr)
+    if not 0 <= options.port < 65536 or min(options.memory, options.recordings, options.recordings_size) < 0:
+        print("error: a port is a number from 0 to 65535, and memory and recordings not below 0", file=sys.stderr)
         return 2
     try:
         folder = models_folder(options.models, Path.cwd(), Path.home())
@@ -69,18 +81,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     gate = Gate(token=Token(), port=port, hosts=LOOPBACK | {name.lower() for name in names})
     zygote = spawn()  # it loads while the server does
     try:
+        from workbench.app import make_app
+        from workbench.serving import serve
+
+        keeping = Keeping(number=options.recordings, megabytes=options.recordings_size)
         started = partial(_tell, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
-        _serve(folder, gate, zygote, listening, started, options.memory)
+        serve(make_app(folder, gate, memory=options.memory, keeping=keeping, zygote=zygote), listening, started)
     except KeyboardInterrupt:
         return 130
     return 0
-
-
-def _serve(folder: Path, gate: Gate, zygote: Zygote, listening: socket.socket, started: Callable[[], None], memory: int) -> None:
-    from workbench.app import make_app
-    from workbench.serving import serve
-
-    serve(make_app(folder, gate, memory=memory, zygote=zygote), listening, started)
 
 
 def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:

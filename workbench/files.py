@@ -9,6 +9,7 @@ import os
 import secrets
 import time
 import tokenize
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,7 +93,7 @@ class ModelFolder:
             raise FileError("that is no name of a model file")
         if any(part in ("", ".", "..") or part[0] == "." or len(part.encode("utf-8", "replace")) > 200 for part in parts):
             raise FileError("a model file lies inside the models folder, and no part of its path is hidden")
-        if not path.endswith(".py") or any(ord(c) < 32 or 0xD800 <= ord(c) < 0xE000 for c in path) or ":" in path:
+        if not path.endswith(".py") or any(unicodedata.category(c)[0] == "C" for c in path) or ":" in path:
             raise FileError("a model file's name ends in .py, and has no special characters")
         where = self.root.joinpath(*parts)
         try:

@@ -13,17 +13,20 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.clock import MICROSECONDS, seconds
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import NOTHING, Curves, stride
 from workbench.files import OWN
+from workbench.keeping import Keeping, superfluous
 from workbench.summaries import Summaries, Summary, begun
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 MOST = 1_000
 """So many recordings are told of at once."""
+BESIDE = ("-wal", "-shm", "-journal")
+"""Files with these endings lie beside a recording that is being written."""
 
 
 class NoSuchRecordingError(Actr3dError):
@@ -68,10 +71,33 @@ class Recordings:
             first: How many of the newest are left out.
             most: How many are told of.
         """
-        files = [path for path in self._folder.glob("*.sqlite") if _NAME.fullmatch(path.stem) and not path.is_symlink()]
-        files.sort(key=lambda path: (begun(path), path.name), reverse=True)
+        files = sorted(self._files(), key=lambda path: (begun(path), path.name), reverse=True)
         self._summaries.forget({path.name for path in files})
         return len(files), [self._summaries.of(path) for path in files[first : first + most]]
+
+    def _files(self) -> Sequence[Path]:
+        return [path for path in self._folder.glob("*.sqlite") if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
+
+    def tidy(self, keeping: Keeping) -> None:
+        """Deletes the oldest recordings that no user has named, where there are too many."""
+        for path in superfluous(self._files(), keeping):
+            _delete(path)
+
+    def rename(self, name: str, to: str) -> None:
+        """Gives a recording another name; one that a user has named is kept until a user deletes it.
+
+        Raises:
+            NoSuchRecordingError: If there is none of that name.
+            RecordingError: If the other name cannot be had, or the recording is still being written.
+        """
+        path, target = self.path(name), self._folder / f"{to}.sqlite"
+        if _NAME.fullmatch(to) is None:
+            raise RecordingError("a recording's name has letters, digits, '_', '.' and '-', and no more than 150 of them")
+        if any(path.with_name(path.name + end).exists() for end in BESIDE):
+            raise RecordingError("the recording is still being written: stop or restart its run first")
+        if target.exists():
+            raise RecordingError(f"there is a recording '{to}' already")
+        path.rename(target)
 
     def summary(self, name: str) -> Summary:
         """Returns what is known of one.
@@ -87,9 +113,12 @@ class Recordings:
         Raises:
             NoSuchRecordingError: If there is none of that name.
         """
-        path = self.path(name)
-        for each in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm", "-journal"))):
-            each.unlink(missing_ok=True)
+        _delete(self.path(name))
+
+
+def _delete(path: Path) -> None:
+    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
+        each.unlink(missing_ok=True)
 
 
 # -- to take away

@@ -84,6 +84,12 @@ class Saying(say.Said):
     say: say.Anything
 
 
+class Naming(say.Said):
+    """A recording's other name."""
+
+    to: Annotated[str, Field(min_length=1, max_length=150)]
+
+
 class Pair(say.Said):
     """Two recordings."""
 
@@ -303,6 +309,13 @@ async def open_recording(request: Request, recording: Id) -> dict[str, Any]:
 async def replay(request: Request, recording: Id) -> dict[str, Any]:
     """Runs a recording again, in a process of its own, and says whether every byte agrees; it ends when nobody waits any more."""
     return await again(_sessions(request).recordings.path(recording), request.is_disconnected)
+
+
+@router.post("/recordings/{recording}/rename")
+def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
+    """Gives a recording another name; one that a user has named is not removed to make place for others."""
+    _sessions(request).recordings.rename(recording, body.to)
+    return {"renamed": body.to}
 
 
 @router.post("/recordings/{recording}/delete")

@@ -159,7 +159,8 @@ def test_recordings_lie_in_their_folder(server: Served, name: str) -> None:
     assert server.post(f"/api/recordings/{name}/delete").status_code in (404, 405)
 
 
-schema: Any = schemathesis.openapi.from_dict(make_app(Path("/tmp"), GATE).openapi())
+server_app = make_app(Path("/tmp"), GATE)
+schema: Any = schemathesis.openapi.from_dict(server_app.openapi())
 
 
 @schema.parametrize()
@@ -168,6 +169,49 @@ def test_no_input_gives_an_error_of_the_server(case: Any, server: Served) -> Non
     answer = case.call(base_url=server.url, headers=server.headers, timeout=60)
     assert answer.status_code < 500, answer.text
     assert answer.status_code != 401
+
+
+HOSTILE = [
+    "../../etc/passwd",
+    "..%2f..%2fetc%2fpasswd",
+    "/etc/passwd",
+    "a\0b.py",
+    "%00",
+    "x" * 3900,
+    "é\u202e.py",
+    "con:1.py",
+]
+PLACES = ["/api/sessions/{}", "/api/recordings/{}", "/api/recordings/{}/file", "/api/recordings/{}/curves", "/viser/{}/", "/static/{}"]
+
+
+@pytest.mark.parametrize("path", HOSTILE, ids=range(len(HOSTILE)))
+def test_hostile_paths_are_refused_on_every_route(path: str, server: Served) -> None:
+    told = [
+        server.get("/api/model", params={"path": path}),
+        server.put("/api/model", {"path": path, "text": "", "version": "x"}),
+        server.post("/api/model/duplicate", {"path": "doorway.py", "to": path + "/x.py" if "." not in path else path}),
+        server.post("/api/model/rename", {"path": path, "to": "y.py"}),
+        server.post("/api/model/delete", {"path": path}),
+        server.post("/api/check", {"path": path + "/..", "text": "x = 1"}),
+        server.post("/api/sessions", {"model": path}),
+        server.post("/api/compare", {"first": path, "second": path}),
+    ]
+    for answer in told[:2] + told[3:]:
+        assert 400 <= answer.status_code < 500, (answer.request.url, answer.text)
+    assert told[2].status_code < 500
+    raw = path.replace("\0", "%00").encode().decode("latin-1").encode("ascii", "ignore").decode()
+    for place in PLACES:
+        assert server.get(place.format(raw)).status_code < 500
+        assert "root:" not in server.get(place.format(raw)).text
+
+
+def test_every_route_is_in_the_description_or_is_a_page(server: Served) -> None:
+    from tests.server.test_auth import routes
+
+    described = set(server.get("/api/openapi.json").json()["paths"])
+    known = {route.path for route in routes(server_app) if "/api" in route.path}
+    assert known - described == {"/api/openapi.json"}
+    assert {operation.ok().path for operation in schema.get_all_operations()} == described
 
 
 def test_the_description_names_every_command(server: Served) -> None:

@@ -1,0 +1,102 @@
+"""How the workbench ends: in good order, killed, while it starts, while it is busy; no process stays behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.server.desk import PATIENCE
+from tests.server.serving import Served, served
+from tests.server.test_worker import gone
+
+LOOP = "import os, time\nopen('{mark}', 'w').write(str(os.getpid()))\nwhile True:\n    pass\n"
+
+
+def descendants(pid: int) -> set[int]:
+    """Returns the processes that come from one."""
+    found: set[int] = set()
+    parents: dict[int, int] = {}
+    for line in subprocess.run(["ps", "-eo", "pid=,ppid="], capture_output=True, text=True, check=True).stdout.splitlines():
+        child, parent = map(int, line.split())
+        parents[child] = parent
+    for child in parents:
+        above = child
+        while above in parents and above != pid:
+            above = parents[above]
+        if above == pid and child != pid:
+            found.add(child)
+    return found
+
+
+def busy(running: Served) -> set[int]:
+    """Lets a model loop for ever, and returns all processes of the workbench."""
+    mark = running.folder / "mark"
+    (running.folder / "loop.py").write_text(LOOP.format(mark=mark), encoding="utf-8")
+    running.post("/api/sessions", {"model": "loop.py", "run": True})
+    running.post("/api/sessions", {"model": "doorway.py"})
+    end = time.monotonic() + PATIENCE
+    while not (mark.is_file() and mark.read_text(encoding="utf-8")):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return descendants(running.process.pid)
+
+
+def all_end(processes: set[int]) -> None:
+    end = time.monotonic() + PATIENCE
+    while not all(map(gone, processes)):
+        assert time.monotonic() < end, [pid for pid in processes if not gone(pid)]
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_nothing_stays_behind(tmp_path: Path, sign: signal.Signals) -> None:
+    with served(tmp_path / "models") as running:
+        processes = busy(running)
+        assert len(processes) >= 2
+        running.process.send_signal(sign)
+        assert running.process.wait(PATIENCE) == (0 if sign == signal.SIGINT else -sign)
+        all_end(processes)
+
+
+def test_it_ends_while_a_model_waits_to_begin(tmp_path: Path) -> None:
+    with served(tmp_path / "models") as running:
+        asking = subprocess.Popen(
+            [
+                sys.executable,
+                "-c",
+                "import httpx, sys; httpx.post(sys.argv[1] + '/api/sessions', json={'model': 'counting.py'}, timeout=60, "
+                "headers={'authorization': 'Bearer ' + sys.stdin.read(), 'x-workbench': '1'})",
+                running.url,
+            ],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+        assert asking.stdin is not None
+        asking.stdin.write(running.token)
+        asking.stdin.close()
+        time.sleep(0.3)
+        processes = descendants(running.process.pid)
+        running.process.send_signal(signal.SIGINT)
+        assert running.process.wait(PATIENCE) == 0
+        all_end(processes)
+        asking.wait(PATIENCE)
+
+
+@pytest.mark.parametrize("after", [0.3, 0.8])
+def test_it_is_interrupted_while_it_starts(tmp_path: Path, after: float) -> None:
+    command = [sys.executable, "-m", "workbench", str(tmp_path), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+        time.sleep(after)
+        os.killpg(process.pid, signal.SIGINT)
+        _, complaints = process.communicate(timeout=PATIENCE)
+    # Python itself may not be there yet, which it says in its own words.
+    assert process.returncode in (0, 130, -signal.SIGINT, 1)
+    assert "Traceback" not in complaints or "workbench/serving.py" not in complaints

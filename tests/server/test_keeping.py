@@ -1,0 +1,101 @@
+"""How many recordings are kept, which are named, and what is told of those that cannot be opened."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from actr3d.errors import RecordingError
+from tests.server.desk import Desk
+from workbench.files import OWN
+from workbench.keeping import Keeping, is_unnamed
+from workbench.recordings import NoSuchRecordingError, Recordings
+
+
+@pytest.fixture
+def recordings(tmp_path: Path) -> Recordings:
+    """Ten recordings of a kilobyte; the higher the number the newer."""
+    found = Recordings(tmp_path)
+    for number in range(10):
+        path = found.new(f"model{number}")
+        path.write_bytes(bytes(1000))
+        os.utime(path, (1000 + number, 1000 + number))
+    return found
+
+
+def models(tmp_path: Path) -> list[str]:
+    return sorted(path.stem.split("-")[0] for path in (tmp_path / OWN / "recordings").glob("*.sqlite"))
+
+
+def test_a_run_gives_its_recording_a_name_that_is_none(tmp_path: Path) -> None:
+    assert is_unnamed(Recordings(tmp_path).new("model-1"))
+    assert not is_unnamed(Path("my best run.sqlite"))
+
+
+def test_the_oldest_go(recordings: Recordings, tmp_path: Path) -> None:
+    recordings.tidy(Keeping(number=10, megabytes=0))
+    assert len(models(tmp_path)) == 10
+    recordings.tidy(Keeping(number=3, megabytes=0))
+    assert models(tmp_path) == ["model7", "model8", "model9"]
+    recordings.tidy(Keeping(number=0, megabytes=0))
+    assert len(models(tmp_path)) == 3
+
+
+def test_the_largest_part_of_a_folder_goes_too(recordings: Recordings, tmp_path: Path) -> None:
+    big = recordings.new("big")
+    big.write_bytes(bytes(1_500_000))
+    os.utime(big, (1005, 1005))
+    recordings.tidy(Keeping(number=0, megabytes=1))
+    assert "big" not in models(tmp_path)
+    assert len(models(tmp_path)) == 10
+
+
+def test_what_a_user_has_named_stays(recordings: Recordings, tmp_path: Path) -> None:
+    oldest = min((tmp_path / OWN / "recordings").glob("*.sqlite"), key=lambda path: path.stat().st_mtime)
+    recordings.rename(oldest.stem, "kept")
+    recordings.tidy(Keeping(number=2, megabytes=0))
+    assert models(tmp_path) == ["kept", "model9"]
+
+
+def test_names_are_names_and_nothing_is_replaced(recordings: Recordings, tmp_path: Path) -> None:
+    one, other, *_ = [path.stem for path in (tmp_path / OWN / "recordings").glob("*.sqlite")]
+    for name in ("", "..", "../x", "a/b", "x" * 200, ".hidden", "a b"):
+        with pytest.raises(RecordingError, match="a recording's name has"):
+            recordings.rename(one, name)
+    with pytest.raises(RecordingError, match="there is a recording"):
+        recordings.rename(one, other)
+    with pytest.raises(NoSuchRecordingError):
+        recordings.rename("none", "x")
+
+
+def test_a_recording_that_is_being_written_keeps_its_name(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('x')\n", record=True)
+    name = talk.facts["recording"]
+    with pytest.raises(RecordingError, match="still being written"):
+        talk.sessions.recordings.rename(name, "mine")
+    talk.say("stop")
+    talk.sessions.recordings.rename(name, "mine")
+    assert talk.sessions.recordings.summary("mine").model == "model.py"
+
+
+def test_what_cannot_be_opened_is_listed_with_the_reason(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('x')\n", record=True)
+    talk.say("stop")
+    recordings = talk.sessions.recordings
+    folder = tmp_path / OWN / "recordings"
+    (folder / "none.sqlite").write_bytes(b"no database at all, but some text that is long enough" * 100)
+    (folder / "empty.sqlite").write_bytes(b"")
+    with sqlite3.connect(folder / "older.sqlite") as older:
+        older.execute("CREATE TABLE runs (x)")
+    older.close()
+    told = {summary.id: summary for summary in recordings.list()[1]}
+    assert len(told) == 4
+    assert told[talk.facts["recording"]].problem is None
+    for name in ("none", "empty", "older"):
+        assert told[name].problem
+        assert recordings.summary(name) == told[name]
+        recordings.delete(name)
+    assert recordings.list()[0] == 1

@@ -1,0 +1,115 @@
+"""The page's websocket under rough use: wrong kinds of messages, too many, too long, and nobody who reads."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import websockets
+
+from tests.server.serving import Served, served
+from tests.server.test_live import attached, heard, opened
+from workbench.page import MOST_PAGES
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with served(tmp_path_factory.mktemp("rough") / "models") as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def session(server: Served) -> str:
+    return opened(server, "counting.py")
+
+
+WRONG: list[Any] = [
+    b"\x00\xff",
+    b'{"id": 1, "say": {"type": "run"}}',
+    "null",
+    "1e400",
+    "[" * 50_000,
+    '{"id": "1", "say": []}',
+    json.dumps({"id": 1, "say": {"type": "step", "ticks": 10**30}}),
+    json.dumps({"id": 1, "say": {"type": "step", "ticks": 1.5}}),
+    json.dumps({"id": 1, "say": {"type": "seek", "time": "soon"}}),
+    '{"id": 1, "say": {"type": "seek", "time": NaN}}',
+    json.dumps({"id": 1, "say": {"type": "breakpoints", "productions": ["x"] * 201}}),
+    json.dumps({"id": 1, "say": {"type": "explain", "at": -1}}),
+    json.dumps({"id": 1, "say": {"type": "say", "word": "x", "named": {"a": {"b": 1}}}}),
+    json.dumps({"id": 2**60, "say": {"type": "pause"}}),
+    json.dumps({"type": "attach"}),
+    json.dumps({"type": "attach", "session": 5}),
+    json.dumps({"type": "attach", "session": "s1", "run": -1}),
+    json.dumps({"type": "attach", "session": "s1", "more": 1}),
+    '{"id": 1, "say": {"type": "\\ud800"}}',
+]
+
+
+@pytest.mark.parametrize("text", WRONG, ids=range(len(WRONG)))
+def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) -> None:
+    async def talk() -> None:
+        socket = await attached(server, session)
+        await heard(socket, lambda message: "state" in message)
+        await socket.send(text)
+        told = await heard(socket, lambda message: "replies" in message or message["type"] == "refused")
+        assert told.get("error") or told["replies"][0]["error"]
+        await socket.send(json.dumps({"id": 7, "say": {"type": "events", "most": 1}}))  # and it goes on
+        assert (await heard(socket, lambda message: "replies" in message))["replies"][-1]["error"] is None
+        await socket.close()
+
+    asyncio.run(talk())
+
+
+def test_who_asks_without_end_and_reads_nothing_is_sent_away(server: Served, session: str) -> None:
+    async def talk() -> None:
+        bearer = {"authorization": f"Bearer {server.token}"}
+        address = f"ws://127.0.0.1:{server.port}/ws"
+        async with websockets.connect(address, additional_headers=bearer, max_size=None, max_queue=1) as socket:
+            await socket.send(json.dumps({"type": "attach", "session": session}))
+            question = json.dumps({"id": 1, "say": {"type": "events", "most": 20_000}})
+
+            async def ask_on() -> None:
+                while True:
+                    await socket.send(question)
+
+            with pytest.raises(websockets.ConnectionClosed):
+                await asyncio.wait_for(ask_on(), 60)
+
+    asyncio.run(talk())
+    assert server.get(f"/api/sessions/{session}").status_code == 200
+
+
+def test_there_is_a_bound_to_pages(server: Served, session: str) -> None:
+    async def talk() -> None:
+        sockets = [await attached(server, session) for _ in range(MOST_PAGES)]
+        with pytest.raises((websockets.ConnectionClosed, websockets.InvalidStatus)):
+            await (await attached(server, session)).recv()
+        for socket in sockets:
+            await socket.close()
+        end = time.monotonic() + 60
+        while server.get(f"/api/sessions/{session}").json()["session"]["watching"]:
+            assert time.monotonic() < end
+            await asyncio.sleep(0.05)
+        again = await attached(server, session)
+        assert "state" in await heard(again, lambda message: "state" in message)
+        await again.close()
+
+    asyncio.run(talk())
+
+
+def test_showing_one_session_after_the_other_leaves_nothing_behind(server: Served, session: str) -> None:
+    async def talk() -> None:
+        socket = await attached(server, session)
+        for _ in range(200):
+            await socket.send(json.dumps({"type": "attach", "session": session}))
+        await socket.send(json.dumps({"id": 1, "say": {"type": "events", "most": 1}}))
+        await heard(socket, lambda message: "replies" in message)
+        assert len(server.get(f"/api/sessions/{session}").json()["session"]["watching"]) == 1
+        await socket.close()
+
+    asyncio.run(talk())
