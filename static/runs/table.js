@@ -90,6 +90,7 @@ export function Table({ list, open }) {
   useLayoutEffect(() => {
     const place = box.current;
     const look = () => (seen.value = { top: place.scrollTop, height: place.clientHeight });
+    look();
     const watch = new ResizeObserver(look);
     watch.observe(place);
     place.addEventListener("scroll", look, { passive: true });
