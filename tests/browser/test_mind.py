@@ -300,7 +300,7 @@ def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pa
 def test_a_past_moment_is_explained_while_the_run_goes_on(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "doorway.py")
     open_tab(page, "Productions")
-    page.get_by_label("Speed").select_option(label="1/4 x")
+    page.get_by_label("Speed", exact=True).select_option(label="1/4 x")
     page.click("#cycle")
     page.click("#run")
     moment = page.get_by_label("Explain the time [s]")

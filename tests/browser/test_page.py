@@ -26,6 +26,7 @@ def test_run_step_and_the_aperture(page: Page) -> None:
     expect(scene.get_by_text("t = 0.04 s")).to_be_visible(timeout=PATIENCE)
     expect(scene.locator("canvas").first).to_be_visible(timeout=PATIENCE)
     open_tab(page, "Productions")
+    page.get_by_label("Filter the trace").fill("turn")
     page.click("#run")
     shows(page, "#status", "ended")
     expect(page.locator("#events")).not_to_contain_text("turn")  # it is wide enough
