@@ -177,9 +177,8 @@ class PlanUnitLevel(Level):
         name, state = as_text(slots["planning_unit"]), as_text(slots["state"])
         kind = self._agent()._unit(name, "b_plan_unit").kind
         if slots["type"] != kind:
-            raise PlanError(
-                f"b_plan_unit: planning unit '{name}' is of type '{kind}', not '{as_text(slots['type'])}'; begin it with 'planning_unit:{name}'"
-            )
+            given = as_text(slots["type"])
+            raise PlanError(f"b_plan_unit: '{name}' is of type '{kind}', not '{given}'; begin it with 'planning_unit:{name}'")
         if state not in STATES:
             raise PlanError(f"b_plan_unit: no state '{state}'{did_you_mean(state, STATES)}; there are: {', '.join(STATES)}")
         if state == "resuming" and slots["place"] == "none":
