@@ -16,11 +16,11 @@ width starts a turn of 240 degrees a second, 120 with the torso alone, whatever 
 of its vision, and turns on where that is no. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one each 175 ms, which
 is where the original's own means lie, and why a fast walker, who has time for fewer, turns less. It turns by about 18 degrees
 before any doorway. Two numbers of this are not facts but inferred from these means: that it turns in pieces, and how deep the trunk is.
-`--variant human` (the default) looks first: it turns below 1.30 times its width only, from 1.2 s before the wall on, hips and legs with
-the trunk, and the faster it walks the faster it turns.
+`--variant human` (the default) looks first: it turns below 1.30 times its width only, from 1.2 s before the wall on, and the faster it
+walks the faster it turns.
 
-What to expect: `--aperture 0.45` is passed with the shoulders turned by about 50 degrees, nothing is touched, and some 7 cm are left
-on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.3` is declined. The last lines say what
+What to expect: `--aperture 0.45` is passed with the shoulders turned by about 40 degrees, nothing is touched, and some 6 cm are left
+on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.35` is declined. The last lines say what
 the world measured.
 
 Try: `--condition fast`; `--variant replication --aperture 0.7`; `--margin 0`, and `--noise 0.05`.
@@ -44,8 +44,8 @@ SPEEDS = {("small", "normal"): 1.29, ("small", "fast"): 1.61, ("large", "normal"
 HEIGHT = 1.714
 """[m]. Source: shoulders of 0.444 m, the mean of both groups, over 0.259, their part of the height (Drillis & Contini 1966)."""
 
-TRUNK, CLAVICLE = 60, 20
-"""How far the trunk and the shoulders on it turn [degrees]: 80 together. Source: the original's limits of 20 and 80 (human-data)."""
+TORSO, CLAVICLE = 60, 20
+"""How far the torso and the shoulders on it turn [degrees]: 80 together. Source: the original's limits of 20 and 80 (human-data)."""
 BEARING = 19.6
 """What is further off the way ahead is no obstacle [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
 TIGHT = 1.03
@@ -77,7 +77,7 @@ class Parameters(Configuration):
     condition: Literal["normal", "fast"] = "normal"
     """How fast its group walks: small 1.29 or 1.61 m/s, large 1.28 or 1.77 m/s. Source: Warren & Whang (1987)."""
 
-    speed: Annotated[float, Ge(0.1), Le(3)] | None = None
+    speed: Annotated[float, Gt(0), Le(3)] | None = None
     """How fast it walks [m/s]; None: as its condition says."""
 
     margin: Annotated[float, Ge(0), Le(1)] | None = None
@@ -113,17 +113,18 @@ class Shoulders(Model):
     def turn(self, part, torso_rate, clavicle_rate):
         """Turns them to a part of all that they can be turned, to the side that was chosen [degrees/s]."""
         motor, angle = self.parent.motor, self.side * part
-        motor.rotate(self.parent.trunk, "yaw", angle * TRUNK, torso_rate)
-        motor.rotate("head", "yaw", -angle * TRUNK, torso_rate)
+        motor.rotate_torso(angle * TORSO, torso_rate)
+        motor.rotate("head", "yaw", -angle * TORSO, torso_rate)
         motor.rotate("left_shoulder", "yaw", angle * CLAVICLE, clavicle_rate)
         motor.rotate("right_shoulder", "yaw", angle * CLAVICLE, clavicle_rate)
 
     def stop(self):
-        self.parent.motor.stop(self.parent.trunk, "head", "left_shoulder", "right_shoulder")
+        for group in ("torso", "head", "left_shoulder", "right_shoulder"):
+            self.parent.motor.stop(group)
 
     def angle(self):
-        """Returns how far the trunk is felt to be turned [degrees]."""
-        return abs(float(self.parent.motor[f"{self.parent.trunk}_yaw_angle"]))
+        """Returns how far the torso is felt to be turned [degrees]."""
+        return abs(float(self.parent.motor.torso_yaw_angle))
 
 
 class Eyes(ACTR):
@@ -204,10 +205,10 @@ class EyesInPieces(Eyes):
 class EyesAtOnce(Eyes):
     """Turns on until an opening is found."""
 
-    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:False", near="state:!over"):
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:False", near="state:!over"):
         b_turn.modify(do="turn")
 
-    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:True", near="state:!over"):
+    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:True", near="state:!over"):
         b_turn.modify(do="ask")
 
     def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over"):
@@ -234,7 +235,7 @@ class Walker(SGOMS):
     b_turn = Buffer()
     DM = Memory(SGOMS.b_DM, latency=0)
     vision = Vision(b_visual, delay=0.05, bottom_up_delay=0.02, delay_sd=0.02)
-    motor = Motor(memory=DM, extreme_step=8)
+    motor = Motor(memory=DM, size_grid=0.001, extreme_step=8)
     shoulders = Shoulders()
     scan = Wait()
     way = Wait()
@@ -277,7 +278,7 @@ class Walker(SGOMS):
 
     def remember(b_unit_task="unit_task:judge state:looking", vision="busy:False error:True"):
         b_unit_task.modify(state="remembering")
-        DM.request(f"posture:{trunk}_yaw end:done extreme:{'maximum' if shoulders.side > 0 else 'minimum'}")
+        DM.request(f"posture:rotate_torso end:done extreme:{'maximum' if shoulders.side > 0 else 'minimum'}")
 
     def imagine(b_unit_task="unit_task:judge state:remembering", b_DM="posture:? width:?width"):
         b_unit_task.modify(state="imagining")
@@ -332,59 +333,50 @@ class Replication(Walker):
     """The original ACT-R 3D's model. Source of all numbers: facts about its code (human-data)."""
 
     eyes = EyesInPieces()
-    trunk = "torso"
     answer = "turn"
     passable = 1.139
     torso_rate = clavicle_rate = 120.0
 
     def wanted(self, width):
         """Returns how wide an opening must be for it not to turn further [m]."""
-        fits = self.b_turn["way"] == "clear" or self.shoulders.angle() >= TRUNK
+        fits = self.b_turn["way"] == "clear" or self.shoulders.angle() >= TORSO
         return (TIGHT if fits else 1 + self.margin) * width
 
 
 class Human(Walker):
     """A model of people.
 
-    It turns hips and legs with the trunk, for they are wide, too. It has three numbers that are not measured: when it
-    reacts, how fast it turns, and up to how much room. The last two leave 6 to 8 cm on each side (Higuchi), and let it turn
-    more when it is fast.
+    It has three numbers that are not measured: when it reacts, how fast it turns, and up to which ratio. The last two
+    leave 6 to 8 cm on each side (Higuchi), and let it turn more when it is fast.
     """
 
     eyes = EyesAtOnce()
-    trunk = "stance"
     answer = "ask"
     passable = 1.16
 
     def wanted(self, width):
         """Returns how wide an opening must be for it not to turn further [m]."""
         angle = self.shoulders.angle()
-        if angle >= TRUNK:
-            return TIGHT * width
-        return width + 2 * ENOUGH if angle > 1 else (1 + self.margin) * width
+        return (TIGHT if angle >= TORSO else ENOUGH if angle > 1 else 1 + self.margin) * width
 
 
 REACTION = 1.2
-"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as shoulders turn. Who walks so
-slowly that this is nearer than `RADIUS` would have the doorway's edges beside it, out of sight, before it reacts: `RADIUS` counts then."""
+"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as shoulders turn."""
 TURNING = 93.0
 """How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 120 degrees a second at 1.29 m/s, as the original's
 torso (human-data). That it grows with the speed is ours: people turn more when they are fast."""
-ENOUGH = 0.055
-"""The room on each side up to which a person goes on turning [m]. Ours: with what it turns until it has stopped, 6 to 8 cm are left
-(Higuchi, human-data)."""
+ENOUGH = 1.21
+"""Up to which ratio a person goes on turning. Ours: of what leaves 6 to 8 cm on each side (Higuchi, human-data)."""
 RADIUS = 3.0
-"""Within how many times its width an obstacle alerts the replication; people never look less far ahead. Source: human-data."""
-CAMERA, EYE = 0.13, 0.096
-"""How far before the body's axis the original's camera is (human-data), and the mannequin's eye [m]."""
-DEPTH = 0.11
+"""Within how many times its width an obstacle alerts the replication. Source: human-data."""
+TRUNK = 0.11
 """How deep the replication's trunk is [m]. Ours: of what fits the original's means best; how deep it was is not known."""
 
 
 def body_of(parameters: Parameters) -> Mannequin:
     """Returns who walks."""
     p = parameters
-    trunk = {} if p.variant == "human" else {"trunk": "box", "depth": DEPTH}
+    trunk = {} if p.variant == "human" else {"trunk": "box", "depth": TRUNK}
     return Mannequin(name="walker", height=HEIGHT, shoulder_width=p.shoulder_width or WIDTHS[p.group], **trunk)
 
 
@@ -392,13 +384,13 @@ def mind_of(parameters: Parameters) -> Walker:
     """Returns the mind of who walks."""
     p = parameters
     speed = p.speed or SPEEDS[p.group, p.condition]
-    width = p.shoulder_width or WIDTHS[p.group]
     given = {"speed": speed, "noise": p.noise}
     if p.variant == "human":
         rate = TURNING * speed
-        rates = {"torso_rate": rate * TRUNK / (TRUNK + CLAVICLE), "clavicle_rate": rate * CLAVICLE / (TRUNK + CLAVICLE)}
-        return Human(margin=0.30 if p.margin is None else p.margin, radius=max(REACTION * speed, RADIUS * width), **rates, **given)
-    return Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width + CAMERA - EYE, **given)
+        rates = {"torso_rate": rate * TORSO / (TORSO + CLAVICLE), "clavicle_rate": rate * CLAVICLE / (TORSO + CLAVICLE)}
+        return Human(margin=0.30 if p.margin is None else p.margin, radius=REACTION * speed, **rates, **given)
+    width = p.shoulder_width or WIDTHS[p.group]
+    return Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
 
 
 def build(parameters: Parameters) -> Simulation:

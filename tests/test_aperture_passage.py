@@ -73,19 +73,6 @@ def test_it_walks_at_the_speed_it_was_given(model: Any) -> None:
     assert passed(model, aperture=0.8, speed=0.9).speed_m_s == pytest.approx(0.9, abs=0.01)
 
 
-@pytest.mark.parametrize(("group", "aperture"), [("small", 0.4), ("large", 0.4), ("small", 0.36)])
-def test_hips_turn_where_they_would_be_too_wide(model: Any, group: str, aperture: float) -> None:
-    """Source: 6 to 8 cm on each side (human-data); hips of 33 cm that do not turn would leave 3.6 at 40 cm, and 1.6 at 36."""
-    result = passed(model, group=group, aperture=aperture, noise=0.0)
-    assert min(result.clearance_left_m or 0.0, result.clearance_right_m or 0.0) > (0.055 if aperture == 0.4 else 0.04)
-
-
-@pytest.mark.parametrize("speed", [0.1, 0.3])
-def test_who_walks_slowly_turns_in_time_too(model: Any, speed: float) -> None:
-    """1.2 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
-    assert (passed(model, aperture=0.4, speed=speed).wall_angle_deg or 0.0) > 40
-
-
 @pytest.mark.parametrize(
     ("ratio", "said"), [(1.02, "can pass turned"), (1.14, "can pass turned"), (1.18, "can pass as it is"), (1.4, "can pass as it is")]
 )
@@ -94,7 +81,8 @@ def test_it_judges_that_it_can_pass_as_it_is_from_a_ratio_of_116_on(model: Any, 
     assert said in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("variant", "aperture"), [("human", 0.05), ("human", 0.31), ("replication", 0.05), ("replication", 0.34)])
+@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("aperture", [0.05, 0.3, 0.34])
 def test_it_declines_what_it_cannot_fit(model: Any, variant: str, aperture: float, capsys: Any) -> None:
     simulation = built(model, variant=variant, aperture=aperture)
     report = simulation.run()
@@ -110,9 +98,9 @@ def test_what_it_knows_of_its_width_it_has_learned(model: Any) -> None:
     simulation = built(model, aperture=0.5, noise=0.0)
     simulation.run(WALKING)
     memory = simulation.minds["walker"].DM
-    postures = [chunk for chunk in memory.dm if "stance_yaw" in chunk]
-    left = sorted({(chunk["stance_yaw"], chunk["width"]) for chunk in postures if chunk["stance_yaw"] > 5})
-    right = sorted({(-chunk["stance_yaw"], chunk["width"]) for chunk in postures if chunk["stance_yaw"] < -5})
+    postures = [chunk for chunk in memory.dm if "torso_yaw" in chunk]
+    left = sorted({(chunk["torso_yaw"], chunk["width"]) for chunk in postures if chunk["torso_yaw"] > 5})
+    right = sorted({(-chunk["torso_yaw"], chunk["width"]) for chunk in postures if chunk["torso_yaw"] < -5})
     assert min(len(left), len(right)) >= 7
     assert (left[-1][0], right[-1][0]) == (60, 60)
     assert left[0][1] > left[-1][1] + 0.05
@@ -277,7 +265,6 @@ def test_who_declines_ends_with_0(capsys: Any) -> None:
     [
         (["--aperture", "-0.4"], "Parameters.aperture: must be > 0 (got -0.4)"),
         (["--speed", "50"], "Parameters.speed: must be <= 3 (got 50.0)"),
-        (["--speed", "1e-9"], "Parameters.speed: must be >= 0.1 (got 1e-09)"),
         (["--group", "medium"], "Parameters.group: must be one of 'small', 'large' (got 'medium')"),
         (["--variant", "humann"], "must be one of 'human', 'replication' (got 'humann'); did you mean 'human'?"),
         (["--shoulder-width", "4"], "Parameters.shoulder_width: must be <= 0.7 (got 4.0)"),

@@ -117,10 +117,6 @@ BAD: dict[str, tuple[list[int], Callable[[Trial], PassageResult]]] = {
     ),
     "touches once": ([6], lambda trial: replace(good(trial), contacts=int(trial.number == trial.agent == 1 and trial.aperture == 0.4))),
     "leaves too little": ([6], lambda trial: replace(good(trial), clearance_left_m=0.03)),
-    "leaves too little where it is narrowest": (
-        [6],
-        lambda trial: replace(good(trial), clearance_left_m=0.036, clearance_right_m=0.036) if trial.aperture == 0.4 else good(trial),
-    ),
     "stops": ([6], lambda trial: replace(good(trial), outcome="stopped") if trial.aperture == 0.4 else good(trial)),
 }
 

@@ -25,6 +25,8 @@ CRITICAL = (1.25, 1.35)
 """Where turning begins, as a ratio of aperture to shoulders. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of human-data."""
 MARGIN = (0.06, 0.08)
 """The margin on each side [m]. Source: Higuchi's review (human-data)."""
+HIPS = 0.191 * 1.714
+"""How wide the walker's hips are, which do not turn [m]. Source: Drillis & Contini (1966), as the mannequin's; its height."""
 PASSABLE = (1.11, 1.21)
 """Where it is judged to be passable as one is. Source: Warren & Whang (1987), about 1.16; the bounds are ours."""
 SAME = 5.0
@@ -155,7 +157,7 @@ class Findings:
         return Constraint(number=5, says="fast > normal below the critical ratio", met=met, found=", ".join(found))
 
     def untouched(self) -> Constraint:
-        """6: no contact, and the margin of who turned: the mean of all, and not less at any aperture."""
+        """6: no contact, and the margin of who turned, where hips do not leave less."""
         touched = sum(outcome.result.contacts > 0 for outcome in self.outcomes)
         passed = sum(outcome.result.outcome == "passed" for outcome in self.outcomes)
         margins: defaultdict[float, list[float]] = defaultdict(list)
@@ -163,11 +165,14 @@ class Findings:
             left, right = outcome.result.clearance_left_m, outcome.result.clearance_right_m
             if left is not None and right is not None and angle(outcome) > TURNED:
                 margins[outcome.trial.aperture].append((left + right) / 2)
-        middle = mean(margin for of in margins.values() for margin in of) if margins else math.nan
-        least = min((mean(of) for of in margins.values()), default=math.nan)
+        roomy = [margin for aperture, of in margins.items() if aperture >= HIPS + 2 * MARGIN[0] for margin in of]
+        middle = mean(roomy) if roomy else math.nan
         by_aperture = ", ".join(f"{100 * aperture:.0f} cm: {100 * mean(of):.1f}" for aperture, of in sorted(margins.items()))
-        found = f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin {100 * middle:.1f} cm ({by_aperture})"
-        met = touched == 0 and passed == len(self.outcomes) and MARGIN[0] <= least and middle <= MARGIN[1]
+        found = (
+            f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin {100 * middle:.1f} cm where hips leave room for it "
+        )
+        found += f"({by_aperture})"
+        met = touched == 0 and passed == len(self.outcomes) and MARGIN[0] <= middle <= MARGIN[1]
         return Constraint(number=6, says="no contact, margin 6 to 8 cm", met=met, found=found)
 
     def upright(self) -> Constraint:
