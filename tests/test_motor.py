@@ -214,7 +214,7 @@ def test_a_posture_is_assumed_again(given: str) -> None:
     assert motor.torso_end == "done"
     motor.assume("torso_yaw:91")
     assert motor.refusal == "limit"
-    with pytest.raises(WorldError, match="'width:1' names no joint of walker; it has stance_yaw"):
+    with pytest.raises(WorldError, match="'width:1' names no joint of walker; it has pelvis_yaw"):
         motor.assume("width:1")
     with pytest.raises(WorldError, match="assume: torso_yaw: must be a number"):
         motor.assume("torso_yaw:left")
@@ -289,7 +289,7 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("rotate_torso", (30, 1e5), r"rotate_torso: speed: walker can do at most [\d.]+ \(got 100000\)"),
         ("rotate_torso", (30, 1e-5), r"rotate_torso: speed: walker can do no less than 5\.7e-05 \(got 1e-05\)"),
         ("turn", (None, 1e-9), r"turn: speed: walker can do no less than 5\.7e-05 \(got 1e-09\)"),
-        ("rotate", ([1, 2],), r"walker has no joint \[1, 2\]; it has stance_yaw"),
+        ("rotate", ([1, 2],), r"walker has no joint \[1, 2\]; it has pelvis_yaw"),
         ("rotate", (np.array([1, 2]), "yaw"), r"walker has no jointed part array\(\[1, 2\]\)"),
         ("feel", (object(),), r"feel: name: must be what the posture is to be called \(got <object"),
         ("feel", (" ",), r"feel: name: must be what the posture is to be called \(got ' '\)"),

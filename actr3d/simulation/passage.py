@@ -121,7 +121,7 @@ class Passage:
             raise WorldError(f"body '{body}' has no shoulders to measure")
         self._shoulders = [geoms[name] for name in joints]
         self._segments = [int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right")]
-        hinges = (("stance_yaw", 1.0), ("torso_yaw", 1.0), ("left_shoulder_yaw", 0.5), ("right_shoulder_yaw", 0.5))
+        hinges = (("torso_yaw", 1.0), ("left_shoulder_yaw", 0.5), ("right_shoulder_yaw", 0.5))
         self._hinges = [(self._body.joints[name].q, self._body.joints[name].v, share) for name, share in hinges]
         x, y, _ = world.mj_data.xpos[self._body.root].tolist()
         self._start = x, y

@@ -26,12 +26,6 @@ HINGED = (
 )
 """The segments that hang on three hinges."""
 
-JOINTED = (("stance", "yaw"), *((segment, hinge) for segment in HINGED for hinge in HINGES))
-"""All joints: the segment and the hinge."""
-
-FEET = 2 * 0.0145
-"""The part of the mass that does not turn with the stance: that of the feet."""
-
 CLEARANCE = 0.005
 """Between the legs and the floor [m], so that gliding meets no friction."""
 
@@ -69,8 +63,7 @@ class Limbs:
         """Adds everything to the specification."""
         person, tall = self.person, self.person.height
         self._base()
-        self._stance()
-        self._segment("pelvis", "stance", (0, 0, 0.53 * tall))
+        self._segment("pelvis", "legs", (0, 0, 0.53 * tall))
         self._trunk("pelvis", 0.50, 0.64, min(0.191 * tall, person.shoulder_width), 0.142)
         self._segment("torso", "pelvis", (0, 0, 0.60 * tall))
         width = 0.191 * tall if person.trunk == "ellipsoid" else 2 * self.shoulder_y
@@ -91,29 +84,21 @@ class Limbs:
         return f"{self.person.name}_{part}"
 
     def _base(self) -> None:
-        """Adds what slides along the world's x and y and turns about the vertical: the feet, which have no shape."""
-        person = self.person
+        """Adds the legs, which slide along the world's x and y and turn about the vertical."""
+        person, tall = self.person, self.person.height
         body = add_base(self.mj_spec, person.name, person.position, person.heading)
         body.add_site(name=self._name("base"))
-        body.explicitinertial = True
-        body.mass = FEET * person.mass
-        body.inertia = [FEET * person.mass * 0.01] * 3
         self.bodies["legs"] = (body, (0, 0, 0))
-
-    def _stance(self) -> None:
-        """Adds the legs, which turn with all that they carry while they go on the same way, as those of who walks sideways do."""
-        person, tall = self.person, self.person.height
-        self._segment("stance", "legs", (0, 0, 0), ("yaw",))
         thick = min(0.046 * tall, person.depth / 2)
         for side, sign in zip(SIDES, (1, -1), strict=True):
             y = sign * min(0.0955 * tall, person.shoulder_width / 2) - sign * thick
-            self._capsule("stance", f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, 0.161 - FEET / 2)
+            self._capsule("legs", f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, 0.161)
 
-    def _segment(self, part: str, parent: str, joint: Point, hinges: tuple[str, ...] = HINGES) -> None:
-        """Adds a body on hinges at one point, given in the world's frame of a body at the origin that faces along x."""
+    def _segment(self, part: str, parent: str, joint: Point) -> None:
+        """Adds a body on three hinges at one point, given in the world's frame of a body at the origin that faces along x."""
         on, at = self.bodies[parent]
         body = on.add_body(name=self._name(part), pos=[a - b for a, b in zip(joint, at, strict=True)], gravcomp=1)
-        for hinge, limits in zip(hinges, limits_of(part), strict=True):
+        for hinge, limits in zip(HINGES, limits_of(part), strict=True):
             body.add_joint(
                 name=self._name(f"{part}_{hinge}"),
                 type=mjtJoint.mjJNT_HINGE,
@@ -223,9 +208,10 @@ class Limbs:
         for name, axis, force in (("forward", 0, self.person.push), ("sideways", 1, self.person.push), ("turn", 5, TURN)):
             gear = tuple(float(n == axis) for n in range(6))
             add_servo(self.mj_spec, self._name(name), base, force, gear)
-        for segment, hinge in JOINTED:
-            joint = self._name(f"{segment}_{hinge}")
-            add_servo(self.mj_spec, joint, joint, strength_of(segment))
+        for segment in HINGED:
+            for hinge in HINGES:
+                joint = self._name(f"{segment}_{hinge}")
+                add_servo(self.mj_spec, joint, joint, strength_of(segment))
         for side in SIDES:
             arm = self._name(f"{side}_upper_arm")
             hand = self.mj_spec.add_equality(name=self._name(f"{side}_hand"), type=mjtEq.mjEQ_WELD, objtype=mjtObj.mjOBJ_BODY, name1=arm)

@@ -11,7 +11,7 @@ from mujoco import MjSpec
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy
-from actr3d.world.bodies.limbs import JOINTED, SHOULDER, SIDES, UPPER_ARM, Limbs
+from actr3d.world.bodies.limbs import HINGED, HINGES, SHOULDER, SIDES, UPPER_ARM, Limbs
 from actr3d.world.bodies.limits import FASTEST_JOINT, FASTEST_TURN, FASTEST_WALK
 from actr3d.world.bodies.load import Load
 from actr3d.world.bodies.movements import MOVEMENTS
@@ -22,9 +22,8 @@ from actr3d.world.parts import Colour, Length, Name
 class Mannequin(Configuration):
     """A person: legs, pelvis, torso, shoulders, arms, head and eye, joined by three hinges each (yaw, pitch, roll).
 
-    The legs glide over the floor at a set speed and stop dead; what is in the way stops them. They can turn, with all that
-    they carry, against the way they go (`stance_yaw`). It stands facing its heading
-    with hanging arms, or holding its load. Its parts are `legs`, `stance`, `pelvis`, `torso`, `left_shoulder`, `left_upper_arm` (with
+    The legs glide over the floor at a set speed and stop dead; what is in the way stops them. It stands facing its heading
+    with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`, `left_shoulder`, `left_upper_arm` (with
     forearm and hand), the same on the right, `head`, `eye` and `load`; its joints `torso_yaw`, `torso_pitch` and so on.
 
     Source of proportions: Drillis & Contini (1966), as given by Winter (2009), in fractions of the height; of masses:
@@ -119,7 +118,7 @@ class Mannequin(Configuration):
         """Returns what a `Body` needs to know of it."""
         prefix = f"{self.name}_"
         push = (f"{prefix}forward", f"{prefix}sideways", f"{prefix}turn")
-        joints = tuple(f"{prefix}{segment}_{hinge}" for segment, hinge in JOINTED)
+        joints = tuple(f"{prefix}{segment}_{hinge}" for segment in HINGED for hinge in HINGES)
         return Anatomy(
             root=self.name,
             prefix=prefix,
