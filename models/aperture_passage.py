@@ -77,7 +77,7 @@ class Parameters(Configuration):
     condition: Literal["normal", "fast"] = "normal"
     """How fast its group walks: small 1.29 or 1.61 m/s, large 1.28 or 1.77 m/s. Source: Warren & Whang (1987)."""
 
-    speed: Annotated[float, Gt(0), Le(3)] | None = None
+    speed: Annotated[float, Ge(0.1), Le(3)] | None = None
     """How fast it walks [m/s]; None: as its condition says."""
 
     margin: Annotated[float, Ge(0), Le(1)] | None = None
@@ -361,14 +361,15 @@ class Human(Walker):
 
 
 REACTION = 1.2
-"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as shoulders turn."""
+"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as shoulders turn. Who walks so
+slowly that this is nearer than `RADIUS` would have the doorway's edges beside it, out of sight, before it reacts: `RADIUS` counts then."""
 TURNING = 93.0
 """How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 120 degrees a second at 1.29 m/s, as the original's
 torso (human-data). That it grows with the speed is ours: people turn more when they are fast."""
 ENOUGH = 1.21
 """Up to which ratio a person goes on turning. Ours: of what leaves 6 to 8 cm on each side (Higuchi, human-data)."""
 RADIUS = 3.0
-"""Within how many times its width an obstacle alerts the replication. Source: human-data."""
+"""Within how many times its width an obstacle alerts the replication; people never look less far ahead. Source: human-data."""
 TRUNK = 0.11
 """How deep the replication's trunk is [m]. Ours: of what fits the original's means best; how deep it was is not known."""
 
@@ -384,12 +385,12 @@ def mind_of(parameters: Parameters) -> Walker:
     """Returns the mind of who walks."""
     p = parameters
     speed = p.speed or SPEEDS[p.group, p.condition]
+    width = p.shoulder_width or WIDTHS[p.group]
     given = {"speed": speed, "noise": p.noise}
     if p.variant == "human":
         rate = TURNING * speed
         rates = {"torso_rate": rate * TORSO / (TORSO + CLAVICLE), "clavicle_rate": rate * CLAVICLE / (TORSO + CLAVICLE)}
-        return Human(margin=0.30 if p.margin is None else p.margin, radius=REACTION * speed, **rates, **given)
-    width = p.shoulder_width or WIDTHS[p.group]
+        return Human(margin=0.30 if p.margin is None else p.margin, radius=max(REACTION * speed, RADIUS * width), **rates, **given)
     return Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
 
 

@@ -73,6 +73,12 @@ def test_it_walks_at_the_speed_it_was_given(model: Any) -> None:
     assert passed(model, aperture=0.8, speed=0.9).speed_m_s == pytest.approx(0.9, abs=0.01)
 
 
+@pytest.mark.parametrize("speed", [0.1, 0.3])
+def test_who_walks_slowly_turns_in_time_too(model: Any, speed: float) -> None:
+    """1.2 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
+    assert (passed(model, aperture=0.4, speed=speed).wall_angle_deg or 0.0) > 30
+
+
 @pytest.mark.parametrize(
     ("ratio", "said"), [(1.02, "can pass turned"), (1.14, "can pass turned"), (1.18, "can pass as it is"), (1.4, "can pass as it is")]
 )
@@ -265,6 +271,7 @@ def test_who_declines_ends_with_0(capsys: Any) -> None:
     [
         (["--aperture", "-0.4"], "Parameters.aperture: must be > 0 (got -0.4)"),
         (["--speed", "50"], "Parameters.speed: must be <= 3 (got 50.0)"),
+        (["--speed", "1e-9"], "Parameters.speed: must be >= 0.1 (got 1e-09)"),
         (["--group", "medium"], "Parameters.group: must be one of 'small', 'large' (got 'medium')"),
         (["--variant", "humann"], "must be one of 'human', 'replication' (got 'humann'); did you mean 'human'?"),
         (["--shoulder-width", "4"], "Parameters.shoulder_width: must be <= 0.7 (got 4.0)"),

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 from living import near
 from moving import during, motor_of, mover, moving, until
 
-from actr3d.actr import ACTR
+from actr3d.actr import ACTR, Buffer
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning, ParameterError, SimulationError, WorldError
 from actr3d.motor import Motor
@@ -286,6 +287,12 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("walk", (50,), r"walk: speed: walker can do at most [\d.]+ \(got 50\)"),
         ("turn", (90, 1e5), r"turn: speed: walker can do at most [\d.]+ \(got 100000\)"),
         ("rotate_torso", (30, 1e5), r"rotate_torso: speed: walker can do at most [\d.]+ \(got 100000\)"),
+        ("rotate_torso", (30, 1e-5), r"rotate_torso: speed: walker can do no less than 5\.7e-05 \(got 1e-05\)"),
+        ("turn", (None, 1e-9), r"turn: speed: walker can do no less than 5\.7e-05 \(got 1e-09\)"),
+        ("rotate", ([1, 2],), r"walker has no joint \[1, 2\]; it has pelvis_yaw"),
+        ("rotate", (np.array([1, 2]), "yaw"), r"walker has no jointed part array\(\[1, 2\]\)"),
+        ("feel", (object(),), r"feel: name: must be what the posture is to be called \(got <object"),
+        ("feel", (" ",), r"feel: name: must be what the posture is to be called \(got ' '\)"),
         ("walk", ("fast",), r"walk: speed: must be a number \(got 'fast'\)"),
     ],
 )
@@ -295,10 +302,13 @@ def test_what_there_is_not_is_an_error(command: str, given: tuple[Any, ...], mes
         getattr(motor, command)(*given)
 
 
-@pytest.mark.parametrize(("parameter", "value"), [("angle_grid", 0), ("size_noise", -1), ("patience", 0), ("speed", float("inf"))])
-def test_parameters_are_checked(parameter: str, value: float) -> None:
+WRONG = [("angle_grid", 0), ("size_noise", -1), ("patience", 0), ("speed", float("inf")), ("size_noise", 1e308), ("size_grid", 1e-310)]
+
+
+@pytest.mark.parametrize(("parameter", "value"), [*WRONG, ("buffer", "posture"), ("memory", Buffer())])
+def test_parameters_are_checked(parameter: str, value: Any) -> None:
     with pytest.raises(ParameterError, match=rf"Motor\.{parameter}: must be"):
-        Motor(**{parameter: value})  # type: ignore[arg-type]
+        Motor(**{parameter: value})
 
 
 def test_an_agent_without_a_body_is_told_so() -> None:

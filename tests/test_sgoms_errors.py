@@ -11,7 +11,7 @@ from planning import HEAD, cooking
 
 from actr3d.actr.loading import load_text, run_text
 from actr3d.errors import ModelWarning, PatternException, PlanError
-from actr3d.sgoms import Ordered, Situated
+from actr3d.sgoms import SGOMS, Ordered, Situated
 
 
 @pytest.mark.parametrize(
@@ -163,3 +163,34 @@ def test_planning_units_are_inherited_and_each_agent_has_its_own_buffers() -> No
     assert world.one.b_unit_task["state"] == "running"
     assert world.two.b_unit_task["state"] == "finished"
     assert len(world.one.DM.dm) == 4 + 3 + 2
+
+
+@pytest.mark.parametrize(
+    ("buffer", "chunk"),
+    [("b_plan_unit", "planning_unit:tea"), ("b_method", "method:pour"), ("b_interrupt", "planning_unit:phone when:now")],
+)
+def test_an_agent_that_does_not_live_yet_has_no_buffer_of_its_own(buffer: str, chunk: str) -> None:
+    """What was set there used to be every agent's, of whatever class, and a planning unit set so never began."""
+    agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
+    with pytest.raises(PlanError, match=r"before its agent lives; do it in the agent's init\(\), or after its run\(0\)"):
+        getattr(agent, buffer).set(chunk)
+    assert not SGOMS.__dict__[buffer].chunk
+    agent.run(0)
+    getattr(agent, buffer).set(chunk)
+
+
+@pytest.mark.parametrize(
+    ("buffer", "changes", "message"),
+    [
+        ("b_plan_unit", {"type": "situated"}, "'tea' is of type 'ordered', not 'situated'; begin it with 'planning_unit:tea'"),
+        ("b_plan_unit", {"planning_unit": "phone"}, "'phone' is of type 'situated', not 'ordered'"),
+        ("b_interrupt", {"planning_unit": "phon"}, "no planning unit 'phon'; did you mean 'phone'"),
+        ("b_interrupt", {"when": "nwo"}, "does not say when; did you mean 'now'"),
+    ],
+)
+def test_what_is_modified_is_checked_like_what_is_set(buffer: str, changes: dict[str, str], message: str) -> None:
+    agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
+    agent.run(0.06)
+    agent.b_interrupt.set("planning_unit:phone when:end")
+    with pytest.raises(PlanError, match=message):
+        getattr(agent, buffer).modify(**changes)

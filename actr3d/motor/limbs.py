@@ -127,6 +127,8 @@ class Limbs:
             WorldError: If there is none, or there are several.
         """
         whose = self.plan.name
+        if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a mind
+            known(name, self.joints, whose, "joint" if axis is None else "jointed part")
         if axis is None:
             if name in self.joints:
                 return name
@@ -164,9 +166,11 @@ class Limbs:
             unit: What one unit in which people give it is inside.
 
         Raises:
-            WorldError: If it is faster; says what would be possible.
+            WorldError: If it is faster, or slower than `SLOWEST` but not 0; says what would be possible.
         """
         most = self.fastest[kind]
+        if 0 < abs(speed) < SLOWEST:
+            raise WorldError(f"{call}: speed: {self.plan.name} can do no less than {SLOWEST / unit:.2g} (got {speed / unit:g})")
         if abs(speed) > most + TINY:
             raise WorldError(f"{call}: speed: {self.plan.name} can do at most {most / unit:g} (got {speed / unit:g})")
 
@@ -184,6 +188,12 @@ class Limbs:
         """Returns what one unit in which people give a joint's position is inside: a degree in radians, or a metre."""
         return radians(1) if self.joints[joint].kind == "hinge" else 1.0
 
+
+SLOWEST = 1e-6
+"""What moves at all moves as fast as this [m/s] or [rad/s]: the least that the words of bodies take."""
+
+FINEST = 1e-9
+"""The finest grid [degrees] or [m]."""
 
 TINY = 1e-9
 """What conversion between degrees and radians may add [rad]."""

@@ -7,13 +7,18 @@ from functools import partial
 from math import copysign, radians
 from typing import Any
 
+from actr3d.actr.buffer import Buffer
 from actr3d.actr.chunk import Chunk
+from actr3d.actr.memory import Memory
 from actr3d.actr.parameters import named_parameters
 from actr3d.errors import ParameterError, SimulationError, WorldError
-from actr3d.motor.limbs import BodyPart, Freedom, Limbs
+from actr3d.motor.limbs import FINEST, BodyPart, Freedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Turn, Walk
 from actr3d.motor.muscles import Muscles
 from actr3d.world.words import known, number
+
+HUGE = 1e9
+"""Every parameter is below this."""
 
 
 class Motor(Muscles):
@@ -39,7 +44,7 @@ class Motor(Muscles):
         speed: How fast joints and the whole body turn unless told otherwise [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (human-data).
         angle_grid: What felt angles are rounded to [degrees]; this and the next two hold from when the body is known.
-        size_grid: What felt lengths are rounded to [m].
+        size_grid: What felt lengths are rounded to [m]. Ours: fine enough for judging a doorway to a hundredth of the shoulders.
         extreme_step: How much further than ever a joint has to go for its posture to be stored on the way [degrees]; None
             for never. Source: ours; about the ten samples to each side that the original took.
         angle_noise: The standard deviation of felt angles [degrees].
@@ -61,7 +66,7 @@ class Motor(Muscles):
         memory: Any = None,
         speed: float = 120.0,
         angle_grid: float = 1.0,
-        size_grid: float = 0.01,
+        size_grid: float = 0.001,
         extreme_step: float | None = 10.0,
         angle_noise: float = 0.0,
         size_noise: float = 0.0,
@@ -70,11 +75,19 @@ class Motor(Muscles):
         initiation: float = 0.0,
     ) -> None:
         super().__init__(buffer, memory)
-        above = {"speed": speed, "angle_grid": angle_grid, "size_grid": size_grid, "extreme_step": extreme_step, "patience": patience}
+        for name, given, kind in (("buffer", buffer, Buffer), ("memory", memory, Memory)):
+            if given is not None and not isinstance(given, kind):
+                raise ParameterError(f"Motor.{name}: must be a {kind.__name__}, or None (got {given!r})")
+        grids = {"angle_grid": angle_grid, "size_grid": size_grid}
+        above = {"speed": speed, "extreme_step": extreme_step, "patience": patience, **grids}
         from_0 = {"angle_noise": angle_noise, "size_noise": size_noise, "preparation": preparation, "initiation": initiation}
         for name, value in {**above, **from_0}.items():
-            if value is not None and not (0 <= value < INFINITE and (value > 0 or name in from_0)):
-                raise ParameterError(f"Motor.{name}: must be {'at least' if name in from_0 else 'above'} 0 (got {value!r})")
+            if value is not None and not (0 <= value < HUGE and (value > 0 or name in from_0)):
+                bounds = "at least 0" if name in from_0 else "above 0"
+                raise ParameterError(f"Motor.{name}: must be {bounds}, and below {HUGE:g} (got {value!r})")
+        for name, grid in grids.items():
+            if grid < FINEST:
+                raise ParameterError(f"Motor.{name}: must be at least {FINEST:g} (got {grid!r})")
         self.speed = speed
         self.angle_grid = angle_grid
         self.size_grid = size_grid
@@ -245,11 +258,17 @@ class Motor(Muscles):
         self._command(partial(self._assume, wanted, pace), "assume", posture=wanted, speed=speed)
 
     def feel(self, name: str = "felt") -> None:
-        """Feels the body at the end of this tick, and stores that posture under a name."""
+        """Feels the body at the end of this tick, and stores that posture under a name.
+
+        Raises:
+            WorldError: If the name is no text.
+        """
+        if not isinstance(name, str) or not name.strip():  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a mind
+            raise WorldError(f"feel: name: must be what the posture is to be called (got {name!r})")
         self._command(partial(self._want, name), "feel", name=name)
 
     def _want(self, name: str, place: str) -> None:
-        self._wanted.append(str(name))
+        self._wanted.append(name)
         self._ask()
 
     def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, place: str) -> None:

@@ -17,6 +17,18 @@ STATES = ("begin", "retrieving", "choosing", "running", "finished", "resuming", 
 """The states of a planning unit."""
 
 
+def _agent_of(buffer: Buffer) -> Any:
+    """Returns whose buffer it is.
+
+    Raises:
+        PlanError: If its agent does not live yet: until then the buffer is that of the class, which every agent begins with.
+    """
+    agent = buffer.__dict__.get("parent")
+    if agent is None:
+        raise PlanError("a buffer of SGOMS is set before its agent lives; do it in the agent's init(), or after its run(0)")
+    return agent
+
+
 class Level(Buffer):
     """Holds what an agent is about on one level: a chunk with a slot named after the level, and `state`.
 
@@ -40,12 +52,21 @@ class Level(Buffer):
         self._beginning = "begun"
 
     def _agent(self) -> Any:
-        return self.__dict__.get("parent")
+        return _agent_of(self)
+
+    def set(self, chunk: object) -> None:
+        """Puts a chunk in.
+
+        Raises:
+            PlanError: If its agent does not live yet.
+        """
+        self._agent()
+        super().set(chunk)
 
     def _made(self, chunk: object) -> Chunk:
         """Returns the chunk that `set` is to put in."""
-        sch = self.__dict__.get("sch")
-        return Chunk(chunk, sch.bound if sch is not None else None)
+        self._agent()
+        return Chunk(chunk, self.sch.bound)
 
     def _put(self, slots: dict[str, Any], beginning: str) -> None:
         """Puts a chunk in, which begins in a way of its own: it is resumed."""
@@ -130,9 +151,7 @@ class PlanUnitLevel(Level):
         if "planning_unit" not in made:
             raise PlanError(f"b_plan_unit: '{made}' names no planning unit; write 'planning_unit:…'")
         name = as_text(made["planning_unit"])
-        unit = self._agent()._unit(name, "b_plan_unit") if self._agent() is not None else None
-        if unit is not None:
-            made.setdefault("type", unit.kind)
+        made.setdefault("type", self._agent()._unit(name, "b_plan_unit").kind)
         for slot, value in (("cuelag", BEFORE), ("cue", BEFORE), ("unit_task", START), ("state", "begin")):
             made.setdefault(slot, value)
         for slot in ("interrupted", "place", "lost"):
@@ -155,7 +174,11 @@ class PlanUnitLevel(Level):
         super().modify(**args)
 
     def _check(self, slots: Any) -> None:
-        state = as_text(slots["state"])
+        name, state = as_text(slots["planning_unit"]), as_text(slots["state"])
+        kind = self._agent()._unit(name, "b_plan_unit").kind
+        if slots["type"] != kind:
+            given = as_text(slots["type"])
+            raise PlanError(f"b_plan_unit: '{name}' is of type '{kind}', not '{given}'; begin it with 'planning_unit:{name}'")
         if state not in STATES:
             raise PlanError(f"b_plan_unit: no state '{state}'{did_you_mean(state, STATES)}; there are: {', '.join(STATES)}")
         if state == "resuming" and slots["place"] == "none":
@@ -181,11 +204,10 @@ class UnitTaskLevel(Level):
         if "unit_task" not in made:
             raise PlanError(f"b_unit_task: '{made}' names no unit task; write 'unit_task:…'")
         agent = self._agent()
-        if agent is not None:
-            agent._check_unit_task(as_text(made["unit_task"]))
-            plan: dict[Any, Any] = agent.b_plan_unit.chunk or {}
-            made.setdefault("planning_unit", plan.get("planning_unit", "none"))
-            made.setdefault("type", plan.get("type", "none"))
+        agent._check_unit_task(as_text(made["unit_task"]))
+        plan: dict[Any, Any] = agent.b_plan_unit.chunk or {}
+        made.setdefault("planning_unit", plan.get("planning_unit", "none"))
+        made.setdefault("type", plan.get("type", "none"))
         made.setdefault("state", START)
         made.setdefault("resumed", "no")
         self._check_state(made["state"])
@@ -208,8 +230,7 @@ class UnitTaskLevel(Level):
         Raises:
             PlanError: If the planning unit is waiting for the end of the unit task, which would never come.
         """
-        agent = self._agent()
-        plan: dict[Any, Any] = {} if agent is None else agent.b_plan_unit.chunk or {}
+        plan: dict[Any, Any] = self._agent().b_plan_unit.chunk or {}
         if self.chunk and plan.get("state") == "running":
             raise PlanError(
                 f"b_unit_task: '{self.chunk['unit_task']}' is cleared, and nothing would come after it; "
@@ -231,19 +252,30 @@ class Interruption(Buffer):
         """Asks for the interruption of the present planning unit by another one, the response.
 
         Raises:
-            PlanError: If there is no such planning unit, or it is not said when.
+            PlanError: If there is no such planning unit, it is not said when, or the agent does not live yet.
         """
-        sch = self.__dict__.get("sch")
-        made = Chunk(chunk, sch.bound if sch is not None else None)
+        _agent_of(self)
+        made = Chunk(chunk, self.sch.bound)
+        self._check(made)
+        super().set(made)
+
+    def modify(self, **args: Any) -> None:
+        """Asks for another interruption, or for it at another time.
+
+        Raises:
+            PlanError: As for `set`.
+        """
+        if self.chunk:
+            self._check(Chunk({**self.chunk, **args}))
+        super().modify(**args)
+
+    def _check(self, made: Chunk) -> None:
         if "planning_unit" not in made:
             raise PlanError(f"b_interrupt: '{made}' names no planning unit; write 'planning_unit:… when:now'")
-        agent: Any = self.__dict__.get("parent")
-        if agent is not None:
-            agent._unit(as_text(made["planning_unit"]), "b_interrupt")
+        _agent_of(self)._unit(as_text(made["planning_unit"]), "b_interrupt")
         when = made.get("when")
         if when not in ("now", "end"):
             hint = "" if when is None else did_you_mean(as_text(when), ("now", "end"), 0.5)
             raise PlanError(
                 f"b_interrupt: '{made}' does not say when{hint}; 'when:now' cuts the unit task short, 'when:end' lets it end first"
             )
-        super().set(made)
