@@ -153,7 +153,8 @@ def test_emma_stays_within_numbers() -> None:
 
 def test_saliences_of_numpy_and_huge_ones_are_weighed() -> None:
     feature: Any = object()
-    assert weigh([feature], lambda _: np.float32(0.5), "it") == [0.5]
+    half: Any = np.float32(0.5)
+    assert weigh([feature], lambda _: half, "it") == [0.5]
     with pytest.raises(VisionError, match="must give a number from 0 on"):
         weigh([feature], lambda _: 10**400, "it")
     random = Random(1)
