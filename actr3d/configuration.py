@@ -83,7 +83,7 @@ def _checked(value: Any, declared: Any, where: str) -> Any:
         inner, *bounds = get_args(declared)
         checked = _checked(value, inner, where)
         for bound in bounds:
-            _hold(bound, checked, where)
+            hold(bound, checked, where)
         return checked
     if origin in (Union, UnionType):
         return _one_of(value, get_args(declared), where)
@@ -103,7 +103,7 @@ def _plain(value: Any, declared: Any, where: str) -> Any:
         return value
     if declared is float:
         if isinstance(value, (int, float)) and not isinstance(value, bool):
-            if math.isfinite(value):
+            if is_finite(value):
                 return float(value)
             raise ConfigurationError(f"{where}: must be a finite number (got {value!r})")
     elif declared is int:
@@ -114,6 +114,14 @@ def _plain(value: Any, declared: Any, where: str) -> Any:
     names = {float: "a number", int: "a whole number", str: "text", bool: "True or False"}
     name = names.get(declared) or getattr(declared, "__name__", str(declared))
     raise ConfigurationError(f"{where}: must be {name} (got {value!r})")
+
+
+def is_finite(value: Any) -> bool:
+    """Tells whether a number is finite, as a float too: not every whole number has one."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def _one_of(value: Any, options: tuple[Any, ...], where: str) -> Any:
@@ -133,7 +141,10 @@ def _one_of(value: Any, options: tuple[Any, ...], where: str) -> Any:
 def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
     if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
         raise ConfigurationError(f"{where}: must be a tuple (got {value!r})")
-    values: tuple[Any, ...] = tuple(value)
+    try:
+        values: tuple[Any, ...] = tuple(value)
+    except TypeError:  # an array of no dimension
+        raise ConfigurationError(f"{where}: must be a tuple (got {value!r})") from None
     if len(items) == 2 and items[1] is Ellipsis:
         items = (items[0],) * len(values)
     if len(values) != len(items):
@@ -141,7 +152,12 @@ def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
     return tuple(_checked(item, declared, f"{where}[{n}]") for n, (item, declared) in enumerate(zip(values, items, strict=True)))
 
 
-def _hold(bound: object, value: Any, where: str) -> None:
+def hold(bound: object, value: Any, where: str) -> None:
+    """Checks a value against one bound of a type, such as `Gt(0)`; what is no bound holds.
+
+    Raises:
+        ConfigurationError: If it does not hold.
+    """
     if value is None:
         return
     match bound:

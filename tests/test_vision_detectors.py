@@ -129,13 +129,38 @@ def test_any_number_of_objects_is_told() -> None:
     assert len([one for one in found("opening", posts) if one.height > 1]) == 69
 
 
+@pytest.mark.parametrize("radius", [0.05, 0.4])
+def test_what_is_round_is_as_near_as_its_nearest_side(radius: float) -> None:
+    for x, y in ((1.5, 0.0), (3.0, -1.2)):
+        away = math.hypot(x, y) - radius
+        post = nearest(found("obstacle", pole("p", x, y, radius)))
+        assert (post.distance, post.direction) == (near(away, abs=1e-3), near(math.atan2(y, x), abs=0.02))
+        ball = nearest(found("obstacle", f'<body pos="{x} {y} 1.4"><geom type="sphere" size="{radius}"/></body>'))
+        assert ball.distance == near(away, abs=5e-3)
+
+
+@pytest.mark.parametrize("turned", [10, 45, 80])
+def test_a_box_is_as_near_as_its_nearest_corner(turned: float) -> None:
+    box = f'<body pos="2 0.1 0.9" euler="0 0 {turned}"><geom type="box" size="0.3 0.3 0.9"/></body>'
+    c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
+    corners = [(2 + 0.3 * (a * c - b * s), 0.1 + 0.3 * (a * s + b * c)) for a in (1, -1) for b in (1, -1)]
+    assert nearest(found("obstacle", box)).distance == near(min(math.hypot(*corner) for corner in corners), abs=1e-3)
+
+
+def test_a_post_that_bulges_into_a_doorway_is_in_the_way() -> None:
+    free = found("opening", doorway(3.0, 1.2) + pole("p", 3.9, 0.0, radius=0.45, height=2.5))
+    assert max(opening.depth for opening in free if opening.width > 1 and opening.height > 1) == near(3.9 - 0.45 - 3.1, abs=0.01)
+    blocked = found("opening", doorway(3.0, 1.2) + pole("p", 3.35, 0.0, radius=0.45, height=2.5))
+    assert not [opening for opening in blocked if opening.width > 1]
+
+
 def test_a_bearing_bounds_where_it_is_looked() -> None:
     _, view = seen(wall("a", 3.05, 5.0, 0.6) + pole("p", 2.0, -1.0))
     for degrees, expected in ((5, []), (20, [1]), (60, [2, 1])):
         some: list[Any] = sorted(obstacle(view, bearing=math.radians(degrees)), key=lambda one: one.distance)
         assert [one.object for one in some] == expected
     (aside,) = obstacle(view, bearing=math.radians(20))
-    assert aside.distance == near(math.hypot(3.0, 0.6), abs=0.05)  # only its edges are told, not the corner between them
+    assert aside.distance == near(math.hypot(3.0, 0.6), abs=1e-3)
 
 
 def test_an_eye_that_looks_back_over_the_shoulder_knows_where_ahead_is() -> None:

@@ -11,6 +11,7 @@ from living import near
 from looking import doorway, pole
 from seeing import seen
 
+from actr3d.vision.detectors.opening import opening as openings
 from actr3d.vision.noise import blurred
 
 SCENE = doorway(4.0, 0.8) + pole("post", 2.0, 0.5)
@@ -63,3 +64,21 @@ def test_distances_change_by_a_part_of_them_and_stay_above_0() -> None:
     assert blurred(view, 0.01, 0.1, 7).extents.tobytes() == blurred(view, 0.01, 0.1, 7).extents.tobytes()
     empty = seen("")[1]
     assert blurred(empty, 0.1, 0.1, 1) is empty
+
+
+@pytest.mark.parametrize(("edges", "distances"), [(0.005, 0.0), (0.0, 0.1)])
+@pytest.mark.parametrize("distance", [7.0, 1.5])
+def test_a_doorway_looks_as_wide_on_average_as_it_is(distance: float, edges: float, distances: float) -> None:
+    _, view = seen(doorway(distance, 0.6), rows=5)
+    widths = [max(openings(blurred(view, edges, distances, seed)), key=lambda one: one.height).width for seed in range(1000)]
+    sd = distance * edges * math.sqrt(2) if edges else 0.6 * distances
+    assert np.std(widths) == near(sd, rel=0.15)
+    assert np.mean(widths) == near(0.6, abs=4 * sd / math.sqrt(1000))
+
+
+def test_all_distances_of_a_look_are_misjudged_alike() -> None:
+    _, view = seen(SCENE)
+    noisy = blurred(view, 0.0, 0.05, 3).extents
+    parts = [noisy[d] / view.extents[d] for d in ("d1", "d2", "dn")]
+    assert np.ptp(parts) < 1e-9
+    assert abs(parts[0][0] - 1) > 1e-3

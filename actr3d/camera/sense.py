@@ -33,10 +33,13 @@ class Sight:
         """How it sees."""
         self._world = body.world
         self._root = body.root
+        self._site = body.world.mj_model.site(body.eye).id
         self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
         self._moment = -1
         self._view: View | None = None
+        self.stood: tuple[float, float, float, float] | None = None
+        """Where the eye was at the last look, and where ahead was [m] [rad, in the world's frame]; for who looks on."""
 
     def look(self) -> View:
         """Returns what is visible now.
@@ -47,7 +50,10 @@ class Sight:
         world = self._world
         if self._view is None or self._moment != world.moment:
             world.refresh()
-            self._view = self._camera.look(world.mj_data, heading_of(world.mj_data.xmat[self._root]))
+            heading = heading_of(world.mj_data.xmat[self._root])
+            self._view = self._camera.look(world.mj_data, heading)
+            x, y, z = world.mj_data.site_xpos[self._site].tolist()
+            self.stood = (x, y, z, heading)
             self._moment = world.moment
         return self._view
 

@@ -52,7 +52,8 @@ class View:
     def as_array(self) -> NDArray[Any]:
         """Returns all extents as one array that cannot be written to, by rows from the top, in each from left to right.
 
-        Its fields are `row`, `label`, `y`, `x1`, `x2`, `d1`, `d2`, `a1` and `a2`.
+        Its fields are `row`, `label`, `y`, `x1`, `x2`, `d1`, `d2`, `a1` and `a2`; and `xn` and `dn`, where between the edges what is
+        seen is nearest on the ground, and how far from the eye that is [m].
         """
         return self.extents
 
@@ -61,7 +62,7 @@ class View:
         ys = [(row + 0.5) / self.rows for row in range(self.rows)]
         view: dict[float, dict[int, list[Extent]]] = {y: {} for y in ys}
         for row, label, _, *extent in self.extents.tolist():
-            view[ys[row]].setdefault(label, []).append(extent)
+            view[ys[row]].setdefault(label, []).append(extent[: len(NOISY)])
         return view
 
     def __repr__(self) -> str:

@@ -17,6 +17,11 @@ PROGRAMMING = 0.05
 SACCADE, PER_DEGREE = 0.02, 0.002
 """How long the eye moves: 20 ms and 2 ms for each degree [s] [s/degree]. Source: the same (human-data)."""
 
+LONGEST = 1e6
+"""No encoding takes longer [s]: for what is far aside the equation tells of years, then of more than there are numbers."""
+LARGEST = 700.0
+"""The greatest exponent of which the exponential is a number."""
+
 
 def saccade_time(angle: float) -> float:
     """Returns how long the eye moves over an angle [rad], in seconds."""
@@ -41,7 +46,8 @@ class Emma(Configuration):
 
     def encoding(self, eccentricity: float) -> float:
         """Returns how long encoding takes at an angle off the line of sight [rad], in seconds."""
-        return -self.factor * math.log(self.frequency) * math.exp(self.exponent * math.degrees(eccentricity))
+        exponent = min(LARGEST, self.exponent * math.degrees(eccentricity))
+        return min(LONGEST, -self.factor * math.log(self.frequency) * math.exp(exponent))
 
     def course(self, eccentricity: float) -> tuple[float, float | None]:
         """Returns when something is encoded, and when the eye begins to move to it, if it does [s from the shift of attention].

@@ -6,11 +6,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import Any, ClassVar, Self
+from numbers import Real
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actr3d.errors import VisionError
 from actr3d.vision.units import LABEL, Metres, MetresPerSecond, Radians, units_of
 
 
@@ -95,6 +97,30 @@ class Feature:
 def slot_names(kind: type[Feature]) -> tuple[str, ...]:
     """Returns the slots that a chunk of a kind of features may have, besides `feature`."""
     return tuple(field.name for field in fields(kind))
+
+
+def sound(feature: Any, kind: type[Feature]) -> Feature:
+    """Returns what a modeller's detector has found, with plain numbers: no text and no thing may reach a chunk by it.
+
+    Raises:
+        VisionError: If it is no feature of a kind, or a field is neither a number nor True or False, or is no distance or direction.
+    """
+    name = kind.called()
+    if not isinstance(feature, kind):
+        raise VisionError(f"detector '{name}': must return features of the class {kind.__name__} (got {feature!r})")
+    changed: dict[str, Any] = {}
+    for slot in slot_names(kind):
+        value: Any = getattr(feature, slot)
+        if value is None and slot not in ("distance", "direction"):
+            continue
+        if not isinstance(value, (Real, np.bool_)) or value != value or (slot == "distance" and value < 0):
+            least = " from 0 on" if slot == "distance" else ""
+            raise VisionError(f"detector '{name}': {slot} must be a number{least} (got {value!r})")
+        if units_of(kind)[slot].measures:
+            changed[slot] = float(cast("Any", value))
+        elif isinstance(value, np.generic):
+            changed[slot] = value.item()
+    return feature._changed(**changed) if changed else feature
 
 
 def off_sight(axes: NDArray[np.float64], feature: Feature) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.searches import Searching, outcome_of
 from actr3d.camera import View
 from actr3d.clock import MICROSECONDS
+from actr3d.errors import VisionError
 from actr3d.vision.detectors import DETECTORS
 from actr3d.vision.encoding import Emma, saccade_time
 from actr3d.vision.feature import off_sight
@@ -20,7 +21,10 @@ from actr3d.vision.noise import blurred
 from actr3d.vision.query import Query, read_request
 from actr3d.vision.search import Search
 from actr3d.vision.settings import check_camera, check_numbers, encoding_of, saliences_of
+from actr3d.world.words import number
 
+TICK = 10_000
+"""After which a body answers [us]; see `actr3d.simulation`."""
 BITS = 64
 """Of the seed of a look's noise."""
 
@@ -29,8 +33,9 @@ class Vision(WithParameters, Searching):
     """Looks for features with a body's eye, and brings one of those it notices to a buffer, as a chunk.
 
     The view is private: a mind gets features only, with opaque labels and no names. A request is answered from what is visible at
-    the end of the tick in which it is made; the chunk comes `delay` after the request, or when that tick ends, if later. Where
-    nothing is found, the buffer is cleared and `error` set. A further request before that takes the place of this one.
+    the end of the tick in which it is made; the chunk comes `delay` after the request, or when that tick ends, if later, and tells
+    what was seen then, also where that has changed meanwhile. Where nothing is found, the buffer is cleared and `error` set. A
+    further request before that takes the place of this one.
 
     Bottom-up requests (`bottom_up=True`) wait until a top-down one is done. A top-down one never waits: a bottom-up search that is
     under way is given up, and begins anew with a new look when the top-down one is done. Bottom-up searches that find nothing leave
@@ -46,13 +51,15 @@ class Vision(WithParameters, Searching):
         salience: What makes a feature salient: `size`, `nearness`, `motion`, `equal`, a function of a feature, or one of these by
             the feature's name; None: openings by size, obstacles by nearness.
         rule: How one of several is chosen: `share` with probability s_i / sum(s); `sos` as SOS Vision does: each is noticed with
-            probability s_i (above 1 counts as 1), one of those is drawn, and requests while it is busy do nothing.
+            probability s_i (above 1 counts as 1), one of those is drawn, and comes as it is when the delay is over, if it is still to
+            be seen and as was asked for; else nothing is found. Requests while it is busy do nothing.
         error_rate: The probability that a search notices nothing.
         edge_noise: The standard deviation of the directions in which edges are seen [rad].
-        distance_noise: That of their distances, as a part of these.
+        distance_noise: That of how far away all is seen at one look, as a part of the distances.
         encoding: How much longer it takes to encode what a top-down request has found: a time [s], such as 0.085 for a shift of
             attention; or `emma`, or an `Emma`, by which it takes the longer the farther off the line of sight it is.
         saccades: Whether the eye turns to what a top-down request has found, as far as it can; the chunk then does not come before.
+            Without it, EMMA's times are as if the eye turned there and back.
         camera: The fields of `CameraParameters`: `rows=50`, `horizontal_fov=2.0`.
 
     Raises:
@@ -127,9 +134,13 @@ class Vision(WithParameters, Searching):
         Raises:
             VisionError: If there is no such feature or slot, or a value is not what it takes.
             ChunkError: If a variable is not bound.
+            ParameterError: If a parameter was changed to what it cannot be.
             SimulationError: If the agent has no body, or does not live yet.
         """
         self._joined("view")
+        check_numbers(vars(self))
+        if not isinstance(bottom_up, bool):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
+            raise VisionError(f"vision '{self._path}': bottom_up: must be True or False (got {bottom_up!r})")
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")
         trace = self.sch.trace
         if trace is not None and trace.all:
@@ -158,9 +169,11 @@ class Vision(WithParameters, Searching):
             up: Above it [degrees].
 
         Raises:
+            WorldError: If one of them is no number.
             SimulationError: If the agent has no body.
         """
-        self._tell("gaze", math.radians(left), math.radians(up))
+        angles = (number(value, f"vision '{self._path}': gaze: {name}") for name, value in (("left", left), ("up", up)))
+        self._tell("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:
         """Begins a bottom-up search, or lets it wait; it takes the place of an earlier one."""
@@ -179,13 +192,17 @@ class Vision(WithParameters, Searching):
 
     def _begin(self, search: Search, delay: float) -> Search:
         """Asks the body for a view, which it answers at the end of the present tick."""
-        embodiment = self._joined("view")
         if self.delay_sd is not None:
             delay = max(0.0, self.random.gauss(delay, self.delay_sd))
+        search.clear()
         search.begun = self.sch.now_us
         search.due = self.sch.after(delay)
-        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, place_of_caller(), self, search))
+        self._ask_for_view(search)
         return search
+
+    def _ask_for_view(self, search: Search) -> None:
+        embodiment = self._joined("view")
+        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, place_of_caller(), self, search))
 
     def _give_up(self, search: Search) -> None:
         """Lets those go on who wait for a search that will not end."""
@@ -203,8 +220,10 @@ class Vision(WithParameters, Searching):
         trace = sch.trace
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
-        self._looks.take(self._perceived(answer), sch.now_us)
-        search.clear()
+        self._looks.take(self._perceived(search, answer), sch.now_us)
+        if search.again:
+            self._look_again(search)
+            return
         if self.error_rate > 0 and self.random.random() < self.error_rate:
             search.why = "nothing was noticed, by error"
         else:
@@ -218,14 +237,34 @@ class Vision(WithParameters, Searching):
             self._attend(search, answer)
         if search.due <= sch.now_us:
             self._end(search, search.begun)
-        else:
-            sch.call_at(search.due, self._end, (search, search.begun))
+            return
+        sch.call_at(search.due, self._end, (search, search.begun))
+        if self.rule == "sos" and search.feature is not None and search.due >= sch.now_us + TICK:
+            sch.call_at(search.due - TICK + 1, self._ask_again, (search, search.begun))
 
-    def _perceived(self, view: View) -> View:
-        """Returns a view as it is misjudged."""
+    def _ask_again(self, search: Search, begun: int) -> None:
+        """Asks for a second view, of the end of the last tick before a search is over."""
+        if search.begun == begun and (search is self._top_down or search is self._bottom_up):
+            search.again = True
+            self._ask_for_view(search)
+
+    def _look_again(self, search: Search) -> None:
+        """Looks whether what was chosen is still there and as was asked for."""
+        search.again = False
+        search.check(self._looks.features(search.query))
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, "search", search.to_data())
+        if search.due <= self.sch.now_us:
+            self._end(search, search.begun)
+
+    def _perceived(self, search: Search, view: View) -> View:
+        """Returns a view as it is misjudged; both views of one search alike."""
         if self.edge_noise <= 0 and self.distance_noise <= 0:
             return view
-        return blurred(view, self.edge_noise, self.distance_noise, self.random.getrandbits(BITS))
+        if search.noise is None:
+            search.noise = self.random.getrandbits(BITS)
+        return blurred(view, self.edge_noise, self.distance_noise, search.noise)
 
     def _attend(self, search: Search, view: View) -> None:
         """Lets attention shift to the chosen feature when the search is over: it is encoded, and the eye turns to it."""
@@ -250,8 +289,8 @@ class Vision(WithParameters, Searching):
     # -- what comes of it
 
     def _end(self, search: Search, begun: int) -> None:
-        """Brings what was found, and lets bottom-up vision go on; not if the search has begun anew since [us]."""
-        if search.begun != begun:
+        """Brings what was found, and lets bottom-up vision go on; not if the search has begun anew since [us], or looks again."""
+        if search.begun != begun or search.again:
             return
         if search is self._top_down:
             self._top_down = None

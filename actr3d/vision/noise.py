@@ -17,25 +17,28 @@ LEAST = 0.05
 
 
 def blurred(view: View, edges: float, distances: float, seed: int) -> View:
-    """Returns a view as it is misjudged: for each object, its left and its right edges on all rows alike.
+    """Returns a view as it is misjudged: for each object, its left and its right edges on all rows alike; all distances alike.
 
-    So straight edges stay straight, and what is measured over many rows gets no sharper for that.
+    So straight edges stay straight, what is measured over many rows gets no sharper for that, and the two sides of an opening
+    stay at the same depth: otherwise it would look the wider, the farther away it is, and never narrower.
 
     Args:
         view: The exact one.
         edges: The standard deviation of the directions of edges [rad].
-        distances: That of their distances, as a part of these.
+        distances: That of all distances in this view, as a part of these.
         seed: What the noise comes from.
     """
     if not len(view.extents):
         return view
-    numbers = Generator(PCG64(seed)).standard_normal((int(view.extents["label"].max()) + 1, 2, 2))
+    numbers = Generator(PCG64(seed))
+    part = max(LEAST, 1 + distances * float(numbers.standard_normal()))
     extents = view.extents.copy()
-    noise = numbers[extents["label"]]
-    for side, (x, d) in enumerate((("x1", "d1"), ("x2", "d2"))):
-        if edges > 0:
-            extents[x] = _moved(extents[x], edges * noise[:, side, 0], view.parameters)
-        extents[d] *= np.maximum(LEAST, 1 + distances * noise[:, side, 1])
+    for d in ("d1", "d2", "dn"):
+        extents[d] *= part
+    if edges > 0:
+        left, right = edges * numbers.standard_normal((int(extents["label"].max()) + 1, 2))[extents["label"]].T
+        for x, angle in (("x1", left), ("x2", right), ("xn", 0.5 * (left + right))):
+            extents[x] = _moved(extents[x], angle, view.parameters)
     extents.flags.writeable = False
     return replace(view, extents=extents)
 

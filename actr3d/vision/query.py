@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from actr3d.actr.chunk import as_text, parse_slots, variable_value
+from actr3d.configuration import hold
 from actr3d.errors import VisionError, did_you_mean
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.feature import Feature, slot_names
-from actr3d.vision.units import LABEL, PLAIN, units_of
+from actr3d.vision.units import FLAG, LABEL, PLAIN, Unit, units_of
 
 _PIECE = re.compile(r"(>=|<=|>|<|!)?(\?\w+|[\w.+-]+)$")
 SAYS = {">": "above ", ">=": "at least ", "<": "below ", "<=": "at most ", "is": "", "!": "other than "}
@@ -97,7 +98,8 @@ def read_request(
     """
     if not isinstance(pattern, str):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
         raise VisionError(f"{what}: a request is a text such as 'feature:opening' (got {pattern!r})")
-    words: dict[Any, str] = dict(parse_slots(pattern))
+    pairs = parse_slots(pattern)
+    words: dict[Any, str] = dict(pairs)
     name = words.pop("feature", None)
     known = ", ".join(f"feature:{known}" for known in detectors)
     if name is None or any(isinstance(slot, int) for slot in words):
@@ -106,6 +108,9 @@ def read_request(
         name = as_text(variable_value(name[1:], bound, pattern))
     if name not in detectors:
         raise VisionError(f"{what}: no feature '{name}' to look for{did_you_mean(name, detectors)}; there are: {known}")
+    twice = next((slot for n, (slot, _) in enumerate(pairs) if slot in [earlier for earlier, _ in pairs[:n]]), None)
+    if twice is not None:
+        raise VisionError(f"{what}: '{twice}' is given twice, in '{pattern}'; write {twice}='>1 <2' for two comparisons")
     twice = next((slot for slot in words if slot in given), None)
     if twice is not None:
         raise VisionError(f"{what}: '{twice}' is given twice, in '{pattern}' and as {twice}={given[twice]!r}")
@@ -143,19 +148,32 @@ class _Reader:
         unit = self._units[slot]
         tests: list[Test] = []
         for sign, part in self._pieces(word, value):
-            if unit is LABEL or (unit is PLAIN and sign in ("", "!")):
+            if unit in (LABEL, FLAG) or (unit is PLAIN and sign in ("", "!")):
                 if sign not in ("", "!"):
                     raise VisionError(f"{self._what}: {word} cannot be compared by size (got {value!r})")
-                tests.append(Test(slot, sign or "is", as_text(part)))
+                tests.append(Test(slot, sign or "is", self._same(unit, word, part)))
                 continue
             number = _number(part)
-            if number is None:
+            if number is None or math.isnan(number):
                 raise VisionError(f"{self._what}: {word} is compared with a number in {unit.name or 'its unit'} (got {value!r})")
             sign = sign or self._kind.bare.get(slot, "")
             if sign in ("", "!"):
                 raise VisionError(f"{self._what}: {word} is measured; say '>{as_text(part)}' or '<{as_text(part)}' (got {value!r})")
             tests.append(Test(slot, sign, number))
         return tests
+
+    def _same(self, unit: Unit, word: str, part: Any) -> str:
+        """Returns the text that a label, or what has no unit, is to be equal to or not."""
+        number = _number(part)
+        if unit is LABEL:
+            if number is not None and number.is_integer():
+                return str(int(number))
+            raise VisionError(f"{self._what}: {word} takes a label, a whole number (got {part!r})")
+        if unit is FLAG and as_text(part) not in ("True", "False"):
+            raise VisionError(f"{self._what}: {word} takes True or False (got {part!r})")
+        if number is None and not isinstance(part, (str, bool)):
+            raise VisionError(f"{self._what}: {word} takes a number or text (got {part!r})")
+        return as_text(part)
 
     def _pieces(self, word: str, value: Any) -> list[tuple[str, Any]]:
         """Splits a value into signs and values, with those of variables."""
@@ -177,17 +195,18 @@ class _Reader:
     def _parameter(self, word: str, value: Any) -> float:
         ((sign, part), *more) = self._pieces(word, value)
         number = _number(part)
-        if sign or more or number is None:
+        if sign or more or number is None or not math.isfinite(number):
             raise VisionError(f"{self._what}: {word} takes one number [{self._detector.unit(word).name}] (got {value!r})")
+        for bound in self._detector.bounds(word):
+            hold(bound, number, f"{self._what}: {word}")
         return number / self._detector.unit(word).factor
 
 
 def _number(value: Any) -> float | None:
-    """Returns a finite number, which may be written as text; None where it is none."""
+    """Returns a number, which may be written as text; None where it is none."""
     if isinstance(value, bool):
         return None
     try:
-        number = float(value)
+        return float(value)
     except (TypeError, ValueError, OverflowError):
         return None
-    return number if math.isfinite(number) else None

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from numbers import Real
 from random import Random
 from typing import Any, TypeAlias, cast
 
+from actr3d.configuration import is_finite
 from actr3d.errors import VisionError, did_you_mean
 from actr3d.vision.feature import Feature
 
 NEARER = 0.1
 """Nearer than this nothing gets more salient for it [m]. Ours: an arm's thickness."""
+
+HUGE = 1e290
 
 Function: TypeAlias = Callable[[Any], float]
 
@@ -50,7 +54,7 @@ def weigh(features: Sequence[Feature], function: Function, what: str) -> list[fl
     weights: list[float] = []
     for feature in features:
         value: Any = function(feature)
-        if not isinstance(value, (int, float)) or not (0 <= value < math.inf):
+        if not isinstance(value, Real) or not is_finite(value) or float(value) < 0:
             raise VisionError(f"{what}: must give a number from 0 on for a feature (gave {value!r} for {feature})")
         weights.append(float(value))
     return weights
@@ -63,11 +67,14 @@ def survivors(weights: Sequence[float], random: Random) -> list[int]:
 
 def share(weights: Sequence[float], random: Random) -> int:
     """Returns one of several things, drawn with the share of its salience in all; where none has any, each as likely."""
-    total = math.fsum(weights)
     if len(weights) == 1:
         return 0
-    if total <= 0:
+    most = max(weights)
+    if most <= 0:
         return random.randrange(len(weights))
+    if most > HUGE:  # their sum might be more than there are numbers
+        weights = [weight / most for weight in weights]
+    total = math.fsum(weights)
     at = random.random() * total
     for i, weight in enumerate(weights):
         at -= weight

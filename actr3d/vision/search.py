@@ -15,7 +15,21 @@ from actr3d.vision.salience import Function, share, survivors, weigh
 class Search(Reading):
     """A request that is under way; `yield` it to wait until it is over."""
 
-    __slots__ = ("begun", "bottom_up", "chosen", "due", "noticed", "outcome", "query", "refused", "seen", "weights", "why")
+    __slots__ = (
+        "again",
+        "begun",
+        "bottom_up",
+        "chosen",
+        "due",
+        "noise",
+        "noticed",
+        "outcome",
+        "query",
+        "refused",
+        "seen",
+        "weights",
+        "why",
+    )
     noticed: Sequence[Feature]
     """What is as was asked for."""
     weights: Sequence[float]
@@ -28,6 +42,10 @@ class Search(Reading):
     """Why none is brought, though some are noticed."""
     outcome: str
     """What came of it, in a word."""
+    again: bool
+    """Whether it has looked, and waits for a second view, to see whether what it has chosen is still there."""
+    noise: int | None
+    """What the noise of its views comes from, once it has one."""
 
     def __init__(self, query: Query, *, bottom_up: bool, begun: int, due: int) -> None:
         super().__init__("view")
@@ -45,6 +63,7 @@ class Search(Reading):
     def clear(self) -> None:
         """Forgets what it has found; it begins anew."""
         self.noticed, self.weights, self.refused, self.chosen, self.why, self.outcome = (), (), [], None, None, "pending"
+        self.again, self.noise = False, None
 
     def sift(self, features: Sequence[Feature], salience: Function) -> None:
         """Notes what of the features is as was asked for and how salient it is, and what is not.
@@ -74,6 +93,18 @@ class Search(Reading):
             self.chosen = random.choice(left)
         else:
             self.why = "none survived"
+
+    def check(self, features: Sequence[Feature]) -> None:
+        """Takes what was chosen as it is now; nothing, if it is no longer among the features, or no longer as was asked for."""
+        chosen = self.feature
+        if chosen is None or self.chosen is None:
+            return
+        same = [one for one in features if one.key == chosen.key and self.query.failing(one) is None]
+        if same:
+            now = min(same, key=lambda one: abs(one.direction - chosen.direction))
+            self.noticed = [*self.noticed[: self.chosen], now, *self.noticed[self.chosen + 1 :]]
+        else:
+            self.chosen, self.why = None, "what was chosen had gone"
 
     @property
     def feature(self) -> Feature | None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields
+from numbers import Real
 from typing import Any, cast
 
 from actr3d.camera import CameraParameters
@@ -11,6 +13,9 @@ from actr3d.errors import ParameterError, did_you_mean
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.encoding import Emma
 from actr3d.vision.salience import RULES, Function, salience_of
+
+MOST = 1e6
+"""No time [s] and no noise may be larger: more than a run takes, and still far from where numbers end."""
 
 FROM_ZERO = ("delay", "delay_sd", "bottom_up_delay", "hold", "edge_noise", "distance_noise")
 
@@ -22,12 +27,30 @@ def check_numbers(given: Mapping[str, Any]) -> None:
         ParameterError: If one is out of bounds.
     """
     for name in FROM_ZERO:
-        if given[name] is not None and not given[name] >= 0:
-            raise ParameterError(f"Vision.{name}: must be at least 0 (got {given[name]!r})")
-    if not 0 <= given["error_rate"] <= 1:
+        value = given[name]
+        if value is None and name == "delay_sd":
+            continue
+        number = _number(value)
+        if number < 0:
+            raise ParameterError(f"Vision.{name}: must be at least 0 (got {value!r})")
+        if number > MOST:
+            raise ParameterError(f"Vision.{name}: must be at most {MOST:g} (got {value!r})")
+    if not isinstance(given["saccades"], bool):
+        raise ParameterError(f"Vision.saccades: must be True or False (got {given['saccades']!r})")
+    if not 0 <= _number(given["error_rate"]) <= 1:
         raise ParameterError(f"Vision.error_rate: must be a probability, 0 to 1 (got {given['error_rate']!r})")
-    if given["rule"] not in RULES:
+    if not isinstance(given["rule"], str) or given["rule"] not in RULES:
         raise ParameterError(f"Vision.rule: must be one of {', '.join(RULES)} (got {given['rule']!r})")
+
+
+def _number(value: Any) -> float:
+    """Returns a number, infinity for one beyond what floats hold, and one below 0 for what is none."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return -1.0
+    try:
+        return -1.0 if math.isnan(value) else float(value)
+    except OverflowError:
+        return math.inf
 
 
 def check_camera(camera: Mapping[str, Any], own: list[str]) -> None:
@@ -75,8 +98,8 @@ def encoding_of(given: Any) -> Emma | float:
     """
     if isinstance(given, Emma):
         return given
-    if given == "emma":
+    if isinstance(given, str) and given == "emma":
         return Emma()
-    if isinstance(given, (int, float)) and not isinstance(given, bool) and given >= 0:
-        return float(given)
+    if 0 <= _number(given) <= MOST:
+        return _number(given)
     raise ParameterError(f"Vision.encoding: must be a time from 0 on [s], 'emma' or an Emma (got {given!r})")

@@ -23,6 +23,11 @@ class Unit:
     factor: float = 1.0
     digits: int = 3
 
+    @property
+    def measures(self) -> bool:
+        """Whether it is of something measured, so that a whole number, too, is meant as one."""
+        return self.name not in ("", "label", "True or False")
+
     def shown(self, value: float) -> float:
         """Returns a number as chunks have it."""
         return round(value * self.factor, self.digits) + 0.0  # no -0.0
@@ -31,6 +36,7 @@ class Unit:
 METRE, DEGREE, SECOND, SPEED = Unit("m"), Unit("degrees", math.degrees(1.0), 1), Unit("s"), Unit("m/s")
 LABEL = Unit("label", digits=0)
 PLAIN = Unit("")
+FLAG = Unit("True or False")
 
 Metres = Annotated[float, METRE]
 """A length; chunks have it in millimetres' precision."""
@@ -50,7 +56,16 @@ def units_of(thing: type | Callable[..., Any]) -> dict[str, Unit]:
     return {name: _unit_of(hint) for name, hint in get_type_hints(thing, include_extras=True).items()}
 
 
+@cache
+def bounds_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
+    """Returns what stands beside the units in the types of a detector's parameters, such as `Ge(0)`, by name."""
+    hints = get_type_hints(function, include_extras=True)
+    return {name: get_args(hint)[1:] if get_origin(hint) is Annotated else () for name, hint in hints.items()}
+
+
 def _unit_of(hint: Any) -> Unit:
+    if hint is bool:
+        return FLAG
     if get_origin(hint) is Annotated:
         return next((unit for unit in get_args(hint)[1:] if isinstance(unit, Unit)), PLAIN)
     return next((unit for unit in map(_unit_of, get_args(hint)) if unit is not PLAIN), PLAIN)

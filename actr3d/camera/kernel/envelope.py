@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.crossings import add_crossings, may_cover
-from actr3d.camera.kernel.extents import EDGES_AT_ONCE, end_row, goes_on, without_sliver
+from actr3d.camera.kernel.extents import EDGES_AT_ONCE, come_near, end_row, goes_on, without_sliver
 from actr3d.camera.kernel.jit import compiled, zero
 from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, NUMBER, PIECE, SAME_DEPTH, Array, Record, Records
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
@@ -62,13 +62,14 @@ def room_for(pieces: int, places: Array, reaches: Array) -> Row:
 
 
 @compiled
-def trace_row(v: float, optics: Record, row: Row, count: int, extents: Records, first: int) -> int:
+def trace_row(v: float, level: float, optics: Record, row: Row, count: int, extents: Records, first: int) -> int:
     """Appends the extents of one row; returns how many extents there are now.
 
     Between two neighbouring ends of pieces the same pieces lie behind one another, and one of them wins unless some cross.
 
     Args:
         v: The row's tangent upwards.
+        level: The square of how far what is straight ahead on it is away on the ground, in parts of its depth.
         optics: The eye's.
         row: What lies on the row.
         count: How many pieces there are.
@@ -87,9 +88,9 @@ def trace_row(v: float, optics: Record, row: Row, count: int, extents: Records, 
         front, rivals, end = _front(row, present)
         waiting, present, end = _pass_by(end, row, count, waiting, present, front)
         if rivals == 1:
-            done = _tell(front, start, end, optics, row, rivals, extents, first, done)
+            done = _tell(front, start, end, level, optics, row, rivals, extents, first, done)
         else:
-            done = _trace_stretch(start, end, optics, row, rivals, extents, first, done)
+            done = _trace_stretch(start, end, level, optics, row, rivals, extents, first, done)
         start, kept = end, zero()
         for i in range(present):
             number = row.active[i]
@@ -168,7 +169,9 @@ def _pass_by(end: float, row: Row, count: int, waiting: int, present: int, front
 
 
 @compiled
-def _trace_stretch(low: float, high: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int) -> int:
+def _trace_stretch(
+    low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
+) -> int:
     """Appends the extents of a stretch in which no rival begins or ends; divides it wherever the winner may change."""
     row.stack[0, 0], row.stack[0, 1] = low, high
     waiting = 1
@@ -188,12 +191,14 @@ def _trace_stretch(low: float, high: float, optics: Record, row: Row, rivals: in
                 row.stack[waiting, 1] = row.cuts[i] if i < number else high
                 waiting += 1
         else:
-            done = _tell(winner, low, high, optics, row, rivals, extents, first, done)
+            done = _tell(winner, low, high, level, optics, row, rivals, extents, first, done)
     return done
 
 
 @compiled
-def _tell(winner: int, low: float, high: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int) -> int:
+def _tell(
+    winner: int, low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
+) -> int:
     """Appends a stretch in which one piece is nearest, if its object is to be told, or lengthens the last extent by it."""
     object = row.pieces[winner].object
     if object == BACKGROUND:
@@ -202,10 +207,14 @@ def _tell(winner: int, low: float, high: float, optics: Record, row: Row, rivals
     if not goes_on(object, low, optics, extents, first, done):
         if done == len(extents):
             return done
-        extents[done].label = object
+        extents[done].label, extents[done].dn = object, 0.0
         extents[done].x1, extents[done].a1 = low, winner if rivals == 1 else _nearest_of(winner, low, row, rivals)
         done += 1
     extents[done - 1].x2, extents[done - 1].a2 = high, winner if rivals == 1 else _nearest_of(winner, high, row, rivals)
+    for i in range(rivals):
+        piece = row.pieces[winner if rivals == 1 else row.rivals[i]]
+        if piece.object == object:
+            come_near(extents[done - 1], piece, low, high, level)
     return done
 
 

@@ -6,7 +6,7 @@ import math
 
 from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.layout import NEGLIGIBLE, SLIVER, Array, Record, Records
-from actr3d.camera.kernel.pieces import nearness
+from actr3d.camera.kernel.pieces import nearest_at, nearness
 from actr3d.camera.kernel.screen import screen_part
 
 EDGES_AT_ONCE = 128
@@ -25,6 +25,25 @@ def goes_on(object: int, low: float, optics: Record, extents: Records, first: in
         return False
     reached = extents[done - 1].x2
     return low - reached <= NEGLIGIBLE or _gap(reached, low, optics) <= max(optics.precision, SLIVER)
+
+
+@compiled
+def come_near(extent: Record, piece: Record, low: float, high: float, level: float) -> None:
+    """Sets the nearest point of an extent from one of its pieces, if that comes nearer; until the row ends, `dn` is its nearness.
+
+    What is nearest on the ground, with heights left out, is meant: of the square of the distance `(u^2 + level) / w^2` the least.
+    """
+    least = max(low, -high, 0.0)
+    if extent.dn > 0.0:
+        best = (extent.xn * extent.xn + level) / (extent.dn * extent.dn)
+        if least * least + level >= best * piece.ceiling * piece.ceiling:
+            return
+    else:
+        best = math.inf
+    u = nearest_at(piece, low, high, level)
+    w = nearness(piece, u)
+    if w > 0.0 and u * u + level < best * w * w:
+        extent.xn, extent.dn = u, w
 
 
 @compiled
@@ -60,6 +79,8 @@ def finish(optics: Record, extents: Records, count: int, edges: Array) -> None:
         _measure(edges[0], edges[1], edges[2], 2 * number)
         for i in range(number):
             extent = extents[start + i]
+            extent.dn = math.sqrt(1.0 + extent.xn * extent.xn + extent.y * extent.y) / extent.dn
+            extent.xn = 0.5 + 0.5 * screen_part(extent.xn, optics.right, optics.e2)
             extent.x1 = 0.5 + 0.5 * screen_part(extent.x1, optics.right, optics.e2)
             extent.x2 = 0.5 + 0.5 * screen_part(extent.x2, optics.right, optics.e2)
             extent.a1, extent.d1 = edges[1, 2 * i], edges[2, 2 * i]

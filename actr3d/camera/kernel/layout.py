@@ -101,6 +101,8 @@ EXTENT = np.dtype(
         ("d2", "f8"),
         ("a1", "f8"),
         ("a2", "f8"),
+        ("xn", "f8"),
+        ("dn", "f8"),
     ],
     align=True,
 )

@@ -81,7 +81,8 @@ def _look(
         pieces, aside = _add_faces(v, optics, topology, scene, faces, row, pieces)
         pieces = _add_range(v, optics, row, pieces)
         first = done
-        done = trace_row(v, optics, row, pieces, extents, first)
+        rise = v * eye[1, 2] + eye[2, 2]
+        done = trace_row(v, 1.0 + v * v - rise * rise, optics, row, pieces, extents, first)
         _label(number, labels, extents, first, done)
         _order_faces(row, pieces, scene, aside)
     finish(optics, extents, done, row.edges)

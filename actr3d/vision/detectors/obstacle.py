@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
+from annotated_types import Ge
 
 from actr3d.camera import View
 from actr3d.vision.detectors.registry import detector
@@ -53,18 +54,19 @@ class Obstacle(Feature):
 
 
 @detector(Obstacle)
-def obstacle(view: View, *, bearing: Radians = math.pi, speed: MetresPerSecond | None = None) -> tuple[Obstacle, ...]:
+def obstacle(view: View, *, bearing: Annotated[Radians, Ge(0)] = math.pi, speed: MetresPerSecond | None = None) -> tuple[Obstacle, ...]:
     """Finds all objects within a bearing, in the order of their labels.
 
-    What is seen between the edges of an object on a scan line is taken to be straight: exact for walls, not for what is round.
+    The nearest point is exact, but for what lies between two scan lines. Where that is outside the bearing, what is seen between it
+    and an edge on the same scan line is taken to be straight.
 
     Args:
         view: What is seen.
         bearing: How far to the left and right of straight ahead.
-        speed: How fast the agent walks straight ahead; None where that is not known.
+        speed: How fast the agent walks straight ahead, below 0 backwards; None where that is not known.
     """
     extents = view.extents
-    points, surfaces, find = np.empty((len(extents), 2, 4)), np.empty(32, SURFACE), detect.surfaces()
+    points, surfaces, find = np.empty((len(extents), 3, 4)), np.empty(32, SURFACE), detect.surfaces()
     most = find(extents, view.optics, view.axes, bearing, points, surfaces)
     if most >= len(surfaces):
         surfaces = np.empty(most + 1, SURFACE)

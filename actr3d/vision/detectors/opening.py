@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
+from annotated_types import Ge
 
 from actr3d.camera import View
 from actr3d.vision.detectors.registry import detector
@@ -68,7 +69,7 @@ class Opening(Feature):
 
 
 @detector(Opening)
-def opening(view: View, *, step: Metres = 0.02) -> tuple[Opening, ...]:
+def opening(view: View, *, step: Annotated[Metres, Ge(0)] = 0.02) -> tuple[Opening, ...]:
     """Finds openings: gaps on scan lines, joined over rows.
 
     A gap is bounded at its left and right by edges that are nearer than all that is seen between them. What leaves the field of
@@ -82,7 +83,7 @@ def opening(view: View, *, step: Metres = 0.02) -> tuple[Opening, ...]:
     count = len(extents)
     if count < 2:
         return ()
-    points = np.empty((count, 2, 4))
+    points = np.empty((count, 3, 4))
     gaps, openings = np.empty(2 * count, GAP), np.empty(64, OPENING)
     find = detect.gaps()
     while True:

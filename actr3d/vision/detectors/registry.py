@@ -5,12 +5,12 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar, get_origin, get_type_hints
 
 from actr3d.camera import View
 from actr3d.errors import VisionError
-from actr3d.vision.feature import Feature
-from actr3d.vision.units import Unit, units_of
+from actr3d.vision.feature import Feature, slot_names, sound
+from actr3d.vision.units import PLAIN, Unit, bounds_of, units_of
 
 Detect = Callable[..., tuple[Feature, ...]]
 """A function of a view, and of parameters by keyword that have defaults; it reads the view and nothing else."""
@@ -37,12 +37,30 @@ class Detector:
 
     def unit(self, parameter: str) -> Unit:
         """Returns the unit of a parameter."""
-        return units_of(self.detect)[parameter]
+        return units_of(self.detect).get(parameter, PLAIN)
+
+    def bounds(self, parameter: str) -> tuple[Any, ...]:
+        """Returns the bounds that a parameter's type says, such as `Ge(0)`."""
+        return bounds_of(self.detect).get(parameter, ())
 
     def __call__(self, view: View, **parameters: Any) -> tuple[Feature, ...]:
-        """Returns what there is in a view, in an order that follows from what is seen where."""
-        return self.detect(view, **parameters)
+        """Returns what there is in a view, in an order that follows from what is seen where.
 
+        Raises:
+            VisionError: If a modeller's detector returns anything but features of its kind whose fields are numbers.
+        """
+        found = self.detect(view, **parameters)
+        if self.builtin:
+            return found
+        try:
+            features = tuple(found)
+        except TypeError:
+            raise VisionError(f"detector '{self.name}': must return the features that it has found, in a tuple (got {found!r})") from None
+        return tuple(sound(feature, self.finds) for feature in features)
+
+
+RESERVED = ("feature", "pattern", "bottom_up")
+"""Words of a request that no slot or parameter can have."""
 
 DETECTORS: dict[str, Detector] = {}
 """By name. A vision module knows those that there are when it is made."""
@@ -55,12 +73,16 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         finds: The kind of features.
 
     Raises:
-        VisionError: If it is no kind of features, if the library has a detector of that name, or if the function does not take a
-            view and parameters by keyword with defaults.
+        VisionError: If it is no kind of features or has a field that requests cannot name, if the library has a detector of that
+            name, or if the function does not take a view and parameters by keyword with defaults.
     """
     if not (isinstance(finds, type) and issubclass(finds, Feature)):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
         raise VisionError(f"detector: takes the class of what it finds, a subclass of Feature (got {finds!r})")
     name = finds.called()
+    slots = slot_names(finds)
+    unknown = [field for field, kind in get_type_hints(finds).items() if field not in slots and get_origin(kind) is not ClassVar]
+    if unknown:
+        raise VisionError(f"detector '{name}': '{unknown[0]}' is no field; write @dataclass(frozen=True, kw_only=True) above the class")
 
     def add(detect: D) -> D:
         builtin = detect.__module__.startswith("actr3d.")
@@ -70,6 +92,10 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         wrong = [p.name for p in others if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]
         if wrong or not inspect.signature(detect).parameters:
             raise VisionError(f"detector '{name}': must take a view, and after a * what has a default: def find(view, *, most=0.1)")
+        taken = [word for word in (*slots, *(p.name for p in others)) if word in RESERVED]
+        taken += [p.name for p in others if p.name in slots or p.name in finds.aliases]
+        if taken:
+            raise VisionError(f"detector '{name}': '{taken[0]}' means something else in a request; call it otherwise")
         DETECTORS[name] = Detector(finds, detect, tuple(p.name for p in others), builtin)
         return detect
 

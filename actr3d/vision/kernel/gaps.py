@@ -51,7 +51,7 @@ def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: 
             behind = math.inf
             for j in range(i + 1, last):
                 if j > i + 1:
-                    behind = min(behind, extents[j - 1].d1, extents[j - 1].d2)
+                    behind = min(behind, extents[j - 1].d1, extents[j - 1].d2, extents[j - 1].dn)
                 if behind <= extents[i].d2 + step:
                     break
                 if extents[j].x1 - extents[i].x2 > NARROWEST and behind > extents[j].d1 + step:
@@ -98,7 +98,7 @@ def measure(points: Array, gaps: Records, number: int) -> None:
         x, y, near_left, near_right = -x, -y, -near_left, -near_right
     deep = math.inf
     for k in range(gap.left + 1, gap.right):
-        for side in range(2):
+        for side in range(3):
             deep = min(deep, x * points[k, side, 0] + y * points[k, side, 1])
     gap.deep = max(0.0, deep - max(near_left, near_right))
 

@@ -11,15 +11,15 @@ from actr3d.camera.kernel.screen import row_tangent, tangent_at
 
 @compiled
 def set_points(extents: Records, optics: Record, axes: Array, points: Array) -> None:
-    """Writes where the two edges of each extent are: ahead, left, up and deep along the line of sight [m], `(n, 2, 4)`.
+    """Writes where the edges of each extent are, and its nearest point: ahead, left, up and deep along the line of sight [m], `(n, 3, 4)`.
 
     Ahead, left and up are those of the upright frame that `View.axes` are given in, with the eye as origin.
     """
     for i in range(len(extents)):
         extent = extents[i]
         v = row_tangent(extent.row, optics)
-        for side in range(2):
-            x, distance = (extent.x2, extent.d2) if side else (extent.x1, extent.d1)
+        for side in range(3):
+            x, distance = (extent.x1, extent.d1) if side == 0 else (extent.x2, extent.d2) if side == 1 else (extent.xn, extent.dn)
             u = tangent_at(2.0 * x - 1.0, optics.right, optics.e2)
             deep = distance / math.sqrt(1.0 + u * u + v * v)
             for k in range(3):

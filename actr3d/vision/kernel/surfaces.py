@@ -31,7 +31,7 @@ def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Reco
 
     Returns the highest label; if there is no room for that, nothing is written.
 
-    Between its edges on a row an object is taken to be as near as the straight line between them.
+    Between an edge and the nearest point of a row an object is taken to be as near as the straight line between them.
 
     Args:
         extents: The view's.
@@ -60,10 +60,11 @@ def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Reco
                 surface.lefts[0], surface.lefts[1], surface.lefts[2] = point[0], point[1], direction
             if direction < surface.rights[2]:
                 surface.rights[0], surface.rights[1], surface.rights[2] = point[0], point[1], direction
-        ahead, aside = _nearest(points[i, 0], points[i, 1], bearing)
-        distance = math.sqrt(ahead * ahead + aside * aside)
-        if distance < surface.distance:
-            surface.distance, surface.ahead, surface.aside = distance, ahead, aside
+        for side in range(2):
+            ahead, aside = _nearest(points[i, side], points[i, 2], bearing)
+            distance = math.sqrt(ahead * ahead + aside * aside)
+            if distance < surface.distance:
+                surface.distance, surface.ahead, surface.aside = distance, ahead, aside
     return most
 
 
