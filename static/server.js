@@ -1,6 +1,6 @@
 // Speaks to the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
-import { complain, connected, events, forget, known, take } from "./store.js";
+import { complain, connected, events, forget, known, session, take } from "./store.js";
 
 const AGAIN = 1000; // how long it waits before connecting again [ms]
 
@@ -42,8 +42,15 @@ export function show(session) {
   else connect();
 }
 
+/** Shows no session until another one is there to be shown. */
+function leave() {
+  shown = null;
+  forget();
+}
+
 /** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
 export async function showModel(model, { run = false } = {}) {
+  if (model !== session.peek()?.model) leave();
   const { sessions } = await call("GET", "/api/sessions");
   const there = sessions.filter((session) => session.model === model).at(-1);
   if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
@@ -65,7 +72,7 @@ function connect() {
   socket.onmessage = ({ data }) => {
     const message = JSON.parse(data);
     if (message.type === "refused") complain(message.error);
-    if (message.type !== "update") return;
+    if (message.type !== "update" || message.of !== shown) return; // of the one that was shown before, some may still come
     take(message);
     for (const reply of message.replies ?? []) {
       waiting.get(reply.id)?.(reply);

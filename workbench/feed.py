@@ -77,6 +77,11 @@ class Shown(Protocol):
     """What is shown of a session."""
 
     @property
+    def name(self) -> str:
+        """What the session is called."""
+        ...
+
+    @property
     def run(self) -> int:
         """The number of the run that is shown."""
         ...
@@ -168,7 +173,7 @@ class Feed:
             self._changed.clear()
             message = self._compose()
             if message:
-                return msgspec.json.encode({"type": "update", "run": self._run, "epoch": self._epoch, **message})
+                return msgspec.json.encode({"type": "update", "of": self._shown.name, "run": self._run, "epoch": self._epoch, **message})
 
     def _compose(self) -> dict[str, Any]:
         shown = self._shown

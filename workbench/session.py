@@ -204,8 +204,12 @@ class Session(Telling):
 
     def busy(self, worker: Worker) -> bool:
         """Tells whether a worker is to be saying something."""
-        going_on = self.state is not None and self.state.status == "running"
-        return worker is self._loading or (worker is self._worker and (going_on or bool(self._waiting)))
+        return worker is self._loading or (worker is self._worker and (self.going_on or bool(self._waiting)))
+
+    @property
+    def going_on(self) -> bool:
+        """Whether its run goes on."""
+        return self.state is not None and self.state.status == "running"
 
     def _leave(self, worker: Worker) -> None:
         """Ends a worker, without waiting for it."""

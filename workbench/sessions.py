@@ -88,7 +88,7 @@ class Sessions:
         """
         where = self.folder.locate(model)
         self.folder.read(model)
-        session = self._new(where, model)
+        session = await self._new(where, model)
         await session.begin(settings, seed=seed, record=record, run=run)
         return session
 
@@ -107,16 +107,22 @@ class Sessions:
             raise SessionError("the recording does not say which model file made it")
         path = Path(file)
         inside = path.resolve().is_relative_to(self.folder.root)
-        session = self._new(path, path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name)
+        session = await self._new(path, path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name)
         seed = facts.get("program_seed", facts["seed"])
         settings = facts.get("parameters", {})
         helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
         await session.begin(settings, seed=seed, record=False, source=facts["sources"][file], commands=commands, helpers=helpers)
         return session
 
-    def _new(self, path: Path, model: str) -> Session:
+    async def _new(self, path: Path, model: str) -> Session:
         if len(self._sessions) >= MOST:
-            raise SessionError(f"there are {MOST} sessions already; close one")
+            # Whoever has tried many models has left many behind: their runs are recorded, and can be opened again.
+            idle = next(
+                (session for session in self.all() if session.state is not None and not session.feeds and not session.going_on), None
+            )
+            if idle is None:
+                raise SessionError(f"there are {MOST} sessions already, and each is watched or goes on: close a page, or stop a run")
+            await self.close(idle[0].name)
         self._count += 1
         name = f"s{self._count}"
         session = Session(name, path, self.workers, self.recordings.new, model)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
-from tests.browser.looking import OPTIONS, PATIENCE, browser_path
+from tests.browser.looking import PATIENCE, chromium
 from tests.server.serving import Served, served
 
 
@@ -19,22 +18,21 @@ def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield running
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    path = browser_path()
-    if path is None:
-        if os.environ.get("CI"):
-            pytest.fail("there is no Chromium, and CI is to have one")
-        pytest.skip("there is no Chromium on this machine")
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=path, args=list(OPTIONS))
+    """A browser; no longer than for one file of tests, for Playwright's event loop is in the way of others."""
+    with chromium() as started:
         yield started
-        started.close()
 
 
 @pytest.fixture
 def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
-    """Opens pages of a new user, whose browser remembers nothing; whatever their consoles complain of fails the test."""
+    """Opens pages of a new user, whose browser remembers nothing; whatever their consoles complain of fails the test.
+
+    The sessions of tests before are closed.
+    """
+    for session in workbench.get("/api/sessions").json()["sessions"]:
+        workbench.post(f"/api/sessions/{session['id']}/close")
     complaints: list[str] = []
 
     def note(message: Any) -> None:

@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+from collections.abc import Generator
+from contextlib import contextmanager
 
-from playwright.sync_api import Page, expect
+import pytest
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 PATIENCE = 60_000
 """[ms]"""
 OPTIONS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
-def browser_path() -> str | None:
-    """Returns where a Chromium is; None where there is none."""
-    names = ("chromium", "chromium-browser", "google-chrome", "chrome")
-    return next((path for name in names if (path := shutil.which(name)) is not None), None)
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+
+
+@contextmanager
+def chromium() -> Generator[Browser]:
+    """Starts a Chromium; where there is none the test is skipped, or fails in CI, which is to have one."""
+    path = next((path for name in NAMES if (path := shutil.which(name)) is not None), None)
+    if path is None:
+        if os.environ.get("CI"):
+            pytest.fail("there is no Chromium, and CI is to have one")
+        pytest.skip("there is no Chromium on this machine")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=list(OPTIONS))
+        try:
+            yield browser
+        finally:
+            browser.close()
 
 
 def shows(page: Page, where: str, text: str) -> None:

@@ -23,7 +23,6 @@ def test_run_step_and_the_aperture(page: Page) -> None:
     page.locator("#aperture").fill("90")
     shows(page, "#width", "90 cm *A/S 2.00")
     scene = page.frame_locator("iframe[title='3D view']")
-    expect(scene.get_by_text("t = 0.04 s")).to_be_visible(timeout=PATIENCE)
     expect(scene.locator("canvas").first).to_be_visible(timeout=PATIENCE)
     open_tab(page, "Productions")
     page.get_by_label("Filter the trace").fill("turn")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Browser, expect
 
-from tests.browser.browsing import chromium
 from tests.server.serving import served
 
 PATIENCE = 120_000
@@ -35,11 +35,10 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_it_plays_from_disk_with_scene_and_trace_at_one_time(replay: Path, scheme: str) -> None:
+def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, replay: Path, scheme: Any) -> None:
     complaints: list[str] = []
     asked: list[str] = []
-    with chromium() as browser:
-        context = browser.new_context(viewport={"width": 900, "height": 600}, color_scheme=scheme, offline=True)  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
+    with browser.new_context(viewport={"width": 900, "height": 600}, color_scheme=scheme, offline=True) as context:
         page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.on("pageerror", lambda error: complaints.append(str(error)))

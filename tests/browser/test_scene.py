@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.browsing import chromium
 from tests.server.serving import MODELS, Served, served
 
 PATIENCE = 120_000
@@ -27,9 +26,9 @@ def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 @pytest.fixture
-def page(workbench: Served) -> Iterator[Page]:
-    with chromium() as browser:
-        page = browser.new_context(viewport={"width": 800, "height": 600}).new_page()
+def page(browser: Browser, workbench: Served) -> Iterator[Page]:
+    with browser.new_context(viewport={"width": 800, "height": 600}) as context:
+        page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.goto(workbench.address)
         yield page

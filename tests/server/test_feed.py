@@ -18,6 +18,7 @@ class Shown:
     """A session as a feed sees it."""
 
     def __init__(self) -> None:
+        self.name = "s1"
         self.run = 1
         self.epoch = 1
         self.log = EventLog()
@@ -88,9 +89,9 @@ def test_a_feed_begins_with_everything_and_goes_on_with_what_is_new() -> None:
     assert first["notices"] == ["hello"]
     assert told(feed) is None
     shown.add(2)
-    assert told(feed, feed.wake) == {"type": "update", "run": 1, "epoch": 1, "events": {"first": 2, "list": [2]}}
+    assert told(feed, feed.wake) == {"type": "update", "of": "s1", "run": 1, "epoch": 1, "events": {"first": 2, "list": [2]}}
     shown.state_version = 9
-    assert told(feed, feed.wake) == {"type": "update", "run": 1, "epoch": 1, "state": {"version": 9}}
+    assert told(feed, feed.wake) == {"type": "update", "of": "s1", "run": 1, "epoch": 1, "state": {"version": 9}}
 
 
 def test_who_comes_again_is_told_what_is_new_only() -> None:

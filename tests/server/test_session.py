@@ -14,6 +14,7 @@ from actr3d.running.printed import ProgramOutput
 from actr3d.trace import Trace
 from tests.server.desk import Desk, RefusedError, Talk
 from workbench.files import ModelFolder
+from workbench.session import Session
 
 MODELS = Path(__file__).parents[2] / "models"
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
@@ -363,12 +364,21 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
 
     sessions = desk.sessions(tmp_path)
     (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
-    for _ in range(MOST):
-        desk.do(sessions.open("model.py", {}, seed=1, record=False, run=False))
-    with pytest.raises(SessionError, match="close one"):
-        desk.do(sessions.open("model.py", {}, seed=1, record=False, run=False))
-    desk.do(sessions.close("s1"))
-    desk.do(sessions.open("model.py", {}, seed=1, record=False, run=False))
+
+    async def open_watched() -> Session:
+        session = await sessions.open("model.py", {}, seed=1, record=False, run=False)
+        session.join("somebody")
+        return session
+
+    opened = [desk.do(open_watched()) for _ in range(MOST)]
+    for session in opened:
+        Talk(desk, session, sessions).until("paused")
+    with pytest.raises(SessionError, match="each is watched or goes on"):
+        desk.do(open_watched())
+    # One that nobody watches any more makes room.
+    opened[3].part(opened[3].feeds[0])
+    desk.do(open_watched())
+    assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MOST + 1}"]
 
 
 def test_a_check_that_loads_says_what_loading_says(desk: Desk, tmp_path: Path) -> None:
