@@ -117,10 +117,8 @@ class Sessions:
     async def _new(self, path: Path, model: str) -> Session:
         if len(self._sessions) >= MOST:
             # Whoever has tried many models has left many behind: their runs are recorded, and can be opened again.
-            idle = next(
-                (session for session in self.all() if session.state is not None and not session.feeds and not session.going_on), None
-            )
-            if idle is None:
+            idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
+            if not idle:
                 raise SessionError(f"there are {MOST} sessions already, and each is watched or goes on: close a page, or stop a run")
             await self.close(idle[0].name)
         self._count += 1
