@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from actr3d.values import plain, to_json
 from tests.server.desk import PATIENCE, Desk
 from tests.server.test_worker import gone, of, runs_again
 from workbench.worker.bounds import LARGEST, bounded_json, cut
@@ -207,6 +208,12 @@ def test_what_is_short_is_told_as_it_is() -> None:
     values: list[Any] = [[1, "a", "b", {"text": "x" * 1000}], {}, None, [list(range(1000))]]
     for value in values:
         assert json.loads(bounded_json(value)) == value
+
+
+@pytest.mark.parametrize("number", [float("nan"), float("inf"), -float("inf"), 10**30, 10**5000, 1e300, -0.0, True, None])
+def test_numbers_that_json_does_not_have_are_told_as_in_recordings(number: Any) -> None:
+    value = plain([5, "top.goal", "buffer", {"n": number, "text": "\ud800 ü", "list": (1, number)}])
+    assert json.loads(bounded_json(value)) == json.loads(to_json(value))
 
 
 @pytest.mark.parametrize(
