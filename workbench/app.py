@@ -14,7 +14,7 @@ from fastapi.responses import JSONResponse
 from starlette.staticfiles import StaticFiles
 
 from actr3d.errors import Actr3dError
-from workbench import page, routes
+from workbench import page, recording_routes, routes
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
 from workbench.keeping import Keeping
@@ -64,6 +64,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.state.bridge = Bridge()
     app.state.pages = 0
     app.include_router(routes.router)
+    app.include_router(recording_routes.router)
     app.include_router(page.router)
     app.mount("/static", StaticFiles(directory=static()), name="static")
     app.add_exception_handler(Actr3dError, _refused)
