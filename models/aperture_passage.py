@@ -77,7 +77,7 @@ class Parameters(Configuration):
     condition: Literal["normal", "fast"] = "normal"
     """How fast its group walks: small 1.29 or 1.61 m/s, large 1.28 or 1.77 m/s. Source: Warren & Whang (1987)."""
 
-    speed: Annotated[float, Ge(0.1), Le(3)] | None = None
+    speed: Annotated[float | None, Ge(0.1), Le(3), Live("parameter", "walker.pace.wanted")] = None
     """How fast it walks [m/s]; None: as its condition says."""
 
     margin: Annotated[float, Ge(0), Le(1)] | None = None
@@ -105,6 +105,26 @@ class Wait(Model):
     def reset(self):
         self.state = "idle"
         self.begun += 1
+
+
+class Arrival(Wait):
+    """Is over when so much of the way has been walked, at a speed that may change."""
+
+    def walk(self, metres, speed):
+        self.speed = speed
+        self.due = self.now() + metres / speed
+        self.go(metres / speed)
+
+    def change(self, speed):
+        if self.state == "on":
+            self.walk(max(0, self.due - self.now()) * self.speed, speed)
+
+
+class Pace(Model):
+    """How fast it is to walk [m/s], which a user may change; None: as its condition says."""
+
+    def __init__(self):
+        self.wanted = self.kept = None
 
 
 class Shoulders(Model):
@@ -140,22 +160,22 @@ class Eyes(ACTR):
 
     def search(b_turn="watch:yes", scan="state:over"):
         scan.reset()
-        vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BEARING)
+        vision.request("feature:obstacle", bottom_up=True, radius=self.parent.radius, bearing=BEARING)
 
     def first_alert(b_turn="watch:yes way:unknown", b_context="way:open", b_visual="feature:obstacle distance:?far"):
         b_context.set("way:narrow")
         b_interrupt.set("planning_unit:squeeze when:now")
         b_turn.set(f"watch:no way:unknown near:{float(far) < NEAR} do:{answer}")
         b_visual.clear()
-        near.go(max(0, float(far) - NEAR) / speed)
+        near.walk(max(0, float(far) - NEAR), self.parent.speed)
 
     def alert(b_turn="watch:yes way:?way", b_context="way:!open", b_visual="feature:obstacle distance:?far"):
         b_turn.set(f"watch:no way:{way} near:{float(far) < NEAR} do:ask")
         b_visual.clear()
-        near.go(max(0, float(far) - NEAR) / speed)
+        near.walk(max(0, float(far) - NEAR), self.parent.speed)
 
     def turn(b_turn="do:turn"):
-        shoulders.turn(1, torso_rate, clavicle_rate)
+        shoulders.turn(1, self.parent.torso_rate, self.parent.clavicle_rate)
         b_turn.modify(do="ask")
 
     def ask(b_turn="do:ask", motor="width:?width"):
@@ -167,7 +187,7 @@ class Eyes(ACTR):
         b_visual.clear()
         b_context.set("way:clear")
         b_turn.set("watch:yes way:clear")
-        way.go((float(far) + BEHIND) / speed)
+        way.walk(float(far) + BEHIND, self.parent.speed)
 
     def notice(b_turn="do:wait way:clear", vision="busy:False error:True"):
         """What was wide enough is so no longer."""
@@ -191,7 +211,7 @@ class EyesInPieces(Eyes):
 
     def search_again(b_turn="do:scan", scan="state:over"):
         scan.reset()
-        vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BEARING)
+        vision.request("feature:obstacle", bottom_up=True, radius=self.parent.radius, bearing=BEARING)
         b_turn.modify(do="search")
 
     def turn_on(b_turn="do:search", vision="watching:False", b_visual=None):
@@ -238,14 +258,18 @@ class Walker(SGOMS):
     motor = Motor(memory=DM, size_grid=0.001, extreme_step=8)
     shoulders = Shoulders()
     scan = Wait()
-    way = Wait()
-    near = Wait()
+    way = Arrival()
+    near = Arrival()
+    pace = Pace()
     pass_doorway = Ordered("learn", "judge", "approach", "leave")
     squeeze = Situated(turn="way:narrow", until="way:clear")
 
     def init():
         vision.distance_noise = noise
         shoulders.side = 1
+        pace.kept = self.given_speed
+        if pace.wanted is None:  # else a user was faster
+            pace.wanted = pace.kept
         b_context.set("way:open")
         b_plan_unit.set("planning_unit:pass_doorway")
 
@@ -289,7 +313,7 @@ class Walker(SGOMS):
         print(f"{self.now():.2f} s: can pass {'as it is' if how == 'looking' else 'turned'}")
         b_unit_task.modify(state="finished")
         b_visual.clear()
-        way.go((float(far) + BEHIND) / speed)
+        way.walk(float(far) + BEHIND, self.speed)
 
     def decline(b_unit_task="unit_task:judge state:imagining", vision="busy:False error:True"):
         print(f"{self.now():.2f} s: cannot pass")
@@ -300,10 +324,22 @@ class Walker(SGOMS):
     def set_out(b_unit_task="unit_task:approach state:start resumed:no"):
         b_unit_task.modify(state="walking")
         b_turn.set("watch:yes way:unknown")
-        motor.walk(speed)
+        motor.walk(self.speed)
 
     def walk_on(b_unit_task="unit_task:approach state:start resumed:yes"):
         b_unit_task.modify(state="walking")
+
+    def change_pace(pace="wanted:?wanted kept:!?wanted"):
+        pace.kept = pace.wanted
+        self.go_at(pace.wanted or usual)
+        way.change(self.speed)
+        near.change(self.speed)
+        if motor.walking:
+            motor.walk(self.speed)
+
+    def go_at(self, speed):
+        """Takes a speed for its own [m/s]."""
+        self.speed = speed
 
     def arrive(b_unit_task="unit_task:approach state:walking", way="state:over"):
         b_unit_task.modify(state="finished")
@@ -354,6 +390,13 @@ class Human(Walker):
     answer = "ask"
     passable = 1.16
 
+    def go_at(self, speed):
+        """Takes a speed for its own [m/s], with what depends on it."""
+        self.speed = speed
+        self.radius = max(REACTION * speed, RADIUS * self.shoulder_width)
+        self.torso_rate = TURNING * speed * TORSO / (TORSO + CLAVICLE)
+        self.clavicle_rate = TURNING * speed * CLAVICLE / (TORSO + CLAVICLE)
+
     def wanted(self, width):
         """Returns how wide an opening must be for it not to turn further [m]."""
         angle = self.shoulders.angle()
@@ -384,14 +427,14 @@ def body_of(parameters: Parameters) -> Mannequin:
 def mind_of(parameters: Parameters) -> Walker:
     """Returns the mind of who walks."""
     p = parameters
-    speed = p.speed or SPEEDS[p.group, p.condition]
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"speed": speed, "noise": p.noise}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "given_speed": p.speed}
     if p.variant == "human":
-        rate = TURNING * speed
-        rates = {"torso_rate": rate * TORSO / (TORSO + CLAVICLE), "clavicle_rate": rate * CLAVICLE / (TORSO + CLAVICLE)}
-        return Human(margin=0.30 if p.margin is None else p.margin, radius=max(REACTION * speed, RADIUS * width), **rates, **given)
-    return Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
+        mind = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
+    else:
+        mind = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
+    mind.go_at(p.speed or mind.usual)
+    return mind
 
 
 def build(parameters: Parameters) -> Simulation:

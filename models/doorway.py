@@ -31,7 +31,7 @@ class Parameters(Configuration):
     width: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
     """The free width of the doorway [m]."""
 
-    speed: Annotated[float, Gt(0), Le(3)] = 1.2
+    speed: Annotated[float, Gt(0), Le(3), Live("parameter", "walker.speed")] = 1.2
     """How fast it walks [m/s]."""
 
 
@@ -44,9 +44,16 @@ class Walker(ACTR):
 
     def init():
         goal.set("approach")
-        eye.set("walk", self.speed)
+        self.keep_pace()
+
+    def keep_pace(self):
+        """Walks at the speed that is wanted, which a user may change on the way."""
+        if self.walks_at != self.speed:
+            self.walks_at = self.speed
+            self.eye.set("walk", self.speed)
 
     def look(goal="approach", seen=None, eye="busy:False"):
+        self.keep_pace()
         eye.request("view")
 
     def judge(goal="approach", seen="view"):
@@ -74,6 +81,7 @@ class Walker(ACTR):
         goal.set("pass")
 
     def feel(goal="pass", felt=None, skin="busy:False"):
+        self.keep_pace()
         skin.request("pose")
 
     def walk_on(goal="pass", felt="pose x:?x"):
@@ -94,7 +102,7 @@ def build(parameters: Parameters) -> Simulation:
 
     def mind():
         walker = Walker()
-        walker.speed = parameters.speed
+        walker.speed, walker.walks_at = parameters.speed, 0.0
         return walker
 
     scene = Scene(parts=(Floor(), Aperture(width=parameters.width), Mannequin(name="walker", shoulder_width=SHOULDERS)))

@@ -14,6 +14,8 @@ from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.recording import Recorded
+from actr3d.running.building import build
+from actr3d.running.replay import replay
 from actr3d.simulation import Passage, PassageResult, Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
@@ -303,3 +305,60 @@ def test_the_readme_shows_what_is_printed(capsys: Any) -> None:
     command = readme.split("uv run actr3d ")[1].splitlines()[0].split()
     assert main([str(FILE) if word == "models/aperture_passage.py" else word for word in command]) == 0
     assert capsys.readouterr().out == readme.split("```\n")[1]
+
+
+# -- a speed that changes
+
+
+@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize(("first", "then"), [(None, 0.6), (0.8, 1.7), (0.8, None)])
+def test_who_is_to_walk_at_another_speed_does_on_the_way(model: Any, variant: str, first: float | None, then: float | None) -> None:
+    simulation = built(model, variant=variant, aperture=0.45, speed=first)
+    simulation.run(7)
+    base = simulation.world.bodies["walker"].base
+    at = base.place[0]
+    assert 0.5 < at < 4
+    simulation.command("parameter", "walker.pace.wanted", then)
+    simulation.run(0.6)
+    before = base.place[0]
+    simulation.run(0.5)
+    assert (base.place[0] - before) / 0.5 == pytest.approx(then or 1.29, abs=0.05)
+    assert simulation.minds["walker"].speed == (then or 1.29)
+    assert simulation.run(20).ended_by == "stop"
+    result = simulation.result()
+    assert (result.outcome, result.contacts) == ("passed", 0)
+    assert min(result.clearance_left_m, result.clearance_right_m) > 0.02
+
+
+def test_a_speed_that_changes_before_it_walks_is_the_one_it_walks_at(model: Any) -> None:
+    simulation = built(model, aperture=0.7)
+    simulation.command("parameter", "walker.pace.wanted", 0.9)
+    simulation.run(20)
+    assert (simulation.result().outcome, simulation.result().speed_m_s) == ("passed", pytest.approx(0.9, abs=0.02))
+
+
+def test_a_run_in_which_the_speed_changed_goes_back_and_on_with_the_same_bytes(model: Any) -> None:
+    straight, wandering = (scene_with(model, ("floor", "aperture", "walker"), "human") for _ in range(2))
+    for simulation in (straight, wandering):
+        simulation.run(7)
+        simulation.command("parameter", "walker.pace.wanted", 0.8)
+    straight.run()
+    wandering.run(3)
+    wandering.seek(8.0)
+    wandering.run()
+    assert outcome(wandering) == outcome(straight)
+
+
+def test_a_run_in_which_the_speed_changed_is_replayed(tmp_path: Path) -> None:
+    text = FILE.read_text(encoding="utf-8")
+    with RunLimits(seed=1):
+        simulation, parameters = build(text, str(FILE), {"aperture": 0.45}, FILE.parent)
+    with simulation.record(tmp_path / "run", sources={str(FILE): text}, parameters=parameters):
+        simulation.run(7)
+        simulation.command("parameter", "walker.pace.wanted", 0.8)
+        simulation.run()
+    with Recorded(tmp_path / "run") as recorded:
+        assert [command.data["command"] for command in recorded.commands()] == ["parameter"]
+        with RunLimits(seed=1):
+            comparison = replay(recorded, lambda: build(text, str(FILE), {"aperture": 0.45}, FILE.parent)[0])
+    assert (comparison.difference, comparison.ticks) == (None, simulation.ticks)

@@ -174,3 +174,32 @@ def test_a_number_of_trials_that_is_none_is_refused(capsys: Any) -> None:
         main(["bench", "aperture", "--trials", "0"])
     assert refused.value.code == 2
     assert "must be a whole number from 1 on (got 0)" in capsys.readouterr().err
+
+
+def test_trials_that_fail_are_told_and_count(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    """One walker in a cell never reaches the wall, another touches it: no mean of a cell would show the first."""
+    original = original_means()
+
+    def run(trials: list[Trial], *, judging: bool = False) -> list[Outcome]:
+        outcomes: list[Outcome] = []
+        for trial in trials:
+            result = good(trial)
+            if trial.variant == "replication":
+                result = replace(result, logged_angle_deg=original[trial.group, trial.condition, trial.aperture])
+                if (trial.group, trial.condition, trial.aperture, trial.agent) == ("large", "fast", 0.4, 0):
+                    result = replace(result, outcome="stopped", logged_angle_deg=None, wall_angle_deg=None)
+                if (trial.group, trial.condition, trial.aperture, trial.agent) == ("large", "fast", 0.4, 1):
+                    result = replace(result, contacts=1)
+            said = "can pass as it is" if judging and trial.ratio > 1.155 else "can pass turned"
+            outcomes.append(Outcome(trial=trial, result=result, said=said, cost=0.3))
+        return outcomes
+
+    monkeypatch.setattr(aperture, "run_trials", run)
+    assert main(["bench", "aperture", "--trials", "5"]) == 1
+    told = capsys.readouterr().out
+    assert "replication: did not pass, or touched the wall:\n  large fast 40 cm: 2 of 5 (stopped, touched the wall)\n" in told
+    assert "human: did not pass, or touched the wall: none\n" in told
+    assert "MISSED  1 trials never reached the wall" in told
+    assert "root mean square difference 0.00 degrees" in told
+    assert main(["bench", "aperture", "--trials", "5", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["unfinished"] == 1

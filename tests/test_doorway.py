@@ -40,3 +40,19 @@ def test_its_parameters_do_what_they_say(doorway: Any) -> None:
     simulation = doorway.build(doorway.Parameters(speed=2.0))
     simulation.run(1)
     assert simulation.world.bodies["walker"].get("pose").x == pytest.approx(2.0, abs=0.03)
+
+
+@pytest.mark.parametrize("when", [0.0, 3.0, 5.2])
+def test_its_speed_may_change_before_and_on_its_way(doorway: Any, when: float) -> None:
+    """At 5.2 s it has turned its shoulders, and looks no more."""
+    simulation = doorway.build(doorway.Parameters(width=0.5))
+    simulation.run(when)
+    simulation.command("parameter", "walker.speed", 0.8)
+    simulation.run(0.6)
+    walker = simulation.world.bodies["walker"]
+    before = walker.get("pose").x
+    simulation.run(0.5)
+    assert (walker.get("pose").x - before) / 0.5 == pytest.approx(0.8, abs=0.02)
+    simulation.run(12)
+    assert walker.get("pose").x > 7.9
+    assert walker.get("contacts") == ()

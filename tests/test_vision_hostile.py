@@ -207,3 +207,24 @@ def test_parameters_need_no_unit() -> None:
 def test_words_that_requests_could_not_reach_are_refused(text: str, says: str) -> None:
     with pytest.raises(VisionError, match=says):
         lives(text)
+
+
+def test_salience_and_encoding_set_later_count_and_are_checked() -> None:
+    def seven(feature: Any) -> float:
+        return 7.0
+
+    vision = Vision(None)
+    vision.salience = {"opening": seven}
+    vision.encoding = 0.085
+    assert vision._saliences["opening"](None) == 7.0
+    assert vision._encoding == 0.085
+    with pytest.raises(ParameterError, match=r"Vision\.encoding: must be a time"):
+        vision.encoding = "em"
+    with pytest.raises(ParameterError, match="no feature 'openin'; did you mean 'opening'"):
+        vision.salience = {"openin": "size"}
+    assert vision.encoding == 0.085
+
+
+def test_a_camera_that_is_set_later_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"Vision.rows: a camera cannot be changed; give it to Vision\(rows=...\)"):
+        Vision(None).rows = 50

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import asdict, replace
 from statistics import mean
 from typing import Any
@@ -22,12 +22,31 @@ JUDGED = tuple(n / 100 for n in range(100, 133, 2))
 
 
 def cells(outcomes: list[Outcome]) -> dict[tuple[str, str, float], float]:
-    """Returns the mean logged angle of each cell [degrees]; one who did not reach the wall counts with nothing."""
+    """Returns the mean logged angle of each cell [degrees], of those who reached the wall; see `failures` for the others."""
     found: defaultdict[tuple[str, str, float], list[float]] = defaultdict(list)
     for outcome in outcomes:
         if outcome.result.logged_angle_deg is not None:
             found[outcome.trial.group, outcome.trial.condition, outcome.trial.aperture].append(outcome.result.logged_angle_deg)
     return {key: mean(angles) for key, angles in found.items()}
+
+
+def failures(outcomes: list[Outcome]) -> list[str]:
+    """Returns which trials did not pass, or touched the wall: one text a cell, with how many of how many and how they ended."""
+    told: defaultdict[tuple[str, str, float], list[str]] = defaultdict(list)
+    sizes = Counter((outcome.trial.group, outcome.trial.condition, outcome.trial.aperture) for outcome in outcomes)
+    for outcome in outcomes:
+        if outcome.result.outcome != "passed" or outcome.result.contacts:
+            how = "touched the wall" if outcome.result.contacts else outcome.result.outcome
+            told[outcome.trial.group, outcome.trial.condition, outcome.trial.aperture].append(how)
+    return [
+        f"{group} {condition} {100 * aperture:.0f} cm: {len(how)} of {sizes[group, condition, aperture]} ({', '.join(sorted(set(how)))})"
+        for (group, condition, aperture), how in sorted(told.items())
+    ]
+
+
+def unfinished(outcomes: list[Outcome]) -> int:
+    """Returns how many never reached the wall, and have no angle there."""
+    return sum(outcome.result.logged_angle_deg is None for outcome in outcomes)
 
 
 def root_mean_square(found: dict[Any, float], original: dict[Any, float]) -> float:
@@ -56,6 +75,8 @@ def measure(trials: int) -> dict[str, Any]:
             {"group": g, "condition": c, "aperture": a, "angle": round(found.get((g, c, a), math.nan), 2), "original": original[g, c, a]}
             for g, c, a in original
         ],
+        "unfinished": unfinished(replication) + unfinished(human),
+        "failures": {"replication": failures(replication), "human": failures(human)},
         "rmse": round(root_mean_square(found, original), 3),
         "human": [
             {"group": g, "condition": c, "aperture": a, "angle": round(findings.mean(g, c, a), 2)}
@@ -82,10 +103,10 @@ def _table(title: str, rows: list[dict[str, Any]], beside: str | None = None) ->
 
 
 def main(*, json_output: bool, trials: int | None = None) -> int:
-    """Measures and prints; returns the exit code: 0 where the bar and all constraints are met."""
+    """Measures and prints; returns the exit code: 0 where the bar and all constraints are met, and all reach the wall."""
     measured = measure(trials or TRIALS)
     constraints = [Constraint(**constraint) for constraint in measured["constraints"]]
-    good = measured["rmse"] <= BAR and all(constraint.met for constraint in constraints)
+    good = measured["rmse"] <= BAR and not measured["unfinished"] and all(constraint.met for constraint in constraints)
     if json_output:
         print(json.dumps(measured))
         return 0 if good else 1
@@ -95,6 +116,10 @@ def main(*, json_output: bool, trials: int | None = None) -> int:
     print("\n".join(_table("human: angle at the wall [degrees]", measured["human"])))
     for constraint in constraints:
         print(f"{'met    ' if constraint.met else 'NOT MET'}  {constraint.number}  {constraint.says}: {constraint.found}")
+    for variant, texts in measured["failures"].items():
+        print("\n".join([f"{variant}: did not pass, or touched the wall:{'' if texts else ' none'}", *(f"  {text}" for text in texts)]))
+    if measured["unfinished"]:
+        print(f"MISSED  {measured['unfinished']} trials never reached the wall, and count in no mean")
     print(f"\n{measured['trials']} trials a cell; a trial takes {measured['ms_a_trial']:.0f} ms of one processor for", end=" ")
     print(f"{measured['simulated_s_a_trial']:.1f} s simulated; all took {measured['took_s']:.0f} s")
     return 0 if good else 1

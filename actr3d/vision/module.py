@@ -12,7 +12,7 @@ from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.searches import Searching, outcome_of
 from actr3d.camera import View
 from actr3d.clock import MICROSECONDS
-from actr3d.errors import VisionError
+from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
 from actr3d.vision.encoding import Emma, saccade_time
 from actr3d.vision.feature import off_sight
@@ -20,7 +20,7 @@ from actr3d.vision.looks import Looks
 from actr3d.vision.noise import blurred
 from actr3d.vision.query import Query, read_request
 from actr3d.vision.search import Search
-from actr3d.vision.settings import check_camera, check_numbers, encoding_of, saliences_of
+from actr3d.vision.settings import CAMERA, check_camera, check_numbers, encoding_of, saliences_of
 from actr3d.world.words import number
 
 TICK = 10_000
@@ -93,6 +93,8 @@ class Vision(WithParameters, Searching):
         self.busy = False
         self.error = False
         self.watching = False
+        self.salience = salience
+        self.encoding = encoding
         self.delay = delay
         self.delay_sd = delay_sd
         self.bottom_up_delay = bottom_up_delay
@@ -114,6 +116,16 @@ class Vision(WithParameters, Searching):
         self._waiting: Search | None = None
         self._brought: tuple[Any, int] = (None, 0)
         self._last: dict[bool, Search] = {}
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if "_last" in self.__dict__:  # it has been made
+            if name == "salience":
+                self._saliences = saliences_of(value, self._detectors)
+            elif name == "encoding":
+                self._encoding = encoding_of(value)
+            elif name in CAMERA:
+                raise ParameterError(f"Vision.{name}: a camera cannot be changed; give it to Vision({name}=...) when that is made")
+        super().__setattr__(name, value)
 
     # -- what it is asked
 

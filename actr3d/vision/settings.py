@@ -19,6 +19,9 @@ MOST = 1e6
 
 FROM_ZERO = ("delay", "delay_sd", "bottom_up_delay", "hold", "edge_noise", "distance_noise")
 
+CAMERA = tuple(field.name for field in fields(CameraParameters))
+"""What may be given besides a module's own parameters."""
+
 
 def check_numbers(given: Mapping[str, Any]) -> None:
     """Checks the numbers and the rule that a module is given.
@@ -60,11 +63,10 @@ def check_camera(camera: Mapping[str, Any], own: list[str]) -> None:
         ParameterError: If the camera has no such parameter either.
         ConfigurationError: If a value is not what the camera takes.
     """
-    known = [field.name for field in fields(CameraParameters)]
     for name in camera:
-        if name not in known:
-            hint = did_you_mean(name, [*own, *known])
-            raise ParameterError(f"Vision has no parameter '{name}'{hint}; it has: {', '.join(own)}, and the camera's {', '.join(known)}")
+        if name not in CAMERA:
+            hint = did_you_mean(name, [*own, *CAMERA])
+            raise ParameterError(f"Vision has no parameter '{name}'{hint}; it has: {', '.join(own)}, and the camera's {', '.join(CAMERA)}")
     CameraParameters.from_mapping(camera)
 
 
