@@ -1,7 +1,7 @@
 // The timeline: one axis of time for mind and body, on which one goes back and forth.
 
 import { computed, html } from "../vendor/preact.js";
-import { session, state } from "../store.js";
+import { noSession, session, state } from "../store.js";
 import { curvesVersion, names } from "../timeline/curves.js";
 import { lanes, lanesVersion } from "../timeline/record.js";
 import { Stage } from "../timeline/stage.js";
@@ -12,7 +12,7 @@ const nothing = computed(() => {
   lanesVersion.value;
   curvesVersion.value;
   if (lanes.lanes.size > 0 || names.value.length > 0) return "";
-  if (!session.value) return "Choose a model above: what its mind and body do is shown here over time.";
+  if (!session.value) return noSession("Choose a model above: what its mind and body do is shown here over time.");
   return state.value ? "Nothing has happened yet. Press Run or step: what mind and body do is shown here over time." : "The run has not begun.";
 });
 

@@ -2,6 +2,7 @@
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
+import { alive, session, state } from "../store.js";
 import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./words.js";
 
 const ROW = 44; // [px]; style.css has the same
@@ -51,6 +52,12 @@ function Head({ column }) {
   </th>`;
 }
 
+/** How long a run is; that of the present run grows while one looks on. */
+function Length({ run }) {
+  const goesOn = alive.value && run.session === session.value.id && run.id === session.value.recording;
+  return `${(goesOn ? state.value.furthest : run.time).toFixed(2)} s`;
+}
+
 function Row({ run, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
   const different = differentText(run);
@@ -73,7 +80,7 @@ function Row({ run, number, now, toggle, open }) {
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>
     </td>
-    <td class="time number"><span>${run.problem ? "" : `${run.time.toFixed(2)} s`}</span><small>${sizeText(run.size)}</small></td>
+    <td class="time number"><span>${run.problem ? "" : html`<${Length} run=${run} />`}</span><small>${sizeText(run.size)}</small></td>
   </tr>`;
 }
 
