@@ -74,8 +74,8 @@ function Row({ run, number, now, toggle, open }) {
     </td>
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
     <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
-      <span>${run.model || run.id}${run.session ? html` <b class="mark">present</b>` : null}</span>
-      <small>${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <span>${run.model || run.id}</span>
+      <small>${run.session ? html`<b class="present-mark">present</b> · ` : null}${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>
