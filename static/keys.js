@@ -18,7 +18,7 @@ export const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
 /** Says a key as it stands on a keyboard. */
 export function keyText(key) {
   const names = { " ": "Space", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", Mod: isMac ? "⌘" : "Ctrl" };
-  return key.split("+").map((part) => names[part] ?? (part.length === 1 ? part.toUpperCase() : part)).join(" ");
+  return key.split(/\+(?=.)/).map((part) => names[part] ?? (part.length === 1 ? part.toUpperCase() : part)).join(" ");
 }
 
 function isWriting(element) {

@@ -4,7 +4,18 @@ import { html, render } from "./vendor/preact.js";
 import { complain } from "./store.js";
 import { Workbench } from "./workbench.js";
 
-addEventListener("error", (event) => complain(`The page has a fault: ${event.message}`));
-addEventListener("unhandledrejection", (event) => complain(`The page has a fault: ${event.reason?.message ?? event.reason}`));
+const MOST_FAULTS = 10; // a fault in what is drawn again and again would bury all other messages
+const faults = new Set();
+
+/** Tells of a fault of the page itself, once. */
+function fault(text) {
+  if (faults.has(text) || faults.size >= MOST_FAULTS) return;
+  faults.add(text);
+  const more = faults.size === MOST_FAULTS ? " There may be more, which are not told. Load the page again: the run goes on." : "";
+  complain(`The page has a fault: ${text}${more}`);
+}
+
+addEventListener("error", (event) => fault(event.message));
+addEventListener("unhandledrejection", (event) => fault(String(event.reason?.message ?? event.reason)));
 
 render(html`<${Workbench} />`, document.body);

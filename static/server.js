@@ -1,7 +1,8 @@
 // Speaks to the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
-import { complain, connected, events, forget, known, session, take } from "./store.js";
+import { complain, connected, events, forget, known, opening, session, take } from "./store.js";
 
+const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
 const AGAIN = 1000; // how long it waits before connecting again [ms]
 
 let socket = null;
@@ -51,10 +52,16 @@ function leave() {
 /** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
 export async function showModel(model, { run = false } = {}) {
   if (model !== session.peek()?.model) leave();
-  const { sessions } = await call("GET", "/api/sessions");
+  const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessions.filter((session) => session.model === model).at(-1);
-  if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
-  show((there ?? (await call("POST", "/api/sessions", { model, run }))).id);
+  opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
+  try {
+    if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
+    show((there ?? (await call("POST", "/api/sessions", { model, run }))).id);
+  } catch (error) {
+    opening.value = null;
+    throw error;
+  }
 }
 
 function attach() {

@@ -14,6 +14,8 @@ export const state = signal(null);
 export const events = signal({ list: [], first: 0, missing: 0 });
 /** What the user is told: {number, level, text, file, line, detail, attempt, version}. */
 export const notices = signal([]);
+/** What is said while a model is on its way: {text, slow}; null otherwise. */
+export const opening = signal(null);
 /** Whether the websocket is open; null before it was for the first time. */
 export const connected = signal(null);
 
@@ -29,7 +31,10 @@ export const known = { run: 0, epoch: 0 };
 /** Takes in one message of the server. */
 export function take(message) {
   batch(() => {
-    if (message.session) session.value = message.session;
+    if (message.session) {
+      session.value = message.session;
+      opening.value = null;
+    }
     if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
     Object.assign(known, { run: message.run, epoch: message.epoch });
     if ("state" in message) state.value = message.state;
@@ -68,6 +73,11 @@ let ownNotices = 0;
 export function complain(text, level = "error") {
   ownNotices -= 1;
   tell([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
+}
+
+/** Says why there is no session to show: a model is on its way, or none is chosen. */
+export function noSession(otherwise) {
+  return opening.value?.text ?? otherwise;
 }
 
 /** Forgets what is known of a session, for another one is shown. */

@@ -1,4 +1,4 @@
-"""How many recordings a folder keeps: each run makes one, and nobody deletes them all by hand."""
+"""Which recordings a folder keeps: each run makes one, and nobody deletes them all by hand."""
 
 from __future__ import annotations
 
@@ -7,10 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
+from workbench.feed import EventLog
+from workbench.worker.messages import State
+
 MOST = 500
 """So many recordings are kept, unless told otherwise."""
 MOST_MEGABYTES = 4_000
 """And no more than so many MB of them."""
+BESIDE = ("-wal", "-shm", "-journal")
+"""Files with these endings lie beside a recording that is being written."""
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
 """The name that a run gives its recording; one with another name was given it by a user."""
 
@@ -49,3 +56,22 @@ def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
 def is_unnamed(path: Path) -> bool:
     """Tells whether a recording has the name that its run has given it."""
     return _UNNAMED.fullmatch(path.stem) is not None
+
+
+def never_begun(state: State | None, log: EventLog) -> bool:
+    """Tells whether a run has stood at its start all the time, and printed nothing: its recording is of no use.
+
+    Args:
+        state: Its newest state; None where it has not told any.
+        log: Its events.
+    """
+    if state is None or state.furthest > 0 or state.status != "paused":
+        return False
+    _, events = log.since(0)
+    return not any(msgspec.json.decode(event)[2] in ("output", "command") for event in events)
+
+
+def erase(path: Path) -> None:
+    """Deletes a recording, and what lies beside it."""
+    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
+        each.unlink(missing_ok=True)

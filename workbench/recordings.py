@@ -19,14 +19,12 @@ from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import NOTHING, Curves, stride
 from workbench.files import OWN
-from workbench.keeping import Keeping, superfluous
+from workbench.keeping import BESIDE, Keeping, erase, superfluous
 from workbench.summaries import Summaries, Summary, begun
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 MOST = 1_000
 """So many recordings are told of at once."""
-BESIDE = ("-wal", "-shm", "-journal")
-"""Files with these endings lie beside a recording that is being written."""
 
 
 class NoSuchRecordingError(Actr3dError):
@@ -81,7 +79,7 @@ class Recordings:
     def tidy(self, keeping: Keeping) -> None:
         """Deletes the oldest recordings that no user has named, where there are too many."""
         for path in superfluous(self._files(), keeping):
-            _delete(path)
+            erase(path)
 
     def rename(self, name: str, to: str) -> None:
         """Gives a recording another name; one that a user has named is kept until a user deletes it.
@@ -113,12 +111,7 @@ class Recordings:
         Raises:
             NoSuchRecordingError: If there is none of that name.
         """
-        _delete(self.path(name))
-
-
-def _delete(path: Path) -> None:
-    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
-        each.unlink(missing_ok=True)
+        erase(self.path(name))
 
 
 # -- to take away

@@ -171,8 +171,9 @@ def _told(file: ModelFile) -> dict[str, Any]:
 
 @router.get("/sessions")
 def sessions(request: Request) -> dict[str, Any]:
-    """Lists the sessions."""
-    return {"sessions": [session.summary() for session in sessions_of(request).all()]}
+    """Lists the sessions; `ready` tells whether a run can begin at once, or only when the workbench has loaded what models need."""
+    known = sessions_of(request)
+    return {"sessions": [session.summary() for session in known.all()], "ready": known.workers.ready}
 
 
 @router.post("/sessions", status_code=201)

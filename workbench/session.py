@@ -18,6 +18,7 @@ from workbench import protocol as say
 from workbench.attendant import Attendant
 from workbench.feed import MOST_NOTICES, EventLog, Feed
 from workbench.files import ModelFolder
+from workbench.keeping import erase, never_begun
 from workbench.look import Look
 from workbench.telling import Telling
 from workbench.worker.messages import At, Cut, Do, Draw, Facts, FromWorker, News, Notice, Reply, Start, State
@@ -165,8 +166,9 @@ class Session(Telling):
     def _swap(self, worker: Worker, start: Start, facts: Facts) -> None:
         """Shows the run of a worker that has been built, in place of the one before."""
         before, self._worker, self._loading = self._worker, worker, None
+        useless = self.start.record if self.start is not None and never_begun(self.state, self.log) else None
         if before is not None:
-            self._leave(before)
+            self._leave(before, useless)
         self.run += 1
         self.epoch += 1
         self.log = EventLog()
@@ -211,10 +213,16 @@ class Session(Telling):
         """Whether its run goes on."""
         return self.state is not None and self.state.status == "running"
 
-    def _leave(self, worker: Worker) -> None:
-        """Ends a worker, without waiting for it."""
+    def _leave(self, worker: Worker, useless: str | None = None) -> None:
+        """Ends a worker, without waiting for it, and then deletes a recording that is of no use."""
         self._asked.add(worker)
-        self._keep(worker.stop())
+
+        async def end() -> None:
+            await worker.stop()
+            if useless is not None:
+                erase(Path(useless))
+
+        self._keep(end())
 
     async def stop(self) -> None:
         """Ends the workers, whatever they do; at the latest after two seconds they are gone."""

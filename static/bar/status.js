@@ -2,12 +2,12 @@
 
 import { html } from "../vendor/preact.js";
 import { Former } from "../editor/running.js";
-import { connected, session, state } from "../store.js";
+import { connected, opening, session, state } from "../store.js";
 
 function standing() {
   const { stuck, loading, ending, alive } = session.value ?? {};
   if (loading) return "loading …";
-  if (!session.value) return "no run";
+  if (!session.value) return opening.value ? (opening.value.slow ? "the workbench is starting …" : "loading …") : "no run";
   const busy = stuck ? ` (busy${stuck.line ? ` at line ${stuck.line}` : ""})` : "";
   if (state.value) return `${state.value.status}${state.value.reason ? `: ${state.value.reason}` : ""}${busy}`;
   return alive ? `starting${busy}` : ending || "no run";

@@ -27,7 +27,7 @@ function Candidates({ reason }) {
         ${candidates.slice(0, MOST).map(
           (one, n) => html`<tr key=${n} class="${one.verdict.startsWith("won") ? "selected" : ""} ${n === below ? "threshold" : ""}">
             <td class="mono long">${one.chunk}</td>
-            <td>${one.verdict}</td>
+            <td class="verdict">${one.verdict}</td>
             <td class="number">${fixed(one.activation)}</td>
             ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${one.parts[name]} /></td>`)}
           </tr>`,
@@ -77,7 +77,7 @@ export function Search({ reason }) {
             <tbody>
               ${features.map(
                 (one, n) => html`<tr key=${n} class=${one.verdict === "chosen" ? "selected" : ""}>
-                  <td>${one.verdict}</td><td class="number">${one.salience === null ? "" : valueText(one.salience)}</td><td class="mono long">${one.feature}</td>
+                  <td class="verdict">${one.verdict}</td><td class="number">${one.salience === null ? "" : valueText(one.salience)}</td><td class="mono long">${one.feature}</td>
                 </tr>`,
               )}
             </tbody>

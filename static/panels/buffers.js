@@ -6,7 +6,7 @@ import { Flash, useTallest } from "../mind/flash.js";
 import { Module, Plain, useRequests } from "../mind/modules.js";
 import { Result } from "../mind/result.js";
 import { chunkText, slotsOf } from "../parts/chunk.js";
-import { session, state } from "../store.js";
+import { noSession, session, state } from "../store.js";
 
 function Buffer({ path, name, chunk }) {
   const slots = slotsOf(chunk);
@@ -74,7 +74,7 @@ function Buffers() {
 function nothing() {
   const { loading, kind, ending } = session.value ?? {};
   if (loading) return "The model is being loaded …";
-  if (!session.value) return "Choose a model above to see what its mind holds.";
+  if (!session.value) return noSession("Choose a model above to see what its mind holds.");
   if (kind === "program") return "The program has not made a model yet. Run it: it does so as it goes.";
   return ending ? `There is no run: ${ending}. Restart it.` : "This model has no mind to look into.";
 }

@@ -8,7 +8,7 @@ import { Waiting } from "../mind/waiting.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { remembered } from "../remembered.js";
-import { running, session, state } from "../store.js";
+import { noSession, running, session, state } from "../store.js";
 
 const MOST = 5000; // so many chunks are asked for
 const LIVE = 150; // a memory with no more chunks than these is shown while the run goes on, too
@@ -93,7 +93,7 @@ function Memory() {
 function nothing() {
   const { loading, kind } = session.value ?? {};
   if (loading) return "The model is being loaded …";
-  if (!session.value) return "Choose a model above to see what it remembers.";
+  if (!session.value) return noSession("Choose a model above to see what it remembers.");
   if (kind === "program" && Object.keys(state.value?.parts ?? {}).length === 0) return "The program has not made a model yet. Run it: it does so as it goes.";
   return "This model has no declarative memory.";
 }

@@ -3,7 +3,7 @@
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { boundsText, read, written } from "../parameters/values.js";
 import { call, order, say } from "../server.js";
-import { complain, session, state } from "../store.js";
+import { complain, noSession, session, state } from "../store.js";
 
 const listing = signal(null); // what the model's text says of itself
 const drafts = signal({}); // what is written in fields and not yet in force, by name
@@ -120,7 +120,7 @@ function Field({ parameter }) {
 function Parameters() {
   const shown = session.value;
   useEffect(() => void (shown && follow(shown)));
-  if (!shown) return html`<p class="empty">Choose a model above: its parameters are shown here.</p>`;
+  if (!shown) return html`<p class="empty">${noSession("Choose a model above: its parameters are shown here.")}</p>`;
   if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
   const fields = known();
   const changed = waiting().length;

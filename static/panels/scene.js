@@ -5,7 +5,7 @@ import { RetinaInset } from "../eye/inset.js";
 import { Icon } from "../parts/icon.js";
 import { remembered } from "../remembered.js";
 import { order } from "../server.js";
-import { session } from "../store.js";
+import { opening, session } from "../store.js";
 import { dark } from "../theme.js";
 
 const open = remembered("scene switches", true);
@@ -30,9 +30,14 @@ function Switches() {
   </div>`;
 }
 
+/** Whether there will be something to see, or known that there is not, in a while. */
+function awaited(told) {
+  return told ? Boolean(told.world || told.loading) : Boolean(opening.value);
+}
+
 /** Says why there is nothing to see yet. */
 function missing(told) {
-  if (!told) return "";
+  if (!told) return opening.value?.text ?? "";
   if (told.world) return "The 3D view is being made …";
   if (told.loading) return "The model is being loaded …";
   return told.kind ? "This model has no world: there is nothing to see. Its buffers, productions and memory stand beside." : "";
@@ -45,7 +50,7 @@ export function Scene() {
   if (shown) address.current = `/viser/${told.id}/?panel=hidden${dark.value ? "&darkMode" : ""}`;
   return html`<section id="scene" class="scene" aria-label="3D view">
     <iframe title="3D view" src=${address.current} hidden=${!shown}></iframe>
-    ${shown ? html`<${Switches} />` : html`<p class="empty">${missing(told)}</p>`}
+    ${shown ? html`<${Switches} />` : html`<div class="empty" role="status"><p>${missing(told)}</p>${awaited(told) ? html`<progress aria-label="Loading" />` : null}</div>`}
     <${RetinaInset} />
   </section>`;
 }

@@ -1,9 +1,10 @@
 // The timeline: one axis of time for mind and body, on which one goes back and forth.
 
 import { computed, html } from "../vendor/preact.js";
-import { session, state } from "../store.js";
+import { noSession, session, state } from "../store.js";
 import { curvesVersion, names } from "../timeline/curves.js";
 import { lanes, lanesVersion } from "../timeline/record.js";
+import { column } from "../timeline/rows.js";
 import { Stage } from "../timeline/stage.js";
 import { Tools } from "../timeline/tools.js";
 
@@ -12,7 +13,8 @@ const nothing = computed(() => {
   lanesVersion.value;
   curvesVersion.value;
   if (lanes.lanes.size > 0 || names.value.length > 0) return "";
-  if (!session.value) return "Choose a model above: what its mind and body do is shown here over time.";
+  if (!session.value) return noSession("Choose a model above: what its mind and body do is shown here over time.");
+  if (["ended", "failed"].includes(state.value?.status)) return "Nothing has happened in this run: no model made anything to show here.";
   return state.value ? "Nothing has happened yet. Press Run or step: what mind and body do is shown here over time." : "The run has not begun.";
 });
 
@@ -21,7 +23,7 @@ export function Timeline() {
     <${Tools} />
     <div class="timeline-body">
       <${Stage} />
-      ${nothing.value ? html`<p class="empty timeline-nothing">${nothing.value}</p>` : null}
+      ${nothing.value ? html`<p class="empty timeline-nothing" style=${{ left: `${column.value}px` }}>${nothing.value}</p>` : null}
     </div>
   </div>`;
 }

@@ -30,7 +30,7 @@ export function Toasts() {
   }
 
   return html`<div class="toasts" aria-live="assertive">
-    ${shown
+    ${shown && openTab.value !== "messages"
       ? html`<div class="toast">
           <span>${shown.file ? `${shown.file}:${shown.line}: ` : ""}${shown.text}</span>
           <button class="bare" onClick=${read}>Show</button>

@@ -48,10 +48,11 @@ export async function listRuns() {
   awaitEnd(mine);
 }
 
-/** Reads anew soon, where the present run is over and its file does not say so yet: it is written a moment later. */
+/** Reads anew soon, where the file of the present run is not there yet, or does not say that it is over: it is written a moment later. */
 function awaitEnd(mine) {
   const own = runs.value?.find(({ id }) => id === present.value);
-  tries = state.value?.status === "ended" && own && !own.ended ? tries + 1 : 0;
+  const late = own ? state.value?.status === "ended" && !own.ended : present.value !== null && session.value.alive;
+  tries = late ? tries + 1 : 0;
   if (tries > 0 && tries <= MOST_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
 }
 

@@ -2,6 +2,7 @@
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
+import { alive, session, state } from "../store.js";
 import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./words.js";
 
 const ROW = 44; // [px]; style.css has the same
@@ -51,6 +52,12 @@ function Head({ column }) {
   </th>`;
 }
 
+/** How long a run is; that of the present run grows while one looks on. */
+function Length({ run }) {
+  const goesOn = alive.value && run.session === session.value.id && run.id === session.value.recording;
+  return `${(goesOn ? state.value.furthest : run.time).toFixed(2)} s`;
+}
+
 function Row({ run, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
   const different = differentText(run);
@@ -67,13 +74,13 @@ function Row({ run, number, now, toggle, open }) {
     </td>
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
     <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
-      <span>${run.model || run.id}${run.session ? html` <b class="mark">present</b>` : null}</span>
-      <small>${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <span>${run.model || run.id}</span>
+      <small>${run.session ? html`<b class="present-mark">present</b> · ` : null}${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>
     </td>
-    <td class="time number"><span>${run.problem ? "" : `${run.time.toFixed(2)} s`}</span><small>${sizeText(run.size)}</small></td>
+    <td class="time number"><span>${run.problem ? "" : html`<${Length} run=${run} />`}</span><small>${sizeText(run.size)}</small></td>
   </tr>`;
 }
 

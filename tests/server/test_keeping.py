@@ -99,3 +99,34 @@ def test_what_cannot_be_opened_is_listed_with_the_reason(desk: Desk, tmp_path: P
         assert recordings.summary(name) == told[name]
         recordings.delete(name)
     assert recordings.list()[0] == 1
+
+
+def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('hello')\n", record=True)
+    first = talk.session.start
+    assert first is not None
+    assert first.record is not None
+    talk.wait(lambda: Path(first.record or "").is_file())
+    talk.say("restart")
+    talk.wait(lambda: talk.session.start is not first and talk.state["status"] == "paused" and not Path(first.record or "").exists())
+    second = talk.session.start
+    talk.say("run")
+    talk.until("ended")
+    talk.say("restart")
+    talk.wait(lambda: talk.session.start is not second and talk.state["status"] == "paused")
+    desk.do(talk.session.stop())
+    names = {Path(start.record).stem for start in (second, talk.session.start) if start is not None and start.record is not None}
+    assert {summary.id for summary in talk.sessions.recordings.list()[1]} == names
+
+
+def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:
+    from workbench.feed import EventLog
+    from workbench.keeping import never_begun
+
+    talk = desk.begin(tmp_path, "x = 1\n", record=True)
+    state = talk.session.state
+    assert never_begun(state, EventLog())
+    assert not never_begun(None, EventLog())
+    log = EventLog()
+    log.add(0, [b'[0,"top","output",{"text":"hello"}]'])
+    assert not never_begun(state, log)

@@ -422,3 +422,13 @@ def test_a_session_goes_on_with_a_file_that_is_renamed_or_gone(desk: Desk, tmp_p
     talk.say("restart", run=True)
     talk.wait(lambda: talk.facts["run"] == 2)
     talk.until("ended")
+
+
+def test_what_a_program_printed_before_an_endless_loop_is_shown(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING + "\nprint('done')\nwhile True:\n    pass\n", run=True, wait=None)
+    talk.wait(lambda: talk.events and talk.state["events"] == len(talk.events))
+    _, _, kind, data = talk.events[-1]
+    assert (kind, data["text"]) == ("output", "done")
+    assert next(data["production"] for _, _, kind, data in talk.events if kind == "fire") == "begin"
+    assert talk.state["status"] == "running"
+    assert talk.state["time"] > 0

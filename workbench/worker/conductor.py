@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from collections import deque
+from contextlib import suppress
 from time import perf_counter
 from typing import Any, Protocol
+
+import msgspec
 
 from actr3d.actr.limits import EndOfRun
 from actr3d.clock import MICROSECONDS, seconds
@@ -107,8 +111,13 @@ class Conductor:
         self.leaving = False
         """Whether the worker is to leave."""
         self.run: Conducted
+        link.busy = self.show_busy
         self._sent = 0
         """How many events the server has been given."""
+        self._last: State | None = None
+        """The state that was shown last."""
+        self._telling = threading.Lock()
+        """Held by the thread that gives events to the server."""
         self._seen = 0
         """How many events have been looked at for what is watched."""
         self._shown = 0.0
@@ -185,9 +194,10 @@ class Conductor:
 
     def goes_another_way(self, events: int) -> None:
         """Takes note that from an event on all will be different from what was known."""
-        if events < self._sent:
-            self._sent = events
-            self.link.cut(Cut(events=events), events)
+        with self._telling:
+            if events < self._sent:
+                self._sent = events
+                self.link.cut(Cut(events=events), events)
 
     # -- what users say
 
@@ -290,7 +300,6 @@ class Conductor:
         self._shown = now
         trace = run.trace
         count = 0 if trace is None else len(trace)
-        news = [] if trace is None or count <= self._sent else trace.since(self._sent)
         physics, apertures = run.scene()
         state = State(
             status=self.status,
@@ -307,8 +316,29 @@ class Conductor:
             physics=physics,
             drawn=run.drawn(self._drawn) if self._drawn else {},
         )
+        with self._telling:
+            self._tell(state, trace)
+
+    def show_busy(self) -> None:
+        """Shows what has happened until the model became busy, as in an endless loop; called by the thread that hears the server.
+
+        Only events and the time are told: parts may be changing just now.
+        """
+        # Whatever is amiss in a model that is in the middle of something, the thread must go on.
+        with suppress(Exception), self._telling:
+            trace, last = self.run.trace, self._last
+            if last is None or trace is None or self.status != "running" or len(trace) <= self._sent:
+                return
+            clock = self.run.clock
+            time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
+            self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
+
+    def _tell(self, state: State, trace: Trace | None) -> None:
+        """Gives the server a state and the events up to it that it does not have."""
+        count = state.events
+        news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
         self.link.show(state, self._sent, [bounded_json([e.time_us, e.source, e.kind, e.data]) for e in news])
-        self._sent = max(self._sent, count)
+        self._sent, self._last = max(self._sent, count), state
 
     def _halt(self) -> None:
         self._anchor = None

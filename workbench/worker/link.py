@@ -9,7 +9,7 @@ import sys
 import threading
 import traceback
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from time import perf_counter
 from types import FrameType
 
@@ -63,6 +63,8 @@ class Link:
         self._something = threading.Condition()
         self._sending = False
         self._main = threading.main_thread().ident
+        self.busy: Callable[[], None] | None = None
+        """Shows what has happened in a run that says nothing of itself."""
         self._left = False
         """Whether this is a copy of the process, which has nothing to do with the server."""
         self.start: Start = self._read_start()
@@ -108,6 +110,8 @@ class Link:
             if message is None:
                 os._exit(0)  # the server is gone; nobody is left to be told anything
             if isinstance(message, Where):
+                if self.busy is not None:
+                    self.busy()
                 self.post(self._where())
             elif isinstance(message, (Do, Draw, Leave)):
                 self.inbox.put(message)

@@ -122,6 +122,11 @@ class Workers:
         self._born = asyncio.Queue()
         self._listening = asyncio.create_task(self._listen(self._zygote))
 
+    @property
+    def ready(self) -> bool:
+        """Whether what workers need has been loaded, so that they begin at once."""
+        return self._ready.is_set()
+
     async def launch(self) -> Worker:
         """Returns a new worker.
 

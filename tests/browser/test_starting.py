@@ -1,0 +1,63 @@
+"""What the page says while it cannot show a run yet, and when it is at fault itself."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Page, Route, expect
+
+from tests.browser.looking import open_tab, shows
+
+
+def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "paused")
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        if route.request.method == "POST":
+            held.append(route)
+        else:
+            route.fulfill(json={"sessions": [], "ready": False})
+
+    page.route("**/api/sessions", hold)
+    page.get_by_label("Model", exact=True).select_option("doorway.py")
+    shows(page, "#status", "the workbench is starting")
+    expect(page.locator("#scene")).to_contain_text("the eye is compiled")
+    expect(page.locator("#scene progress")).to_be_visible()
+    held[0].continue_()
+    shows(page, "#status", "paused")
+    expect(page.locator("#scene progress")).to_have_count(0)
+
+
+def test_its_own_faults_do_not_bury_other_messages(page: Page) -> None:
+    shows(page, "#status", "paused")
+    open_tab(page, "Messages")
+    page.evaluate("for (let n = 0; n < 50; n += 1) dispatchEvent(new ErrorEvent('error', { message: 'the same' }))")
+    expect(page.get_by_text("The page has a fault: the same")).to_have_count(1)
+    page.evaluate("for (let n = 0; n < 50; n += 1) dispatchEvent(new ErrorEvent('error', { message: `another ${n}` }))")
+    expect(page.get_by_text(re.compile("The page has a fault"))).to_have_count(10)
+    expect(page.get_by_text("There may be more")).to_have_count(1)
+
+
+def test_all_keys_are_named(page: Page) -> None:
+    shows(page, "#status", "paused")
+    page.keyboard.press("?")
+    keys = page.get_by_role("dialog").locator("kbd")
+    expect(keys.filter(has_text="+")).to_have_text("+")
+    assert all(text.strip() for text in keys.all_inner_texts())
+
+
+def test_the_time_of_the_present_run_is_that_of_the_moment(page: Page) -> None:
+    shows(page, "#status", "paused")
+    open_tab(page, "Runs")
+    row = page.locator("tr.present .time")
+    expect(row).to_contain_text("0.00 s")
+    page.evaluate("document.activeElement.blur()")
+    page.click("#step")
+    shows(page, "#time", "0.01 s")
+    expect(row).to_contain_text("0.01 s")
+    page.click("#back")
+    shows(page, "#time", "0.00 s")
+    expect(row).to_contain_text("0.01 s")
