@@ -120,7 +120,7 @@ class Sessions:
             idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
             if not idle:
                 raise SessionError(f"there are {MOST} sessions already, and each is watched or goes on: close a page, or stop a run")
-            await self.close(idle.name)
+            await self.close(idle[0].name)
         self._count += 1
         name = f"s{self._count}"
         session = Session(name, path, self.workers, self.recordings.new, model)
