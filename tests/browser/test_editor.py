@@ -38,6 +38,7 @@ def written(workbench: Served) -> Callable[[str, str], Path]:
 
 def edit(page: Page, model: str) -> None:
     """Opens a file of the folder in the editor."""
+    shows(page, "#status", "paused|ended|failed|running")  # the editor begins with the model that is shown
     open_tab(page, "Editor")
     page.get_by_label("File", exact=True).select_option(model)
     expect(page.locator(f"{CODE}[aria-label*='{model}']")).to_be_visible(timeout=PATIENCE)
@@ -192,6 +193,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     page.on("dialog", leave)
     page.reload()
     assert asked == ["beforeunload"]
+    shows(page, "#status", "paused|ended|failed|running")  # the editor begins with the model that is shown
     open_tab(page, "Editor")
     page.get_by_label("File", exact=True).select_option("draft.py")
     expect(page.locator(CODE)).to_have_text("a = 1b = 2", timeout=PATIENCE)
