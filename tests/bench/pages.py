@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import AsyncGenerator, Callable, Generator
-from contextlib import asynccontextmanager, contextmanager, suppress
+from collections.abc import AsyncGenerator, Callable
+from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 import websockets
@@ -36,18 +36,6 @@ CLICKS = """async (count) => {
     return taken;
 }"""
 """Clicks on step, one time after the other, and returns how long it took each time until the time on the page was another [ms]."""
-
-
-@contextmanager
-def chromium(path: str) -> Generator[Any]:
-    """Gives a headless Chromium that draws the 3D view by software."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        browser = playwright.chromium.launch(executable_path=path, args=options)
-        yield browser
-        browser.close()
 
 
 class Client:

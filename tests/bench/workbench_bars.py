@@ -21,7 +21,8 @@ from statistics import median
 from typing import Any, TypeVar
 
 from actr3d.bench.figures import Figure, report
-from tests.bench.pages import CLICKS, Client, attached, await_scene, chromium, looking, opened
+from tests.bench.pages import CLICKS, Client, attached, await_scene, looking, opened
+from tests.browser.looking import browser_path, launched
 from tests.server.serving import MODELS, Served, served
 
 T = TypeVar("T")
@@ -67,9 +68,9 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=10.0, help="for how long eight clients are attached (default 10)")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     options = parser.parse_args()
-    path = _browser_path()
+    path = browser_path()
     figures: list[Figure] = []
-    with tempfile.TemporaryDirectory() as made, chromium(path) if path is not None else nullcontext() as browser:
+    with tempfile.TemporaryDirectory() as made, launched(path) if path is not None else nullcontext() as browser:
         folder = Path(made) / "models"
         figures.append(_starts(folder, browser))
         with _workbench(folder) as server, _page(server, browser) as page:
@@ -82,11 +83,6 @@ def main() -> int:
         with _workbench(folder) as server:
             figures.append(_now(_soak(server, 60 * options.minutes)))
     return report(figures, json_output=options.json)
-
-
-def _browser_path() -> str | None:
-    names = ("chromium", "chromium-browser", "google-chrome", "chrome")
-    return next((path for name in names if (path := shutil.which(name)) is not None), None)
 
 
 def _now(work: Coroutine[Any, Any, T]) -> T:

@@ -19,20 +19,32 @@ OPTIONS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshad
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
+def browser_path() -> str | None:
+    """Returns where a Chromium is; None where there is none."""
+    return next((path for name in NAMES if (path := shutil.which(name)) is not None), None)
+
+
 @contextmanager
-def chromium() -> Generator[Browser]:
-    """Starts a Chromium; where there is none the test is skipped, or fails in CI, which is to have one."""
-    path = next((path for name in NAMES if (path := shutil.which(name)) is not None), None)
-    if path is None:
-        if os.environ.get("CI"):
-            pytest.fail("there is no Chromium, and CI is to have one")
-        pytest.skip("there is no Chromium on this machine")
+def launched(path: str) -> Generator[Browser]:
+    """Starts a headless Chromium that draws the 3D view by software."""
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=list(OPTIONS))
         try:
             yield browser
         finally:
             browser.close()
+
+
+@contextmanager
+def chromium() -> Generator[Browser]:
+    """Starts a Chromium; where there is none the test is skipped, or fails in CI, which is to have one."""
+    path = browser_path()
+    if path is None:
+        if os.environ.get("CI"):
+            pytest.fail("there is no Chromium, and CI is to have one")
+        pytest.skip("there is no Chromium on this machine")
+    with launched(path) as browser:
+        yield browser
 
 
 def shows(page: Page, where: str, text: str) -> None:
