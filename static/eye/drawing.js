@@ -1,5 +1,6 @@
 // Draws what an eye sees: extents by row, coloured by label, paler with distance.
 
+import { scaled } from "../parts/surface.js";
 import { colour } from "../theme.js";
 
 const FAR = 12; // from here on nothing gets any paler [m]
@@ -15,20 +16,10 @@ export function shadeOf(label, distance, dark) {
   return dark ? `hsl(${hueOf(label)} ${65 - 40 * far}% ${68 - 40 * far}%)` : `hsl(${hueOf(label)} ${70 - 40 * far}% ${38 + 46 * far}%)`;
 }
 
-/** Gives a canvas as many points as the screen has for its box; returns its context, scaled to CSS pixels. */
-export function fitted(canvas) {
-  const scale = devicePixelRatio || 1;
-  const { clientWidth, clientHeight } = canvas;
-  const [width, height] = [Math.round(clientWidth * scale), Math.round(clientHeight * scale)];
-  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d");
-  context.setTransform(scale, 0, 0, scale, 0, 0);
-  return { context, width: clientWidth, height: clientHeight };
-}
-
 /** Draws a view ({rows, extents}: each [row, label, y, x1, x2, d1, d2, a1, a2]); `chosen` is a label to be framed. */
 export function drawView(canvas, view, dark, chosen = null) {
-  const { context, width, height } = fitted(canvas);
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const context = scaled(canvas, width, height);
   context.fillStyle = colour("field");
   context.fillRect(0, 0, width, height);
   if (!view) return;

@@ -5,7 +5,7 @@ import { dark } from "../theme.js";
 import { drawCurves, drawLegend, drawTimes, rangeOf, seriesColour, valueAt } from "./curve.js";
 import { Icon } from "./icon.js";
 import { savePicture } from "./picture.js";
-import { CanvasSurface } from "./surface.js";
+import { CanvasSurface, scaled } from "./surface.js";
 import { numberText, timeText } from "./ticks.js";
 
 const LEFT = 46; // room for the scale [px]
@@ -60,11 +60,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
   }, []);
 
   useEffect(() => {
-    const scale = devicePixelRatio || 1;
-    canvas.current.width = width.value * scale;
-    canvas.current.height = height * scale;
-    const context = canvas.current.getContext("2d");
-    context.scale(scale, scale);
+    const context = scaled(canvas.current, width.value, height);
     if (width.value > 0) drawPlot(new CanvasSurface(context), width.value, height, { series, times, span: shown, range, at });
   }, [series, times, times.length, shown.from, shown.to, range, at, width.value, height, dark.value]);
 

@@ -174,3 +174,14 @@ function node(name, attributes) {
   for (const [key, value] of Object.entries(attributes)) if (key !== "xmlns") made.setAttribute(key, value);
   return made;
 }
+
+/** Gives a canvas as many points as the screen has for a size [CSS px], and clears it; returns its context, in CSS pixels. */
+export function scaled(canvas, width, height) {
+  const scale = devicePixelRatio || 1;
+  const [wide, high] = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== wide || canvas.height !== high) Object.assign(canvas, { width: wide, height: high });
+  const context = canvas.getContext("2d");
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return context;
+}

@@ -1,7 +1,7 @@
 // The part of the timeline that is drawn: the canvas, the playhead over it, and what the pointer is at.
 
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
-import { CanvasSurface } from "../parts/surface.js";
+import { CanvasSurface, scaled } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
 import { events, running, state } from "../store.js";
 import { dark } from "../theme.js";
@@ -41,12 +41,7 @@ export function scene(whole = false) {
 function paint(canvas) {
   const now = scene();
   height.value = now.layout.height;
-  const scale = devicePixelRatio || 1;
-  const [width, high] = [Math.round(now.width * scale), Math.round(now.height * scale)];
-  if (canvas.width !== width || canvas.height !== high) Object.assign(canvas, { width, height: high });
-  const context = canvas.getContext("2d");
-  context.setTransform(scale, 0, 0, scale, 0, 0);
-  context.clearRect(0, 0, now.width, now.height);
+  const context = scaled(canvas, now.width, now.height);
   if (now.width > now.column) drawTimeline(new CanvasSurface(context), now);
 }
 
