@@ -8,6 +8,7 @@ const AGAIN = 1000; // how long it waits before connecting again [ms]
 let socket = null;
 let shown = null;
 let number = 0;
+let wishes = 0;
 const waiting = new Map();
 
 /** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. An AbortSignal
@@ -35,6 +36,14 @@ export async function call(method, path, body, signal) {
   return told;
 }
 
+/** Is called when the user wants something else to be shown, which takes a while; returns what tells whether that is still wanted:
+ * of two things chosen one soon after the other, the first may be ready last. */
+export function wish() {
+  wishes += 1;
+  const mine = wishes;
+  return () => mine === wishes;
+}
+
 /** Shows a session from now on. */
 export function show(session) {
   if (session !== shown) forget();
@@ -51,15 +60,17 @@ function leave() {
 
 /** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
 export async function showModel(model, { run = false } = {}) {
+  const wanted = wish();
   if (model !== session.peek()?.model) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessions.filter((session) => session.model === model).at(-1);
-  opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
+  if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
     if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
-    show((there ?? (await call("POST", "/api/sessions", { model, run }))).id);
+    const { id } = there ?? (await call("POST", "/api/sessions", { model, run }));
+    if (wanted()) show(id);
   } catch (error) {
-    opening.value = null;
+    if (wanted()) opening.value = null;
     throw error;
   }
 }

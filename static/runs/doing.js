@@ -2,7 +2,7 @@
 
 import { signal } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
-import { call, show } from "../server.js";
+import { call, show, wish } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
@@ -19,11 +19,12 @@ const cancels = new Map();
 export async function openRun(run) {
   if (busy.value || run.problem) return;
   busy.value = { text: "Opening …" };
+  const wanted = wish();
   try {
     await leaveUnwatched();
     const { id } = await call("POST", `/api/recordings/${run.id}/open`, {});
     relived.add(id);
-    show(id);
+    if (wanted()) show(id);
   } catch (error) {
     complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
   }

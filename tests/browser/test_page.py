@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.browser.looking import PATIENCE, choose, open_tab, shows
 from tests.server.serving import Served
@@ -52,6 +52,29 @@ def test_a_second_tab_and_a_reload_show_the_same(pages: Callable[..., Page], wor
     shows(page, "#events", "count_on")
     page.reload()
     shows(page, "#events", "count_on")
+
+
+def test_what_was_chosen_last_is_shown_though_it_is_ready_first(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        if "counting.py" in (route.request.post_data or ""):
+            held.append(route)
+        else:
+            route.continue_()
+
+    page.route("**/api/sessions", hold)
+    with page.expect_request(lambda request: request.method == "POST"):
+        page.get_by_label("Model", exact=True).select_option("counting.py")
+    choose(page, "doorway.py")
+    shows(page, "#status", "at its start")
+    with page.expect_response(lambda response: response.request.method == "POST"):
+        held[0].continue_()
+    page.click("#step")
+    shows(page, "#time", "0.01 s")
+    shows(page, "#width", "50 cm")
+    expect(page.get_by_label("Model", exact=True)).to_have_value("doorway.py")
 
 
 def test_an_error_is_shown_as_text_and_mended(page: Page, workbench: Served) -> None:
