@@ -132,17 +132,20 @@ class Trace:
 
     def emit(self, time_us: int, source: str, kind: str, data: Data) -> None:
         """Appends one event; the caller has looked at the level and gives `data` away."""
+        if not self._listeners:
+            if self.keep:
+                self._records.append((time_us, source, kind, data))
+            return
+        event = _event((time_us, source, kind, data))
         if self.keep:
-            self._records.append((time_us, source, kind, data))
-        if self._listeners:
-            event = _event((time_us, source, kind, data))
-            rank = _RANKS.get(kind, 0)
-            for listener, level in self._listeners:
-                if level >= rank:
-                    try:
-                        listener(event)
-                    except Exception as error:  # noqa: BLE001 - it is raised where the run can bear it, see `raise_failures`
-                        self._fail(listener, event, error)
+            self._records.append(event)  # as it is now: its data is not made again for those who look later
+        rank = _RANKS.get(kind, 0)
+        for listener, level in self._listeners:
+            if level >= rank:
+                try:
+                    listener(event)
+                except Exception as error:  # noqa: BLE001 - it is raised where the run can bear it, see `raise_failures`
+                    self._fail(listener, event, error)
 
     def command(self, name: str, data: Mapping[str, Any] | None = None, *, run: int | None = None) -> None:
         """Sends a user's command, such as pause or a new value of a parameter, to a run.
@@ -265,5 +268,7 @@ def _rank(what: str, level: Any) -> int:
 
 
 def _event(record: Record) -> TraceEvent:
+    if isinstance(record, TraceEvent):
+        return record
     time_us, source, kind, data = record
     return TraceEvent(time_us, source, kind, data() if callable(data) else data)

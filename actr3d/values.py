@@ -9,13 +9,13 @@ from __future__ import annotations
 import json
 import re
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import date, datetime, time, timedelta
 from decimal import Decimal
 from enum import Enum
 from fractions import Fraction
 from math import isfinite
-from types import BuiltinFunctionType, FunctionType, MethodType
+from types import BuiltinFunctionType, FunctionType, MappingProxyType, MethodType
 from typing import Any, cast
 from uuid import UUID
 
@@ -33,6 +33,10 @@ MOST = 10_000
 """How often a record keeps a list once more that it has kept before; beyond that it is a net in which every way would be gone."""
 LONGEST = 14_000
 """How long a whole number may be to be written in decimals [bits]; JSON's readers take no longer ones."""
+UNTOLD: Mapping[str, bool] = MappingProxyType({"untold": True})
+"""The metadata of a dataclass field that traces and recordings leave out, for they have it in another place."""
+
+_ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
 
 Namer = Callable[[object], str | None]
 
@@ -135,6 +139,15 @@ def to_json(value: Any) -> str:
     except ValueError:
         line = json.dumps(_finite(value), ensure_ascii=False, allow_nan=False)
     # Half a character, which no encoding has, is written as JSON's own escape.
+    return line if line.isascii() else line.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def plain_to_json(value: Any) -> str:
+    """Returns what `to_json` does of a value that is plain already, as the data of events are; several times as quickly."""
+    try:
+        line = _ENCODE(value)
+    except (TypeError, ValueError, RecursionError):
+        return to_json(value)
     return line if line.isascii() else line.encode("utf-8", "backslashreplace").decode("utf-8")
 
 

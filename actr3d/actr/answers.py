@@ -4,22 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any, cast
 
 from actr3d.actr.chunk import PLAIN_TYPES
 
 
+@cache
+def _told_fields(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind) if "untold" not in field.metadata)
+
+
 def plain_answer(answer: Any) -> Any:
     """Returns an answer as plain values, lists and dicts.
 
-    A frozen dataclass becomes a dict of its fields; what has a `summary()`, as a view has, that.
+    A frozen dataclass becomes a dict of its fields, but for those that are `UNTOLD`; what has a `summary()`, as a view has, that.
     """
     if answer is None or type(answer) in PLAIN_TYPES:
         return answer
     if hasattr(answer, "summary"):
         return plain_answer(answer.summary())
     if is_dataclass(answer):
-        return {field.name: plain_answer(getattr(answer, field.name)) for field in fields(answer)}
+        return {name: plain_answer(getattr(answer, name)) for name in _told_fields(cast("type[Any]", type(answer)))}
     if isinstance(answer, Mapping):
         items = cast("Mapping[Any, Any]", answer).items()
         return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}

@@ -75,6 +75,8 @@ class Limbs:
         """By joint, its place there."""
         self.shown_as = {name: f"{name}_{'angle' if joint.kind == 'hinge' else 'position'}" for name, joint in self.joints.items()}
         """By joint, the motor module's attribute that shows where it is felt to be."""
+        self.unit = {name: radians(1) if joint.kind == "hinge" else 1.0 for name, joint in self.joints.items()}
+        """By joint, what one unit in which people give its position is inside: a degree in radians, or a metre."""
         self.group_of: dict[str, str] = {joint.name: part.name for part in plan.parts for joint in part.joints}
         """By joint, the muscle group that moves it: that of its part."""
         self.walks = "walk" in plan.actuators
@@ -183,10 +185,6 @@ class Limbs:
         """Returns the limit of a joint [rad] or [m] that lies in the way of a speed; None where there is none."""
         plan = self.joints[joint]
         return plan.upper if way > 0 else plan.lower
-
-    def unit(self, joint: str) -> float:
-        """Returns what one unit in which people give a joint's position is inside: a degree in radians, or a metre."""
-        return radians(1) if self.joints[joint].kind == "hinge" else 1.0
 
 
 SLOWEST = 1e-6

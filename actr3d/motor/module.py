@@ -276,7 +276,7 @@ class Motor(Muscles):
         name = limbs.joint(joint, axis)
         if usual and limbs.joints[name].kind == "slide":
             raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; say how fast [m/s]: rotate('{name}', speed=…)")
-        target = limbs.limit(name, pace) if to is None else to * limbs.unit(name)
+        target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
         self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, place)
 
     def _move(self, movement: Any, side: Any, to: float | None, pace: float, place: str) -> None:
@@ -288,13 +288,13 @@ class Motor(Muscles):
         for joint, way in named.joints:
             limit = limbs.limit(joint, way * pace)
             end = copysign(INFINITE, way * pace) if limit is None else limit
-            ways[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit(joint)
+            ways[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit[joint]
         name = movement if named.side is None else f"{movement}_{named.side}"
         self._turn_joints(name, ways, pace, to is None and named.to is None, place)
 
     def _assume(self, posture: Chunk, pace: float, place: str) -> None:
         limbs = self._known()
-        ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit(joint) for joint in limbs.order if joint in posture}
+        ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
         if not ways:
             raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
         self._turn_joints("assume", ways, pace, False, place)
@@ -306,14 +306,14 @@ class Motor(Muscles):
         for joint, target in ways.items():
             if not limbs.joints[joint].driven:
                 raise WorldError(f"{limbs.plan.name}: joint '{joint}' has no muscles that could move it")
-            limbs.possible(name, pace * limbs.unit(joint), 2, limbs.unit(joint))
+            limbs.possible(name, pace * limbs.unit[joint], 2, limbs.unit[joint])
             if abs(target) < INFINITE and not limbs.inside(joint, target):
                 self._refuse(name, "limit")
                 return
             by_group.setdefault(limbs.group_of[joint], {})[joint] = target
         movements: dict[str, Movement] = {}
         for group, targets in by_group.items():
-            speed = abs(pace) * limbs.unit(next(iter(targets)))
+            speed = abs(pace) * limbs.unit[next(iter(targets))]
             movements[group] = JointMovement(name, group, speed, place, ways=targets, order=limbs.order, to_limit=to_limit)
         self._begin(movements)
 

@@ -211,7 +211,7 @@ class Muscles(WithParameters, Port):
         """Brings what is known of some joints, and of the body's size, into step with the body."""
         draw = self.random.gauss
         for joint in joints:
-            noise = draw(0, self.angle_noise * limbs.unit(joint)) if self.angle_noise else 0.0
+            noise = draw(0, self.angle_noise * limbs.unit[joint]) if self.angle_noise else 0.0
             limbs.feel(joint, reading.positions[limbs.number[joint]] + noise)
         schema = self._schema
         if schema is None:

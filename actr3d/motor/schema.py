@@ -27,8 +27,8 @@ class BodySchema:
 
     def __init__(self, limbs: Limbs, angle_grid: float, size_grid: float, step: float | None) -> None:
         self._limbs = limbs
-        self._angle_grid = angle_grid
         self._size_grid = size_grid
+        self._grids = {joint: angle_grid if plan.kind == "hinge" else size_grid for joint, plan in limbs.joints.items()}
         self._step = step
         named = {joint for movement in limbs.plan.movements if movement.to is None for joint, _ in movement.joints}
         self._always = [joint for joint in limbs.order if joint in named or not named]
@@ -38,8 +38,7 @@ class BodySchema:
 
     def shown(self, joint: str, position: float) -> float:
         """Returns a joint's position as people read it, on the grid: degrees, or metres where it slides."""
-        hinge = self._limbs.joints[joint].kind == "hinge"
-        return on_grid(position / self._limbs.unit(joint), self._angle_grid if hinge else self._size_grid)
+        return on_grid(position / self._limbs.unit[joint], self._grids[joint])
 
     def size(self, length: float) -> float:
         """Returns a length on the grid [m]."""
@@ -66,7 +65,7 @@ class BodySchema:
 
     def _away(self, joint: str) -> bool:
         limbs = self._limbs
-        return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit(joint)
+        return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit[joint]
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
         """Returns those of some joints that have gone further by a step than in any posture so far."""
@@ -76,7 +75,7 @@ class BodySchema:
         further: list[str] = []
         for joint in joints:
             at = limbs.felt[joint]
-            step = self._step * limbs.unit(joint)
+            step = self._step * limbs.unit[joint]
             if at >= self._most[joint] + step or at <= self._least[joint] - step:
                 further.append(joint)
         return tuple(further)

@@ -106,6 +106,7 @@ class Body:
         self.skin: tuple[str, ...] = tuple(self.geom_name(geom) for geom in self.feeling.tolist())
         self.hands: dict[str, Hand] = {self.short(name).removesuffix("_hand"): Hand(world, name) for name in self.anatomy.hands}
         self.holding = Holding(self)
+        self._servoed = [(joint, self.holding.row(joint.name)) for joint in self.joints.values() if joint.driven]
         self.running = Running(self)
         self.touched: tuple[Touch, ...] | None = None
         """What the skin has felt in the last tick; None before anyone asks."""
@@ -132,6 +133,11 @@ class Body:
         self.world.refresh()
         held = [geom for hand in self.hands.values() for geom in hand.geoms]
         return self.extent.box(*frame_of(self, frame), held)
+
+    def moving(self) -> tuple[str, ...]:
+        """Returns the joints that a command still moves, or tries to."""
+        told = self.holding.told.tolist()
+        return tuple([joint.name for joint, row in self._servoed if (joint.told(self) if row is None else told[row])])
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
         """Gives a command, which holds at once and until another one replaces it.

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from actr3d.values import to_json
+from actr3d.trace import TraceEvent
+from actr3d.values import plain_to_json, to_json
 
 LARGEST = 200_000
 """One event, or all parts together, are no longer as JSON [characters]; what is longer is shown in part, and recorded whole."""
@@ -12,19 +14,25 @@ LONGEST_TEXT = 2_000
 MOST_ENTRIES = 200
 
 
-def bounded_json(value: Any, most: int = LARGEST) -> bytes:
+def bounded_json(value: Any, most: int = LARGEST, *, whole: Callable[[Any], str] = to_json) -> bytes:
     """Returns a value as JSON: as it is, or with its long texts and collections cut, or that it is too long.
 
     Args:
         value: Anything that has JSON.
         most: How long that may be [characters].
+        whole: Makes JSON of it.
     """
-    text = to_json(value)
+    text = whole(value)
     if len(text) > most:
         size, text = len(text), to_json(cut(value))
         if len(text) > most:
             text = to_json(_told(value, f"too long to be shown: {size:,} characters"))
     return text.encode()
+
+
+def event_json(event: TraceEvent) -> bytes:
+    """Returns an event as pages take it: time [us], source, kind, data."""
+    return bounded_json(list(event), whole=plain_to_json)
 
 
 def cut(value: Any) -> Any:

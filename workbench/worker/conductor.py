@@ -16,7 +16,7 @@ from actr3d.errors import Actr3dError
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
-from workbench.worker.bounds import bounded_json
+from workbench.worker.bounds import bounded_json, event_json
 from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.trouble import told_of
@@ -337,7 +337,7 @@ class Conductor:
         """Gives the server a state and the events up to it that it does not have."""
         count = state.events
         news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
-        self.link.show(state, self._sent, [bounded_json([e.time_us, e.source, e.kind, e.data]) for e in news])
+        self.link.show(state, self._sent, [event_json(event) for event in news])
         self._sent, self._last = max(self._sent, count), state
 
     def _halt(self) -> None:

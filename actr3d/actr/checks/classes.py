@@ -8,6 +8,7 @@ import linecache
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.model import Model
@@ -74,7 +75,13 @@ def _class_node(klass: type, func: Callable[..., Any]) -> ast.ClassDef | None:
 
 def _classes(text: str, klass: type) -> list[ast.ClassDef]:
     """Returns the definitions in a file that have a class's name."""
-    return [node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.ClassDef) and node.name == klass.__name__]
+    return [node for node in _definitions(text) if node.name == klass.__name__]
+
+
+@lru_cache(maxsize=64)
+def _definitions(text: str) -> tuple[ast.ClassDef, ...]:
+    """Returns the definitions of all classes in a file, which each of its classes is looked for in."""
+    return tuple(node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.ClassDef))
 
 
 def check_parameters(system: ProductionSystem) -> None:

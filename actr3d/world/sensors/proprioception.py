@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from actr3d.errors import WorldError
+from actr3d.values import UNTOLD
 from actr3d.world.sensors.registry import sensor
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ class Size:
 class Proprioception:
     """How a body stands and moves, in as few numbers as a motor module needs each tick."""
 
-    positions: tuple[float, ...]
-    """Of all joints, in the order of the word `anatomy` [rad] or [m]."""
+    positions: tuple[float, ...] = field(metadata=UNTOLD)
+    """Of all joints, in the order of the word `anatomy` [rad] or [m]. A recording has them in the physics' state of the same tick."""
     moving: tuple[str, ...]
     """The joints that a command still moves, or tries to."""
     speed: tuple[float, float, float]
@@ -69,7 +70,7 @@ def proprioception(body: Body) -> Proprioception:
     depth, width, height = body.bounding_box("body").size
     return Proprioception(
         positions=tuple([positions[joint.q] for joint in body.joints.values()]),
-        moving=tuple([name for name, joint in body.joints.items() if joint.told(body)]),
+        moving=body.moving(),
         speed=body.base.speed if walks else (0.0, 0.0, 0.0),
         walking=walks and body.holding.commanded != (0.0, 0.0, 0.0),
         turning=body.running.turning() if walks else 0.0,
