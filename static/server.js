@@ -1,6 +1,7 @@
 // Speaks to the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
-import { complain, connected, events, forget, known, opening, session, take } from "./store.js";
+import { Rest } from "./rest.js";
+import { complain, connected, events, forget, hurried, known, opening, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
 const AGAIN = 1000; // how long it waits before connecting again [ms]
@@ -10,6 +11,9 @@ let shown = null;
 let number = 0;
 let wishes = 0;
 const waiting = new Map();
+const held = []; // updates that wait until they are drawn
+const rest = new Rest();
+let timer = 0;
 
 /** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. An AbortSignal
  * ends the waiting. */
@@ -46,7 +50,7 @@ export function wish() {
 
 /** Shows a session from now on. */
 export function show(session) {
-  if (session !== shown) forget();
+  if (session !== shown) leave();
   shown = session;
   if (socket?.readyState === WebSocket.OPEN) attach();
   else connect();
@@ -55,6 +59,7 @@ export function show(session) {
 /** Shows no session until another one is there to be shown. */
 function leave() {
   shown = null;
+  held.length = 0;
   forget();
 }
 
@@ -91,11 +96,10 @@ function connect() {
     const message = JSON.parse(data);
     if (message.type === "refused") complain(message.error);
     if (message.type !== "update" || message.of !== shown) return; // of the one that was shown before, some may still come
-    take(message);
-    for (const reply of message.replies ?? []) {
-      waiting.get(reply.id)?.(reply);
-      waiting.delete(reply.id);
-    }
+    held.push(message);
+    // Whoever has asked something waits for the answer.
+    if (message.replies) update();
+    else updateSoon();
   };
   socket.onclose = () => {
     connected.value = false;
@@ -103,6 +107,29 @@ function connect() {
     waiting.clear();
     setTimeout(connect, AGAIN);
   };
+}
+
+/** Takes in what has come, as soon as it may be drawn. */
+function updateSoon() {
+  if (timer) return;
+  const { left } = rest;
+  if (left > 0) timer = setTimeout(update, left);
+  else update();
+}
+
+function update() {
+  clearTimeout(timer);
+  timer = 0;
+  const messages = held.splice(0);
+  rest.drawing();
+  take(messages);
+  rest.hurried = hurried.peek();
+  for (const { replies = [] } of messages) {
+    for (const reply of replies) {
+      waiting.get(reply.id)?.(reply);
+      waiting.delete(reply.id);
+    }
+  }
 }
 
 /** Says a command or asks a question; returns what comes of it, or throws an Error that says why not. */

@@ -20,6 +20,8 @@ export const opening = signal(null);
 export const connected = signal(null);
 
 export const running = computed(() => state.value?.status === "running");
+/** Whether the run goes as fast as it can: then drawing it is not to take too much of the processor. */
+export const hurried = computed(() => running.value && state.value.wanted === null);
 /** Whether there is a run that can be asked. */
 export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null);
 /** The moment that is shown, as a text that differs between moments. */
@@ -28,22 +30,24 @@ export const moment = computed(() => `${session.value?.id} ${session.value?.run}
 /** Which events of which run are known, for a connection that is made again. */
 export const known = { run: 0, epoch: 0 };
 
-/** Takes in one message of the server. */
-export function take(message) {
-  batch(() => {
-    if (message.session) {
-      session.value = message.session;
-      opening.value = null;
-    }
-    if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
-    Object.assign(known, { run: message.run, epoch: message.epoch });
-    if ("state" in message) state.value = message.state;
-    if (message.events) events.value = withEvents(events.value, message.events);
-    if (message.notices) {
-      const numbers = new Set(notices.value.map((notice) => notice.number));
-      tell(message.notices.filter((notice) => !numbers.has(notice.number)));
-    }
-  });
+/** Takes in messages of the server. */
+export function take(messages) {
+  batch(() => messages.forEach(takeOne));
+}
+
+function takeOne(message) {
+  if (message.session) {
+    session.value = message.session;
+    opening.value = null;
+  }
+  if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
+  Object.assign(known, { run: message.run, epoch: message.epoch });
+  if ("state" in message) state.value = message.state;
+  if (message.events) events.value = withEvents(events.value, message.events);
+  if (message.notices) {
+    const numbers = new Set(notices.value.map((notice) => notice.number));
+    tell(message.notices.filter((notice) => !numbers.has(notice.number)));
+  }
 }
 
 function withEvents({ list, first, missing }, news) {

@@ -10,6 +10,7 @@ import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
 import { remembered } from "./remembered.js";
+import { hurried } from "./store.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
@@ -19,7 +20,7 @@ const below = remembered("timeline height", 270);
 export function Workbench() {
   const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };
   return html`
-    <div class="workbench" style=${sizes}>
+    <div class="workbench ${hurried.value ? "hurried" : ""}" style=${sizes}>
       <${Bar} />
       <main class="work">
         <${Scene} />

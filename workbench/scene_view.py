@@ -19,7 +19,7 @@ from workbench.look import Look
 from workbench.overlays import Overlay, make_overlays
 from workbench.panel import Panel
 from workbench.protocol import OverlayName
-from workbench.viser_server import BRIDGE_HEADER, start_viser
+from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, header_of, start_viser
 from workbench.worker.messages import Facts, State
 
 if TYPE_CHECKING:
@@ -93,9 +93,9 @@ class SceneView:
 
     # -- the bridge's side
 
-    def address(self) -> tuple[int, dict[str, str]]:
-        """Returns the port of viser's own server, and the headers that let the bridge in."""
-        return int(self._server.get_port()), {BRIDGE_HEADER: self._secret}
+    def address(self, *, shadows: bool) -> tuple[int, dict[str, str]]:
+        """Returns the port of viser's own server, and the headers that let the bridge in, and say whether shadows are wanted."""
+        return int(self._server.get_port()), {BRIDGE_HEADER: self._secret, SHADOWS_HEADER: "on" if shadows else "off"}
 
     # -- the scene
 
@@ -128,6 +128,8 @@ class SceneView:
 
     def _come(self, client: Any) -> None:
         """Shows a browser that comes the newest."""
+        if header_of(self._server, client, SHADOWS_HEADER) == "off":
+            client.scene.configure_default_lights(cast_shadow=False)
         scene = self._scene
         if scene is not None:
             scene.cameras.place(client, scene.data)

@@ -23,16 +23,8 @@ MOST_VIEWS = 32
 """So many 3D views may be open at once."""
 
 
-FRAMED = """<script>
-document.hasFocus = () => true;
-if (new URLSearchParams(location.search).get("panel") === "hidden") {
-  const style = document.createElement("style");
-  style.textContent = ".mantine-Paper-root, .mantine-Notification-root { display: none !important; }";
-  document.documentElement.append(style);
-}
-</script>"""
-"""What is put into viser's page: it goes on connecting again when it is not in front, too; `?panel=hidden` hides viser's own panel and
-notices, for pages that have controls of their own around it."""
+FRAMED = '<script type="module" src="/static/framed.js"></script>'
+"""What is put into viser's page."""
 
 
 @cache
@@ -55,7 +47,7 @@ class Bridge:
         """Carries one websocket, until one side is gone.
 
         Args:
-            browser: The browser's, not yet accepted.
+            browser: The browser's, not yet accepted. With `?shadows=off` it is shown no shadows.
             view: What it wants to see; None where there is nothing.
         """
         if view is None or view.over or self._open >= MOST_VIEWS:
@@ -71,7 +63,7 @@ class Bridge:
         import websockets
         from websockets.typing import Subprotocol
 
-        port, headers = view.address()
+        port, headers = view.address(shadows=browser.query_params.get("shadows") != "off")
         offered = [Subprotocol(name) for name in browser.scope.get("subprotocols", [])]
         try:
             # Only what is named here goes on: neither our cookie nor our token does.

@@ -9,6 +9,9 @@ from typing import Any
 BRIDGE_HEADER = "x-workbench-bridge"
 """With it the bridge says that it is the bridge: any page of the user's browser could find a port on loopback."""
 
+SHADOWS_HEADER = "x-workbench-shadows"
+"""With it the bridge says whether a browser is to be shown shadows: `on` or `off`."""
+
 
 def start_viser(secret: str) -> Any:
     """Starts viser's server, which lets nobody in but who knows a secret, and opens no tunnel.
@@ -25,9 +28,8 @@ def start_viser(secret: str) -> Any:
     inner: Any = server._websock_server
 
     async def check(client: Any) -> None:
-        connection = inner._live_connections.get(client.client_id)
-        told = connection.request.headers.get(BRIDGE_HEADER, "") if connection is not None else ""
-        if not secrets.compare_digest(told, secret):
+        if not secrets.compare_digest(header_of(server, client, BRIDGE_HEADER), secret):
+            connection = inner._live_connections.get(client.client_id)
             inner._live_connections.pop(client.client_id, None)
             inner._client_state_from_id.pop(client.client_id, None)
             if connection is not None:
@@ -41,3 +43,9 @@ def start_viser(secret: str) -> Any:
     inner.disconnect_all_clients()
     server.scene.set_up_direction("+z")
     return server
+
+
+def header_of(server: Any, client: Any, name: str) -> str:
+    """Returns what a header said with which a client has connected; an empty text where it is gone, or said nothing."""
+    connection = server._websock_server._live_connections.get(client.client_id)
+    return connection.request.headers.get(name, "") if connection is not None else ""
