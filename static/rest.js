@@ -2,12 +2,12 @@
 // a while after each picture, for the run needs the processor, too.
 
 const SMOOTH = 40; // a picture that takes no longer than this [ms] is free
-const SHARE = 1 / 4; // of the time may go into others
+const SHARE = 1 / 6; // of the time may go into others
 
 export class Rest {
   /** Whether the run goes as fast as it can. */
   hurried = false;
-  #cost = 0;
+  #begun = null; // when the picture was begun that is not done yet
   #until = 0;
 
   /** @param ask The `requestAnimationFrame` that tells when the browser is ready for another picture. */
@@ -15,20 +15,22 @@ export class Rest {
     this.ask = ask;
   }
 
-  /** Is called as a picture is begun: measures what it costs, by when the one after it could be begun. */
+  /** Is called as a picture is begun: measures what it costs, by when the one after the next could be begun. */
   drawing() {
-    const begin = performance.now();
-    this.ask(() =>
-      this.ask(() => {
-        // The browser may begin two or three before it waits for the first.
-        this.#cost = Math.max(performance.now() - begin, this.#cost / 2);
-        this.#until = this.#cost > SMOOTH ? begin + this.#cost / SHARE : 0;
-      }),
-    );
+    if (this.#begun !== null) return;
+    this.#begun = performance.now();
+    this.ask(() => this.ask(() => this.#done()));
   }
 
-  /** How long it is to rest from now on [ms]; 0 where the next picture may be drawn. */
+  #done() {
+    const cost = performance.now() - this.#begun;
+    this.#until = cost > SMOOTH ? this.#begun + cost / SHARE : 0;
+    this.#begun = null;
+  }
+
+  /** For how long it is to rest [ms], or at least until it is asked again; 0 where the next picture may be drawn. */
   get left() {
-    return this.hurried ? Math.max(0, this.#until - performance.now()) : 0;
+    if (!this.hurried || document.hidden) return 0;
+    return this.#begun === null ? Math.max(0, this.#until - performance.now()) : SMOOTH;
   }
 }

@@ -97,8 +97,8 @@ function connect() {
     if (message.type === "refused") complain(message.error);
     if (message.type !== "update" || message.of !== shown) return; // of the one that was shown before, some may still come
     held.push(message);
-    // Whoever has asked something waits for the answer.
-    if (message.replies) update();
+    // That the run stands is shown at once.
+    if (message.state && message.state.status !== "running") update();
     else updateSoon();
   };
   socket.onclose = () => {
@@ -113,8 +113,13 @@ function connect() {
 function updateSoon() {
   if (timer) return;
   const { left } = rest;
-  if (left > 0) timer = setTimeout(update, left);
-  else update();
+  if (left === 0) update();
+  else timer = setTimeout(again, left);
+}
+
+function again() {
+  timer = 0;
+  updateSoon();
 }
 
 function update() {

@@ -20,12 +20,13 @@ def plain_answer(answer: Any) -> Any:
 
     A frozen dataclass becomes a dict of its fields, but for those that are `UNTOLD`; what has a `summary()`, as a view has, that.
     """
-    if answer is None or type(answer) in PLAIN_TYPES:
+    kind = cast("type[Any]", type(answer))
+    if answer is None or kind in PLAIN_TYPES:
         return answer
     if hasattr(answer, "summary"):
         return plain_answer(answer.summary())
     if is_dataclass(answer):
-        return {name: plain_answer(getattr(answer, name)) for name in _told_fields(cast("type[Any]", type(answer)))}
+        return {name: plain_answer(getattr(answer, name)) for name in _told_fields(kind)}
     if isinstance(answer, Mapping):
         items = cast("Mapping[Any, Any]", answer).items()
         return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}

@@ -43,6 +43,7 @@ class Clearance:
         c, s = math.cos(wall.heading), math.sin(wall.heading)
         self._axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
         self._middle = np.array([*wall.position, 0.0])
+        self._radii = model.geom_rbound
 
     def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
         """Returns the smallest distances to the left and right segment [m]; None where nothing of the body is between their faces.
@@ -50,11 +51,11 @@ class Clearance:
         Args:
             held: More geoms that count as the body's: what it holds.
         """
-        model, data = self._model, self._data
-        geoms = np.append(self._geoms, np.array(held, dtype=np.intp))
+        geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
         half = self._wall.thickness / 2
-        past = (data.geom_xpos[geoms] - self._middle) @ self._axes[:, 0]
-        if (past - model.geom_rbound[geoms] > half).all() or (past + model.geom_rbound[geoms] < -half).all():
+        past = (self._data.geom_xpos[geoms] - self._middle).dot(self._axes[:, 0])
+        radii = self._radii[geoms]
+        if (past - radii).min() > half or (past + radii).max() < -half:
             return None
         box = self._extent.box(self._middle, self._axes, held)
         if box.upper[0] < -half or box.lower[0] > half:

@@ -107,6 +107,8 @@ class Passage:
         if body not in world.bodies:
             raise WorldError(f"no body '{body}' to measure{did_you_mean(body, world.bodies)}")
         self._world, self._body = world, world.bodies[body]
+        data = world.mj_data
+        self._places, self._geoms, self._qpos, self._qvel = data.xpos, data.geom_xpos, data.qpos, data.qvel
         wall = next((part for part in world.scene.parts if isinstance(part, Aperture) and part.name == aperture), None)
         if wall is None:
             raise WorldError(f"no aperture '{aperture}' in this scene to measure a passage through")
@@ -120,22 +122,25 @@ class Passage:
         self._shoulders = [geoms[name] for name in joints]
         left, right = (int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right"))
         gap = Wall(wall.position, wall.heading, wall.thickness, (left, right))
-        self._clearance = Clearance(model, world.mj_data, self._body.geoms, gap)
+        self._clearance = Clearance(model, data, self._body.geoms, gap)
         hinges = (("torso_yaw", 1.0), ("left_shoulder_yaw", 0.5), ("right_shoulder_yaw", 0.5))
         self._hinges = [(self._body.joints[name].q, self._body.joints[name].v, share) for name, share in hinges]
-        x, y, _ = world.mj_data.xpos[self._body.root].tolist()
+        x, y, _ = self._places[self._body.root].tolist()
         self._start = x, y
         self._reach = 2.0 + wall.thickness
 
     def look(self) -> None:
         """Keeps what is to be known of a physics step, once the body has set out; in place of what was kept of that time before."""
-        data = self._world.mj_data
-        end, ago = float(data.time), float(self._world.mj_model.opt.timestep)
-        x, y, _ = data.xpos[self._body.root].tolist()
-        new = [] if math.dist((x, y), self._start) < SET_OUT else [self._sample(x, y, end - ago, ago)]
-        place = slice(bisect_right(self._times, end - ago + TINY), bisect_right(self._times, end + TINY))
-        self._times[place] = [end] * len(new)
-        self._samples[place] = new
+        end, ago = self._world.mj_data.time, self._world.mj_model.opt.timestep
+        x, y, _ = self._places[self._body.root].tolist()
+        number = len(self._times)
+        if number and end <= self._times[-1] + TINY:  # the run has gone back
+            number = bisect_right(self._times, end - ago + TINY)
+            after = bisect_right(self._times, end + TINY)
+            del self._times[number:after], self._samples[number:after]
+        if math.dist((x, y), self._start) >= SET_OUT:
+            self._times.insert(number, end)
+            self._samples.insert(number, self._sample(x, y, end - ago, ago))
 
     def _sample(self, x: float, y: float, time: float, ago: float) -> _Sample:
         """Returns what is to be known of a moment.
@@ -146,17 +151,16 @@ class Passage:
             time: When [s].
             ago: How much further the joints have gone already [s].
         """
-        data = self._world.mj_data
         forward, left = self._ahead
         before = (self._wall.position[0] - x) * forward + (self._wall.position[1] - y) * left
-        (x1, y1, _), (x2, y2, _) = (data.geom_xpos[geom].tolist() for geom in self._shoulders)
+        (x1, y1, _), (x2, y2, _) = self._geoms[self._shoulders].tolist()
         dx, dy = x1 - x2, y1 - y2
         angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
         # The integrator has moved the joints on from the geometry, with these speeds.
-        logged = sum(share * float(data.qpos[q] - ago * data.qvel[v]) for q, v, share in self._hinges)
+        logged = sum([share * (self._qpos.item(q) - ago * self._qvel.item(v)) for q, v, share in self._hinges])
         touches = last_felt(self._body)
-        force = max((touch.force for touch in touches), default=0.0)
-        pairs = frozenset((touch.part, touch.other) for touch in touches)
+        force = max([touch.force for touch in touches], default=0.0)
+        pairs = frozenset([(touch.part, touch.other) for touch in touches])
         room = self._clearance.rooms(self._held()) if abs(before) < self._reach else None
         return _Sample(time, before, angle, logged, room, pairs, force)
 

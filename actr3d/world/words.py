@@ -28,6 +28,8 @@ class Word:
         self.fits = fits
         self._does = does
         self._signature = inspect.signature(does)
+        self._bare = all(of.default is not of.empty for of in [*self._signature.parameters.values()][1:])
+        """Whether it takes no values, or none that may not be left out."""
 
     def __call__(self, body: Body, *values: Any, **named: Any) -> Any:
         """Does it.
@@ -35,10 +37,11 @@ class Word:
         Raises:
             WorldError: If it does not take these values; says what it takes.
         """
-        try:
-            self._signature.bind(body, *values, **named)
-        except TypeError as error:
-            raise WorldError(f"{body.name}: {self.name} takes ({self.takes}): {error}") from error
+        if values or named or not self._bare:
+            try:
+                self._signature.bind(body, *values, **named)
+            except TypeError as error:
+                raise WorldError(f"{body.name}: {self.name} takes ({self.takes}): {error}") from error
         return self._does(body, *values, **named)
 
     @property

@@ -37,7 +37,7 @@ from workbench.worker.surroundings import surroundings
 from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
-BLOCK = 0.004
+BLOCK = 0.008
 """For about so long [s] the run goes on before it looks whether a user has said something."""
 MOST_TICKS = 64
 """And for no more ticks than these."""
