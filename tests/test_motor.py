@@ -522,6 +522,8 @@ def test_nothing_is_asked_while_nothing_moves() -> None:
     simulation.step(50)
     answers = [event for event in simulation.trace or () if event.kind == "answer"]
     assert [event.data["word"] for event in answers] == ["anatomy", "proprioception"]
+    # Where all joints stand, the recorded physics tells; here it would be most of all that is traced.
+    assert answers[1].data["value"].keys() == {"moving", "speed", "walking", "turning", "width", "depth", "height"}
     motor.rotate_torso(12)
     simulation.step(50)
     answers = [event for event in simulation.trace or () if event.kind == "answer"]

@@ -172,6 +172,25 @@ def test_a_listener_gets_every_event_and_a_trace_need_not_keep_them() -> None:
     assert [e for e in heard if e.kind == "fire"] == kept.select("fire")
 
 
+@pytest.mark.parametrize("listens", [False, True])
+def test_data_that_are_made_when_they_are_read_are_made_once_for_a_listener_and_the_record(listens: bool) -> None:
+    made: list[int] = []
+    heard: list[TraceEvent] = []
+
+    def data() -> dict[str, Any]:
+        made.append(1)
+        return {"chunk": {}}
+
+    trace = Trace()
+    if listens:
+        trace.listen(heard.append)
+    trace.emit(0, "agent.goal", "buffer", data)
+    assert len(made) == listens
+    assert [event.data for event in trace] == [{"chunk": {}}]
+    assert len(made) == 1
+    assert heard == (list(trace) if listens else [])
+
+
 def test_tracing_changes_nothing_in_the_run() -> None:
     ends: list[Any] = []
     for level in LEVELS:

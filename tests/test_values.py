@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.values import DEEPEST, Opaque, plain, to_json
+from actr3d.values import DEEPEST, Opaque, plain, plain_to_json, to_json
 
 
 class Colour(Enum):
@@ -133,3 +133,17 @@ def test_json_is_valid_for_numbers_and_characters_that_it_does_not_have() -> Non
     read = strictly(to_json(odd))
     assert read == {"nan": "nan", "inf": "-inf", "half": "\ud800", "word": "größe", "huge": hex(huge), "1": [1, 2]}
     assert strictly(to_json(Untouchable())) == "<Untouchable>"
+
+
+@pytest.mark.parametrize(
+    "value", [[1, "a", None, True, {"b": [1.5]}], "half \ud800", {"n": float("inf")}, [10**6000], "ü", ["x" * 1000]]
+)
+def test_json_of_what_is_plain_already_is_the_same(value: Any) -> None:
+    assert plain_to_json(value) == to_json(value)
+
+
+def test_json_of_what_is_not_plain_after_all_is_that_of_its_plain_form() -> None:
+    endless: list[Any] = []
+    endless.append(endless)
+    for value in ({1, 2}, {"of": object()}, endless):
+        assert plain_to_json(value) == to_json(value)

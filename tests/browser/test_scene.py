@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+import zstandard
+from playwright.sync_api import Browser, Page, WebSocket, expect
 
 from tests.server.serving import MODELS, Served, served
 
@@ -93,6 +94,53 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
     page.goto(f"{workbench.url}/viser/{session}/")
     expect(page.locator("html")).to_have_attribute("data-mantine-color-scheme", "light", timeout=PATIENCE)
     expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
+
+
+def test_where_the_processor_draws_there_are_no_shadows(workbench: Served, page: Page, session: str) -> None:
+    lights: list[str] = []
+
+    def hear(socket: WebSocket) -> None:
+        def take(data: str | bytes) -> None:
+            if isinstance(data, bytes) and len(data) > 16:  # two lengths stand before what is told
+                told = zstandard.ZstdDecompressor().decompressobj().decompress(data[16:])
+                lights.extend([socket.url] * told.count(b"EnableLightsMessage"))
+
+        socket.on("framereceived", take)
+
+    page.on("websocket", hear)
+    page.goto(f"{workbench.url}/viser/{session}/?panel=hidden")  # this browser has no graphics card
+    expect(page.get_by_text(re.compile("t = 0.00 s"))).to_have_count(1, timeout=PATIENCE)  # it is connected
+    end = time.monotonic() + PATIENCE / 1000
+    while not lights and time.monotonic() < end:
+        page.wait_for_timeout(50)
+    assert lights
+    assert lights[0].endswith("?shadows=off")
+
+
+RESTING = """async () => {
+    const { Rest } = await import("/static/rest.js");
+    const frames = [], rest = new Rest((draw) => frames.push(draw)), told = [], clock = performance.now;
+    const frame = () => frames.shift()?.();
+    let now = 1000;
+    performance.now = () => now;
+    for (const [hurried, cost] of [[false, 150], [true, 10], [true, 150]]) {
+        rest.hurried = hurried;
+        rest.drawing();
+        const before = rest.left > 0;
+        now += cost;
+        frame();
+        frame();
+        told.push([before, rest.left > cost]);
+    }
+    rest.hurried = false;
+    told.push(rest.left);
+    performance.now = clock;
+    return told;
+}"""
+
+
+def test_between_slow_pictures_of_a_hurried_run_it_rests(page: Page) -> None:
+    assert page.evaluate(RESTING) == [[False, False], [True, False], [True, True], 0]
 
 
 def test_what_a_model_calls_its_things_is_text(workbench: Served, page: Page) -> None:
