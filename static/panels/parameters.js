@@ -112,7 +112,7 @@ function Field({ parameter }) {
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
     <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="In force with the next run">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
-      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help}${help ? " " : ""}<span class="quiet">${boundsText(parameter)}${parameter.default === null ? "" : `${boundsText(parameter) ? "; " : ""}default ${written(parameter.default)}`}</span>
+      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${[boundsText(parameter), parameter.default === null ? "" : `default ${written(parameter.default)}`].filter(Boolean).join(" · ")}</span>
     </p>
   </div>`;
 }
