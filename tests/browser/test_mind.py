@@ -353,3 +353,45 @@ def test_a_past_moment_is_explained_while_the_run_goes_on(pages: Pages, workbenc
     moment.press("Enter")
     expect(page.locator("#why-text")).to_contain_text("look: matches, and is about to fire")
     shows(page, "#status", "running")
+
+
+BUMPS = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene, Wall
+
+class Walker(ACTR):
+    goal = Buffer()
+    motor = Motor()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        motor.walk(1.0)
+        goal.set("wait")
+
+def build() -> Simulation:
+    wall = Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0))
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"), wall)), {"walker": Walker}, seed=1)
+"""
+
+
+def test_the_trace_tells_where_something_is_touched(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "bumps.py", BUMPS)
+    open_tab(page, "Productions")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    touches = page.locator("#events tr.contact")
+    expect(touches.first).to_contain_text(re.compile(r"touch.*begins: .* with up to \d+ N"), timeout=60_000)
+    rows = page.locator("#events tbody tr")
+    expect(rows.filter(has_text="go").first).to_be_visible()
+    when = touches.first.locator(".time").inner_text()
+    assert 0.5 < float(when) < 1.5
+    touches.first.click()
+    shows(page, "#time", f"{float(when):.2f} s")
+    expect(touches.first).to_have_attribute("aria-selected", "true")
+    expect(touches.first).not_to_have_class(re.compile("ahead"))
+    page.locator("#back").click()
+    expect(touches.first).to_have_class(re.compile("ahead"))
+    page.get_by_label("Filter the trace").fill("nothing like this")
+    expect(touches).to_have_count(0)
