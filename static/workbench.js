@@ -14,8 +14,9 @@ import { hurried } from "./store.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
-const side = remembered("side width", 560);
-const below = remembered("timeline height", 270);
+// At first, wide windows give the panels more room, too.
+const side = remembered("side width", Math.max(560, Math.round(0.38 * innerWidth)));
+const below = remembered("timeline height", Math.max(270, Math.round(0.32 * innerHeight)));
 
 export function Workbench() {
   const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };

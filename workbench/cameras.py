@@ -9,9 +9,14 @@ from mujoco import MjData, MjModel
 
 from workbench.overlays.frustum import Frustum
 from workbench.protocol import CameraView
+from workbench.stage import Stage
 
 USUAL_FOV = np.radians(50.0)
 """The vertical field of view of who does not look through the eye [rad]."""
+ASIDE = np.radians(10.0)
+"""So far from the side it is seen at first: hardly, so that who has passed a doorway is still seen through it."""
+RAISED = np.radians(25.0)
+"""And from so far above."""
 
 
 class Cameras:
@@ -25,8 +30,7 @@ class Cameras:
 
     def __init__(self, server: Any, model: MjModel, eyes: Frustum) -> None:
         self._server = server
-        moving = np.flatnonzero(model.body_dofnum > 0)
-        self._body = int(moving[0]) if moving.size else 0
+        self._stage = Stage(model)
         self._eyes = eyes
         self._view: CameraView = "free"
         self._last: Any = None
@@ -44,17 +48,18 @@ class Cameras:
         self.move(data)
 
     def place(self, client: Any, data: MjData) -> None:
-        """Gives a browser that comes a view from the side, or the one that is chosen."""
-        base, camera = self._base(data), client.camera
+        """Gives a browser that comes a view of the whole stage from behind the body, or the one that is chosen."""
+        camera = client.camera
         camera.fov = USUAL_FOV
         camera.up_direction = np.array((0.0, 0.0, 1.0))
-        camera.position = base + np.array((-3.5, -3.5, 3.0))
-        camera.look_at = base + np.array((1.5, 0.0, 1.0))
-        self._move(client.camera, data, None)
+        ahead = self._stage.ahead
+        level = np.cos(ASIDE) * ahead + np.sin(ASIDE) * np.array((-ahead[1], ahead[0], 0.0))
+        self._show_stage(camera, np.array((0.0, 0.0, np.sin(RAISED))) - np.cos(RAISED) * level, data)
+        self._move(camera, data, None)
 
     def move(self, data: MjData) -> None:
         """Moves all cameras with the body, where they are to go with it."""
-        base, before = self._base(data), self._last
+        base, before = self._stage.base(data), self._last
         self._last = base
         if self._view == "free" or (before is not None and self._view != "eye" and np.array_equal(base, before)):
             return
@@ -62,11 +67,13 @@ class Cameras:
             self._move(client.camera, data, before)
 
     def _move(self, camera: Any, data: MjData, before: Any) -> None:
-        base = self._base(data)
         if self._view == "follow" and before is not None:
-            camera.position, camera.look_at = camera.position + base - before, camera.look_at + base - before
+            way = self._stage.base(data) - before
+            camera.position, camera.look_at = camera.position + way, camera.look_at + way
         elif self._view == "top":
-            camera.position, camera.look_at = base + np.array((-0.01, 0.0, 9.0)), base
+            # What is ahead is to the right, where windows have most room.
+            ahead = self._stage.ahead
+            self._show_stage(camera, np.array((0.001 * ahead[1], -0.001 * ahead[0], 1.0)), data)
         elif self._view == "eye":
             self._look_through_eye(camera, data)
 
@@ -80,9 +87,10 @@ class Cameras:
             camera.fov = self._eyes.fields[name][1]
         camera.position, camera.look_at, camera.up_direction = place, place + axes[:, 0], axes[:, 2]
 
-    def _base(self, data: MjData) -> Any:
-        """Returns where the first body that moves is."""
-        return np.array(data.xpos[self._body])
+    def _show_stage(self, camera: Any, direction: Any, data: MjData) -> None:
+        position, look_at = self._stage.seen_from(direction, data, USUAL_FOV, camera.aspect)
+        if not (np.allclose(position, camera.position) and np.allclose(look_at, camera.look_at)):
+            camera.position, camera.look_at = position, look_at
 
     def _clients(self) -> list[Any]:
         return list(self._server.get_clients().values())

@@ -15,6 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
+from workbench.loader import listing_of
 from workbench.summaries import EVENTS, UNREADABLE, Event
 
 CONTEXT = 8
@@ -30,7 +31,8 @@ MOST_LINES = 400
 def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str, Any]:
     """Returns where two recordings differ.
 
-    `parameters` holds what was chosen otherwise, `text` the lines that differ where both are of one model file, `difference` the
+    `parameters` holds what was chosen otherwise, `changed` what users changed while each went on, by the names of parameters as
+    pairs of time [s] and value, `text` the lines that differ where both are of one model file, `difference` the
     first event that is not the same, with some before and after it; None where there is none among the first `compared`.
 
     Args:
@@ -48,6 +50,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
             agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
             return {
                 "parameters": different,
+                "changed": [_changed(one), _changed(other)],
                 "text": _changes(_source(one.facts), _source(other.facts)) if ours["model"] == theirs["model"] else [],
                 "same_events": agreeing,
                 "whole": whole,
@@ -62,6 +65,27 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 def _told(facts: dict[str, Any]) -> dict[str, Any]:
     """Returns what of a run's facts was chosen by who began it."""
     return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
+
+
+def _changed(recorded: Recorded) -> dict[str, list[list[Any]]]:
+    """Returns what users changed of parameters and apertures while the run went on: when [s], and to what."""
+    live = {parameter.name: parameter.live for parameter in listing_of(_source(recorded.facts)).parameters if parameter.live is not None}
+    period = recorded.facts.get("period_us", 0)
+    found: dict[str, list[list[Any]]] = {}
+    for command in recorded.commands():
+        word, told = command.data["command"], command.data["data"]
+        values, named = told["values"], told["named"]
+        aperture = named.get("name", word) if word == "aperture" else None
+        for name, change in live.items():
+            before = list(change.before)
+            meant = (change.word, change.body, before) == (word, told["body"], values[: len(before)]) and aperture in (None, "aperture")
+            if meant and len(values) > len(before):
+                found.setdefault(name, []).append([seconds(command.tick * period), values[len(before)]])
+                break
+        else:
+            if aperture is not None and values:
+                found.setdefault(str(aperture), []).append([seconds(command.tick * period), values[0]])
+    return found
 
 
 def _source(facts: dict[str, Any]) -> str:

@@ -143,9 +143,9 @@ class Sessions:
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
     def saved(self, path: Path) -> None:
-        """Takes note that a model file has another text now."""
+        """Takes note that a file has another text now."""
         for session in self.all():
-            if session.path == path:
+            if path.is_relative_to(session.path.parent):  # the model, or maybe a module that it imports
                 session.file_changed()
 
     def renamed(self, before: Path, path: Path, model: str) -> None:

@@ -10,6 +10,7 @@ import msgspec
 from actr3d.actr.reading import read_source
 from actr3d.errors import Actr3dError
 from workbench.feed import Feed, Raw
+from workbench.helpers import helper_texts
 from workbench.look import Look
 from workbench.worker.messages import Facts, Start, State
 from workbench.worker.workers import Worker
@@ -35,6 +36,8 @@ class Telling:
     _stuck: dict[str, Any] | None
     _controlled_by: str
     _attempt: int
+    _began_with: tuple[Start, dict[Path, str]] | None = None
+    """The texts of the modules that the model imports from its folder, as the run of this start began."""
 
     def _shown_file(self, file: str | None, start: Start | None = None) -> str | None:
         """Returns a file of the models folder as pages call it; the model itself by its present name."""
@@ -89,7 +92,12 @@ class Telling:
         return msgspec.json.encode({**told, "apertures": state.apertures, "result": Raw(state.result), "parts": Raw(state.parts)})
 
     def _text_differs(self, start: Start) -> bool:
+        """Tells whether the model's file, or a module beside it that it imports, is not what it was when the run began."""
+        folder = Path(start.folder)
+        if self._began_with is None or self._began_with[0] is not start:
+            relived = {folder / file: text for file, text in start.helpers.values()}
+            self._began_with = start, relived or helper_texts(start.source, folder)
         try:
-            return read_source(self.path) != start.source
+            return read_source(self.path) != start.source or any(read_source(path) != text for path, text in self._began_with[1].items())
         except Actr3dError:
             return True

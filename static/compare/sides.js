@@ -34,8 +34,27 @@ function Part({ title, rows, none }) {
   </tbody>`;
 }
 
-/** @param runs Both, as the server tells of them. */
-export function SideBySide({ runs }) {
+/** Says with what a run began, and to what a user changed it while it went on. */
+function courseText(value, changes) {
+  const begun = value === undefined ? "–" : valueText(value);
+  if (!changes?.length) return begun;
+  const [time, last] = changes.at(-1);
+  const more = changes.length > 1 ? ` (changed ${changes.length} times)` : "";
+  return `${begun} → ${valueText(last)} at ${time.toFixed(2)} s${more}`;
+}
+
+/** Returns the rows of the parameters, also of what was changed without being one. */
+function parameterRows(runs, changed) {
+  const names = [...new Set([...namesOf(runs, "parameters"), ...changed.flatMap(Object.keys)])];
+  return names.map((name) => {
+    const [one, other] = runs.map((run, n) => courseText(run.parameters?.[name], changed[n][name]));
+    return [name, one, other, one !== other];
+  });
+}
+
+/** @param runs Both, as the server tells of them.
+ * @param changed What users changed of each while it went on: [time, value], by name. */
+export function SideBySide({ runs, changed }) {
   const [one, other] = runs;
   const line = (name, of) => [name, of(one), of(other), of(one) !== of(other)];
   const own = [
@@ -52,7 +71,7 @@ export function SideBySide({ runs }) {
       <th scope="col"><label><input type="checkbox" checked=${onlyOthers.value} onChange=${(event) => (onlyOthers.value = event.currentTarget.checked)} /> differences only</label></th>
       <th scope="col" class="number"><span class="dot first"></span>first</th><th scope="col" class="number"><span class="dot second"></span>second</th>
     </tr></thead>
-    <${Part} title="Parameters" rows=${rowsOf(runs, "parameters", (_, value) => valueText(value))} none="neither has parameters" />
+    <${Part} title="Parameters" rows=${parameterRows(runs, changed)} none="neither has parameters" />
     <${Part} title="Results" rows=${rowsOf(runs, "result", measureText, labelOf)} none="nothing was measured of either" />
     <${Part} title="Runs" rows=${own} />
   </table>`;

@@ -28,6 +28,7 @@ const TEXTS = {
   reward: (data) => ["reward", valueText(data.value)],
   compile: (data) => ["compiled", `${data.production} from ${(data.parents ?? []).join(" and ")}`],
   command: (data) => ["user", `${data.command} ${pairs(data.data)}`],
+  contact: ({ force, lasts }) => ["touch", `begins: ${(1000 * lasts).toFixed(0)} ms, with up to ${force.toFixed(0)} N`],
   result: (data) => ["result", pairs(data)],
   planning_unit: (data) => ["plan", `${data.name} ${data.what}${data.by ? ` by ${data.by}` : ""}`],
   unit_task: (data) => ["unit task", `${data.name} ${data.what}`],

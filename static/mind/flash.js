@@ -1,6 +1,6 @@
-// Shows that something has changed: it lights up once, also where it goes on changing; and places that do not shrink.
+// Shows that something has changed: it lights up once, also where it goes on changing.
 
-import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { html, useEffect, useRef, useState } from "../vendor/preact.js";
 import { session } from "../store.js";
 
 const CALM = 1200; // so long it must have stayed the same before it lights up again [ms]
@@ -21,19 +21,4 @@ export function Flash({ text, class: name = "", children }) {
   }, [text, run]);
   useEffect(() => () => clearTimeout(timer.current), []);
   return html`<span class="${name} ${changed ? "changed" : ""}">${children ?? text}</span>`;
-}
-
-/** Keeps an element as tall as it has been at its tallest, so that what stands below it does not jump; returns its ref. */
-export function useTallest(text) {
-  const box = useRef(null);
-  const tallest = useRef({ width: 0, height: 0 });
-  useLayoutEffect(() => {
-    const { offsetWidth: width, offsetHeight: height } = box.current;
-    if (width !== tallest.current.width) {
-      box.current.style.minHeight = "";
-      tallest.current = { width, height: box.current.offsetHeight };
-    } else if (height > tallest.current.height) tallest.current.height = height;
-    box.current.style.minHeight = `${tallest.current.height}px`;
-  }, [text]);
-  return box;
 }

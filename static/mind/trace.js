@@ -5,8 +5,10 @@ import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventText, GROUPS, timeText } from "./event_text.js";
 import { goTo } from "./go.js";
 import { Rows } from "./rows.js";
-import { eventAt, useSifted } from "./sifted.js";
+import { useSifted } from "./sifted.js";
 import { askWhy } from "./asked.js";
+import { Mixed, touchEvents } from "./touches.js";
+import { seek } from "../timeline/seek.js";
 import { events, session, state } from "../store.js";
 import { remembered } from "../remembered.js";
 
@@ -52,7 +54,8 @@ function Groups() {
 function Row({ number, event, ahead, chosen, several, onChoose }) {
   const [time, source, kind] = event;
   const [what, more] = eventText(event);
-  const go = () => (onChoose(), goTo(number));
+  const isTouch = number < 0;
+  const go = () => (onChoose(), isTouch ? seek(time / 1e6) : goTo(number));
   return html`<tr
     class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
     id="event-${number}"
@@ -64,7 +67,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     ${several ? html`<td class="source">${source}</td>` : null}
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
-      ${kind === "fire" || chosen
+      ${!isTouch && (kind === "fire" || chosen)
         ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${timeText(time)} s" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
@@ -79,19 +82,24 @@ export function FiringTrace() {
   const wanted = systems.includes(agent) ? agent : "";
   const key = `${groups.value} ${wantedWords.value} ${wanted}`;
   const kinds = useMemo(() => new Set(GROUPS.filter(({ id }) => groups.value.includes(id)).flatMap((group) => group.kinds)), [groups.value]);
-  const sifted = useSifted(testOf(kinds, wantedWords.value, wanted), key);
+  const test = testOf(kinds, wantedWords.value, wanted);
+  const sifted = useSifted(test, key);
+  const mixed = new Mixed(sifted.numbers, touchEvents().filter(test));
   const { first, list } = events.value;
   const now = state.value?.events ?? 0;
-  const present = sifted.below(now);
+  const time = (state.value?.time ?? 0) * 1e6 + 1;
+  const present = sifted.below(now) + mixed.touches.filter(([begins]) => begins <= time).length;
   const several = systems.length > 1;
   const at = chosen === null ? -1 : sifted.below(chosen);
-  const chosenRow = sifted.numbers[at] === chosen && chosen !== null ? at : null;
+  const chosenRow = chosen < 0 ? (mixed.rowOfTouch(chosen) ?? null) : sifted.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
   useEffect(() => setChosen(null), [session.value?.id, session.value?.run]);
 
   const row = (n) => {
-    const number = sifted.numbers[n];
-    return html`<${Row} key=${number} number=${number} event=${eventAt(number)} ahead=${number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
+    const number = mixed.numberAt(n);
+    const event = mixed.at(number);
+    return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
+  const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goTo(mixed.numberAt(n)));
   const nothing = list.length === 0 ? "Nothing has happened yet. Run the model, or step it." : "None of the events so far is one of those that are shown.";
   return html`<section class="trace">
     <div class="tools">
@@ -108,15 +116,15 @@ export function FiringTrace() {
     <${Rows}
       id="events"
       label="Firing trace"
-      count=${sifted.numbers.length}
+      count=${mixed.count}
       row=${row}
       columns=${several ? ["68px", "22%", "auto", "42px"] : ["68px", "auto", "42px"]}
       head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th></th>`}
       aim=${present > 0 ? present - 1 : null}
       chosen=${chosenRow}
-      onChoose=${(n) => setChosen(sifted.numbers[n])}
-      onOpen=${(n) => goTo(sifted.numbers[n])}
-      keys=${{ w: (n) => askWhy(sifted.numbers[n]) }}
+      onChoose=${(n) => setChosen(mixed.numberAt(n))}
+      onOpen=${open}
+      keys=${{ w: (n) => mixed.numberAt(n) >= 0 && askWhy(mixed.numberAt(n)) }}
       empty=${html`<p class="empty">${nothing}</p>`}
     />
   </section>`;

@@ -1,20 +1,43 @@
 // What the mind holds: every buffer with its chunk, every module with its state, agent by agent; and the result of a run.
 
-import { html } from "../vendor/preact.js";
+import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { agentOf, agentsOf, nameIn } from "../mind/agents.js";
-import { Flash, useTallest } from "../mind/flash.js";
+import { Flash } from "../mind/flash.js";
 import { Module, Plain, useRequests } from "../mind/modules.js";
 import { Result } from "../mind/result.js";
+import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf } from "../parts/chunk.js";
 import { noSession, session, state } from "../store.js";
 
+const LINES = 3; // so much of a chunk is shown, unless more is asked for
+
+/** How many lines a box has, up to those that are shown, and whether there are more. Lines that were needed are kept, so that what
+ * is below does not jump. */
+function useLines(text, open) {
+  const box = useRef(null);
+  const [known, setKnown] = useState({ lines: 1, more: false });
+  useLayoutEffect(() => {
+    const { scrollHeight: whole } = box.current;
+    const there = Math.round(whole / parseFloat(getComputedStyle(box.current).lineHeight));
+    const lines = Math.max(known.lines, Math.min(there, LINES));
+    const more = there > LINES;
+    if (lines !== known.lines || more !== known.more) setKnown({ lines, more });
+  }, [text, open]);
+  return { box, ...known };
+}
+
+/** A buffer: some lines of its chunk at most, unless all of it is asked for. */
 function Buffer({ path, name, chunk }) {
+  const [open, setOpen] = useState(false);
   const slots = slotsOf(chunk);
-  const box = useTallest(chunkText(chunk));
+  const { box, lines, more } = useLines(chunkText(chunk), open);
   return html`<tr data-path=${path}>
     <th scope="row" class="mono" title=${path}>${name}</th>
     <td>
-      <div class="chunk" ref=${box}>
+      ${more || open
+        ? html`<button class="bare" aria-expanded=${open} aria-label="All of ${name}" title=${open ? "A few lines only" : "All of it"} onClick=${() => setOpen(!open)}><${Icon} name="down" /></button>`
+        : null}
+      <div class="chunk" ref=${box} style=${{ minHeight: `${lines}lh`, maxHeight: open ? "none" : `${LINES}lh` }}>
         <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
         ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
       </div>

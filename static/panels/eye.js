@@ -93,7 +93,7 @@ function Eye() {
     </div>
     ${error ? html`<p class="empty">${error}</p>` : null}
     <${Retina} view=${answer} />
-    ${answer ? html`<${Table} view=${answer} />` : null}
+    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer ? html`<${Table} view=${answer} />` : null}</div>
   </div>`;
 }
 

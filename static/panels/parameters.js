@@ -43,6 +43,12 @@ function known() {
   return (listing.value?.parameters ?? []).filter((parameter) => parameter.known);
 }
 
+/** The values with which the run began of parameters that the text has no longer. */
+function forgotten() {
+  const names = new Set(known().map(({ name }) => name));
+  return Object.keys(session.value?.settings ?? {}).filter((name) => !names.has(name));
+}
+
 function problems() {
   return known().some((parameter) => parameter.name in drafts.value && read(parameter, drafts.value[parameter.name]).problem);
 }
@@ -112,7 +118,7 @@ function Field({ parameter }) {
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
     <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="In force with the next run">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
-      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help}${help ? " " : ""}<span class="quiet">${boundsText(parameter)}${parameter.default === null ? "" : `${boundsText(parameter) ? "; " : ""}default ${written(parameter.default)}`}</span>
+      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${[boundsText(parameter), parameter.default === null ? "" : `default ${written(parameter.default)}`].filter(Boolean).join(" · ")}</span>
     </p>
   </div>`;
 }
@@ -124,9 +130,13 @@ function Parameters() {
   if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
   const fields = known();
   const changed = waiting().length;
+  const former = forgotten();
   const problem = seed.value.trim() !== "" && !/^\d{1,15}$/.test(seed.value.trim());
   return html`<form class="parameters" onSubmit=${restart}>
     ${shown.stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
+    ${shown.stale && former.length
+      ? html`<p class="note">The text has no parameter <b class="mono">${former.join(", ")}</b> any more, with which this run began: «Restart with these» leaves it out.</p>`
+      : null}
     ${changed ? html`<p class="note">${changed === 1 ? "One value is" : `${changed} values are`} not in force yet: restart to use ${changed === 1 ? "it" : "them"}.</p>` : null}
     ${fields.length === 0 ? html`<p class="empty">This model declares no parameters. A frozen dataclass that \`build\` takes, or numbers at the top of the file, become controls here.</p>` : null}
     ${fields.map((parameter) => html`<${Field} key=${parameter.name} parameter=${parameter} />`)}

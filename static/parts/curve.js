@@ -4,6 +4,7 @@ import { numberText, roundRange, stepFor, ticks, timeText } from "./ticks.js";
 import { cut, widthOf } from "./surface.js";
 
 export const COLOURS = 6;
+const EDGE = 6; // so far from the ends of an axis its first and last text keep [px]
 
 /** Returns the name of the colour of the nth curve. */
 export function seriesColour(n) {
@@ -102,7 +103,7 @@ export function drawTimes(surface, box, span, { y, height = 18, lines = true } =
     if (lines) surface.line([x, box.y, x, box.y + box.height], "line");
     const text = timeText(time, step);
     const half = widthOf(text, { size: 10 }) / 2;
-    const at = Math.min(Math.max(x, box.x + half), box.x + box.width - half);
+    const at = Math.min(Math.max(x, box.x + EDGE + half), box.x + box.width - EDGE - half);
     surface.text(text, at, y + height / 2, "quiet", { size: 10, anchor: "middle" });
   }
   return step;

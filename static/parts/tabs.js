@@ -32,7 +32,7 @@ export function Tabs({ label, tabs, shown }) {
           tabindex=${open.id === id ? 0 : -1}
           onClick=${() => (shown.value = id)}
         >
-          ${title}${more ? html`<span class="badge ${more.level ?? ""} ${more.text ? "" : "dot"}" title=${more.title}>${more.text}</span>` : null}
+          <span class="tab-title" data-text=${title}>${title}</span>${more ? html`<span class="badge ${more.level ?? ""} ${more.text ? "" : "dot"}" title=${more.title}>${more.text}</span>` : null}
         </button>`;
       })}
     </div>

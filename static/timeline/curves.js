@@ -70,9 +70,9 @@ export const contacts = computed(() => {
     let hardest = 0;
     (known.values.get(name) ?? []).forEach((force, n) => {
       if (force > 0) {
-        if (!open) bands.push((open = { from: known.times[Math.max(0, n - 1)], to: null, tone: "bad" }));
+        if (!open) bands.push((open = { from: known.times[Math.max(0, n - 1)], begins: known.times[n], body: name.replace(/ contact force$/, ""), to: null, tone: "bad" }));
         hardest = open.to === null ? force : Math.max(hardest, force);
-        Object.assign(open, { to: known.times[n], text: `${hardest.toFixed(0)} N`, more: `hardest touch of ${name.replace(/ contact force$/, "")}` });
+        Object.assign(open, { to: known.times[n], hardest, text: `${hardest.toFixed(0)} N`, more: `hardest touch of ${open.body}` });
       } else open = null;
     });
   }

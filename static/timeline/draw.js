@@ -8,7 +8,7 @@ import { firstWhere } from "./search.js";
 import { AXIS } from "./rows.js";
 
 const SCALE = 44; // room for the scale of a plot in the column of names [px]
-const ROOM = 22; // no text is drawn in less [px]
+const ROOM = 34; // no text is drawn in less [px]
 
 /**
  * @typedef Scene

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from playwright.sync_api import Page, expect
 
 from tests.browser.looking import PATIENCE, open_tab, shows
+from tests.server.serving import Served
 
 
 def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
@@ -121,3 +122,28 @@ def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None
         shows(page, "#time", "0.00 s")
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight")
         page.close()
+
+
+def test_a_value_of_a_parameter_that_has_another_name_now_is_left_out_by_a_restart(pages: Callable[..., Page], workbench: Served) -> None:
+    source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
+    file = workbench.folder / "renamed.py"
+    file.write_text(source, encoding="utf-8")
+    page = pages("renamed.py")
+    shows(page, "#status", "at its start")
+    open_tab(page, "Parameters")
+    page.get_by_label("width", exact=True).fill("0.9")
+    page.get_by_role("button", name="Restart with these").click()
+    shows(page, "#width", "90 cm")
+    shows(page, "#status", "at its start")
+    version = workbench.get("/api/model?path=renamed.py").json()["version"]
+    assert workbench.put("/api/model", {"path": "renamed.py", "text": renamed(source), "version": version}).status_code == 200
+    note = page.get_by_text("The text has no parameter width any more")
+    expect(note).to_be_visible(timeout=PATIENCE)
+    page.get_by_role("button", name="Restart with these").click()
+    expect(note).to_have_count(0, timeout=PATIENCE)
+    expect(page.get_by_label("gap", exact=True)).to_have_value("0.5")
+    shows(page, "#width", "50 cm")
+
+
+def renamed(source: str) -> str:
+    return source.replace("    width: Annotated", "    gap: Annotated").replace("parameters.width", "parameters.gap")

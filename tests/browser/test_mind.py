@@ -48,6 +48,24 @@ Chooses().run(1)
 """
 
 
+LONG = """
+from actr3d.actr import *
+
+class Long(ACTR):
+    goal = Buffer()
+    imaginal = Buffer()
+    def init():
+        goal.set('state:empty')
+    def fill(goal='state:empty'):
+        imaginal.set(' '.join(f'a_rather_long_name_of_slot_{n}:a_value_{n}' for n in range(30)))
+        goal.set('state:full')
+    def empty(goal='state:full'):
+        imaginal.clear()
+        goal.set('state:done')
+
+Long().run()
+"""
+
 LOOPS = """
 from actr3d.actr import *
 
@@ -100,6 +118,33 @@ def test_buffers_and_modules_are_shown_and_what_changed_lights_up(pages: Pages, 
     expect(module(page, "memory").get_by_role("row", name="threshold")).not_to_be_visible()
     module(page, "memory").locator("summary").press("Enter")
     expect(module(page, "memory").get_by_role("row", name="threshold 0")).to_be_visible()
+
+
+def test_a_long_chunk_takes_few_lines_unless_all_of_it_is_asked_for(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "long.py", LONG)
+    chunk, whole = buffer(page, "imaginal"), page.get_by_role("button", name="All of imaginal")
+
+    def height() -> float:
+        box = chunk.bounding_box()
+        assert box is not None
+        return box["height"]
+
+    page.click("#cycle")
+    one_line = buffer(page, "goal").bounding_box()
+    assert one_line is not None
+    one = one_line["height"]
+    expect(chunk).to_contain_text("value_29")
+    expect(whole).to_have_attribute("aria-expanded", "false")
+    few = height()
+    assert few < 3.5 * one
+    whole.press("Enter")
+    expect(whole).to_have_attribute("aria-expanded", "true")
+    assert height() > 10 * one
+    whole.press("Enter")
+    page.click("#cycle")
+    expect(chunk).to_have_text("empty")
+    expect(whole).to_have_count(0)
+    assert height() == few, "an empty buffer is as high as it was"
 
 
 def test_two_agents_are_told_apart(pages: Pages, workbench: Served) -> None:
@@ -308,3 +353,45 @@ def test_a_past_moment_is_explained_while_the_run_goes_on(pages: Pages, workbenc
     moment.press("Enter")
     expect(page.locator("#why-text")).to_contain_text("look: matches, and is about to fire")
     shows(page, "#status", "running")
+
+
+BUMPS = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene, Wall
+
+class Walker(ACTR):
+    goal = Buffer()
+    motor = Motor()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        motor.walk(1.0)
+        goal.set("wait")
+
+def build() -> Simulation:
+    wall = Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0))
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"), wall)), {"walker": Walker}, seed=1)
+"""
+
+
+def test_the_trace_tells_where_something_is_touched(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "bumps.py", BUMPS)
+    open_tab(page, "Productions")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    touches = page.locator("#events tr.contact")
+    expect(touches.first).to_contain_text(re.compile(r"touch.*begins: .* with up to \d+ N"), timeout=60_000)
+    rows = page.locator("#events tbody tr")
+    expect(rows.filter(has_text="go").first).to_be_visible()
+    when = touches.first.locator(".time").inner_text()
+    assert 0.5 < float(when) < 1.5
+    touches.first.click()
+    shows(page, "#time", f"{float(when):.2f} s")
+    expect(touches.first).to_have_attribute("aria-selected", "true")
+    expect(touches.first).not_to_have_class(re.compile("ahead"))
+    page.locator("#back").click()
+    expect(touches.first).to_have_class(re.compile("ahead"))
+    page.get_by_label("Filter the trace").fill("nothing like this")
+    expect(touches).to_have_count(0)

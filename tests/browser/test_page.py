@@ -104,3 +104,18 @@ def test_an_endless_loop_is_stopped(page: Page, workbench: Served) -> None:
     shows(page, "#status", "busy at line [23]")
     page.click("#stop")
     shows(page, "#status", "stopped")
+
+
+def test_tabs_stay_where_they_are_whichever_is_open(page: Page) -> None:
+    shows(page, "#time", "t =")
+
+    def places() -> list[float]:
+        boxes = [tab.bounding_box() for tab in page.get_by_role("tab").all()]
+        return [box["x"] for box in boxes if box is not None]
+
+    before = places()
+    assert len(before) == 8
+    for title in ("Memory", "Parameters", "Messages"):
+        open_tab(page, title)
+        expect(page.get_by_role("tab", name=title)).to_have_attribute("aria-selected", "true")
+        assert places() == before

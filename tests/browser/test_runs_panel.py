@@ -153,6 +153,23 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     expect(dialog).to_have_count(0)
 
 
+def test_what_was_changed_while_a_run_went_on_is_told_beside_what_it_began_with(page: Page, two: list[str]) -> None:
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)
+    page.click("#step")
+    expect(page.locator("#time")).to_have_text("t = 0.01 s")
+    page.locator("#aperture").fill("90")
+    expect(page.locator("#width")).to_have_text(re.compile("90 cm"))
+    page.click("#step")
+    expect(page.locator("#time")).to_have_text("t = 0.02 s")
+    open_tab(page, "Runs")
+    row(page, two[0]).click()
+    page.get_by_role("button", name="Compare with the present run").click()
+    sides = page.get_by_role("dialog", name="Two runs").get_by_role("table", name="Side by side")
+    expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(
+        re.compile(r"≠width0\.5.* → 0\.9 at 0\.01 s$"), timeout=PATIENCE
+    )
+
+
 def test_a_recording_is_compared_with_the_present_run_of_another_model(pages: Callable[..., Page], two: list[str]) -> None:
     page = pages("counting.py")
     expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -244,3 +245,23 @@ def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None
     )
     assert counts == {"bands": 50_000, "calls": counts["calls"], "at": "chunk 50001", "open": 99.999}
     assert counts["calls"] < 3 * 900
+
+
+@pytest.mark.parametrize(("end", "width"), [(1, 400), (12.5, 1100), (3, 1700), (0.02, 900)])
+def test_no_text_of_the_axis_is_cut(page: Page, end: float, width: int) -> None:
+    shows(page, "#time", "t =")
+    drawn = page.evaluate(
+        """async ([end, width]) => {
+          const { drawTimes } = await import("/static/parts/curve.js");
+          const { widthOf } = await import("/static/parts/surface.js");
+          const found = [];
+          const text = (text, x, y, name, style) => found.push([x - widthOf(text, style) / 2, x + widthOf(text, style) / 2]);
+          drawTimes({ line() {}, text }, { x: 0, y: 0, width, height: 20 }, { from: 0, to: end }, { y: 0 });
+          return found;
+        }""",
+        [end, width],
+    )
+    assert len(drawn) > 2
+    assert drawn[0][0] >= 4
+    assert drawn[-1][1] <= width - 4
+    assert all(one[1] < other[0] for one, other in pairwise(drawn))

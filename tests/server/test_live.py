@@ -146,6 +146,7 @@ def test_two_recordings_are_compared(server: Served) -> None:
     first, second = told["difference"]["events"]
     assert first[0] == second[0] == round(told["difference"]["time"] * 1e6)
     assert told["difference"]["number"] == told["same_events"] > 5
+    assert told["changed"] == [{}, {}]
     same = server.post("/api/compare", {"first": names[0], "second": names[0]}).json()
     assert (same["difference"], same["parameters"]) == (None, {})
     for name in names:

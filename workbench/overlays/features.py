@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,10 @@ from workbench.overlays.overlay import Lines, Overlay
 
 MOST_LABELS = 24
 """So many labels there are at once."""
+CLOSE = 0.8
+"""Labels that are nearer to each other than this [m] stand one above the other."""
+ABOVE = 0.3
+"""So far above [m]."""
 
 
 class Features(Overlay):
@@ -44,11 +49,11 @@ class Features(Overlay):
             name = f"/overlays/features/label_{len(self._labels)}"
             self._labels.append(self._server.scene.add_label(name, "", anchor="bottom-center", visible=False))
         self._used = len(labelled)
-        for label, feature in zip(self._labels, labelled, strict=False):
+        for label, feature, place in zip(self._labels, labelled, apart([feature["place"] for feature in labelled]), strict=False):
             if label.text != feature["text"]:
                 label.text = feature["text"]
-            if tuple(label.position) != tuple(feature["place"]):
-                label.position = feature["place"]
+            if tuple(label.position) != place:
+                label.position = place
         self._show_labels()
 
     def switch(self) -> None:
@@ -62,3 +67,15 @@ class Features(Overlay):
             visible = self.visible and number < self._used
             if label.visible != visible:
                 label.visible = visible
+
+
+def apart(places: list[Any]) -> list[tuple[float, ...]]:
+    """Returns places of labels at or above the given ones [m], so that none hides another."""
+    found: list[tuple[float, ...]] = []
+    for x, y, z in places:
+        height = float(z)
+        near = [other for other in found if math.dist((x, y), other[:2]) < CLOSE]
+        while any(abs(other[2] - height) < ABOVE - 1e-9 for other in near):
+            height += ABOVE
+        found.append((float(x), float(y), height))
+    return found

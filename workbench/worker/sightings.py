@@ -9,11 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from actr3d.camera import View
-from actr3d.vision import Feature, Opening, Vision
+from actr3d.vision import Feature, Obstacle, Opening, Vision
 from workbench.worker.contours import Places, into_world, points_of
 
 MOST = 24
 """So many features of one search are told of."""
+DIAMOND = 0.08
+"""Half the height of the mark of a feature that has no size [m]."""
 UP = np.array((0.0, 0.0, 1.0))
 
 
@@ -101,18 +103,37 @@ def _at(feature: Feature) -> Places:
 def _outline(feature: Feature, edges: Places | None) -> Places:
     """Returns the lines that show a feature, `(n, 2, 3)`, from the eye; the first is the one that is measured.
 
-    Of an opening: across it, and its sides. Where its edges are not known any more, it is drawn square to the line of sight. Of all
-    else: upright, at its nearest point.
+    Of an opening: across it, and its sides. Where its edges are not known any more, it is drawn square to the line of sight. Of an
+    obstacle: upright, at its nearest point. Of what a model's own detectors find: see `_frame`.
     """
     middle = _at(feature)
     top, bottom = (_finite(getattr(feature, name, 0.0)) for name in ("top", "bottom"))
-    if not isinstance(feature, Opening):
+    if isinstance(feature, Obstacle):
         return np.array([[middle + bottom * UP, middle + max(top, bottom + 0.01) * UP]])
+    if not isinstance(feature, Opening):
+        return _frame(feature)
     half = feature.width / 2 * np.array((-math.sin(feature.direction), math.cos(feature.direction), 0.0))
     left, right = (middle + half, middle - half) if edges is None else edges * (1, 1, 0)
     level = (top + bottom) / 2 * UP
     sides = [[edge + bottom * UP, edge + top * UP] for edge in (left, right)]
     return np.array([[left + level, right + level], *sides])
+
+
+def _frame(feature: Feature) -> Places:
+    """Returns a frame as wide and as high as a feature says that it is, square to the line of sight; of one that says neither, a
+    small diamond where it is."""
+    middle, aside = _at(feature), np.array((-math.sin(feature.direction), math.cos(feature.direction), 0.0))
+    half = _finite(getattr(feature, "width", 0.0)) / 2
+    height = _finite(getattr(feature, "height", 0.0)) / 2
+    top = _finite(getattr(feature, "top", height))
+    bottom = _finite(getattr(feature, "bottom", -height))
+    if half <= 0 and top <= bottom:
+        corners = [middle + DIAMOND * way for way in (UP, aside, -UP, -aside)]
+    elif half <= 0 or top <= bottom:
+        return np.array([[middle + half * aside + top * UP, middle - half * aside + bottom * UP]])
+    else:
+        corners = [middle + side * half * aside + level * UP for side, level in ((1, top), (-1, top), (-1, bottom), (1, bottom))]
+    return np.array(list(zip(corners, [*corners[1:], corners[0]], strict=True)))
 
 
 def _finite(value: Any) -> float:

@@ -1,0 +1,84 @@
+"""Every panel and dialog can be read, and used without a mouse: contrast, names, reach by keyboard; in both themes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.looking import open_tab, shows
+
+LOOK = (Path(__file__).parent / "access.js").read_text(encoding="utf-8")
+
+
+def calm(page: Page) -> None:
+    """Waits until what has just changed lights up no more."""
+    expect(page.locator(".changed")).to_have_count(0)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: Any) -> None:
+    page = pages(theme=theme)
+    shows(page, "#status", "at its start")
+    problems: list[str] = []
+
+    def look(where: str) -> None:
+        calm(page)
+        problems.extend(f"{where}: {problem}" for problem in page.evaluate(LOOK))
+
+    look("start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    for title in ("Buffers", "Productions", "Memory", "Eye", "Parameters", "Editor", "Runs", "Messages"):
+        open_tab(page, title)
+        if title == "Productions":
+            expect(page.locator("#why-text")).to_contain_text("match")
+            for view in ("Conflict set", "Retrievals"):
+                page.get_by_role("tab", name=view).click()
+                look(view)
+        if title == "Eye":
+            page.get_by_role("button", name="Edges").click()
+        if title == "Editor":
+            expect(page.locator(".cm-content")).to_be_visible()
+        if title == "Runs":
+            page.locator(".runs-table tbody tr:not(.space)").first.click()
+            expect(page.get_by_role("toolbar", name="The chosen run")).to_be_visible()
+        look(title)
+    page.keyboard.press("Escape")
+    for button in ("Keys", "Curves …"):
+        page.get_by_role("button", name=button, exact=True).click()
+        expect(page.get_by_role("dialog")).to_be_visible()
+        look(button)
+        page.keyboard.press("Escape")
+        expect(page.get_by_role("dialog")).to_have_count(0)
+    assert problems == []
+
+
+def test_by_keyboard_alone_one_gets_everywhere_and_sees_where_one_is(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.locator("body").press("Tab")
+    reached: list[str] = []
+    for _ in range(80):
+        told = page.evaluate(
+            """() => {
+              const at = document.activeElement;
+              if (!at || at === document.body) return null;
+              if (at.tagName === "IFRAME") return { name: "frame", seen: true };
+              const { outlineStyle, backgroundColor } = getComputedStyle(at);
+              const name = at.id || at.getAttribute("aria-label") || at.textContent.trim() || at.labels?.[0]?.textContent || at.tagName;
+              return { name, seen: outlineStyle !== "none" || at.classList.contains("splitter") };
+            }"""
+        )
+        if told is None:
+            break
+        assert told["seen"], f"the focus is not seen at {told['name']}"
+        reached.append(told["name"])
+        if told["name"] == "frame":  # what is in there is viser's
+            page.locator("#scene select").focus()
+        else:
+            page.keyboard.press("Tab")
+    for name in ("run", "step", "until", "aperture", "tab-buffers", "Width of the panels", "Height of the timeline", "timeline"):
+        assert name in reached, reached
