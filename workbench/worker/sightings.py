@@ -1,66 +1,36 @@
-"""What a mind's vision has found last, put into the world: where each feature is, what is measured of it, and its outline."""
+"""What a mind's vision has found last, as it is drawn in the world: each feature's outline, and what was measured of it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from itertools import groupby, islice
+from typing import Any
 
 import numpy as np
 
+from actr3d.actr.model import Model
 from actr3d.camera import View
-from actr3d.vision import Feature, Opening, Vision
+from actr3d.vision import Feature, Opening, Sighting, sightings
+from actr3d.world.body import Body
 from workbench.worker.contours import Places, into_world, points_of
 
 MOST = 24
 """So many features of one search are told of."""
-UP = np.array((0.0, 0.0, 1.0))
+LEAST = 0.01
+"""What has no height is drawn as high as this [m]."""
 
 
-class Stand(NamedTuple):
-    """How an eye stood."""
-
-    heading: float
-    """Where ahead was for its body [rad]."""
-    place: Any
-    """Where the eye was [m]."""
-
-
-class Sightings:
-    """Tells the features of each module's last searches in the world, where the eye was when it saw them.
-
-    Args:
-        stand: Returns how the eye of a body stood at a time [us]; None where that is not known any more.
-    """
-
-    def __init__(self, stand: Callable[[str, int], Stand | None]) -> None:
-        self._stand = stand
-        self._gaps: dict[Any, Places | None] = {}
-        """The edges of openings by when and where they were seen: their views are gone soon."""
-
-    def told(self, body: str, vision: Vision) -> list[dict[str, Any]]:
-        """Returns the features that one module has noticed last: `text`, `place`, `lines`, and whether it `chosen` it."""
-        told: list[dict[str, Any]] = []
-        fresh: dict[Any, Places | None] = {}
-        for search in vision._last.values():
-            stand = self._stand(body, search.seen)
-            if stand is None:
-                continue
-            for number, feature in enumerate(search.noticed[:MOST]):
-                key = body, search.seen, feature.called(), feature.key, feature.direction
-                if isinstance(feature, Opening):
-                    fresh[key] = self._gaps[key] if key in self._gaps else _edges(feature, _view(vision, search.seen))
-                lines = into_world(_outline(feature, fresh.get(key)), *stand)
-                told.append(
-                    {
-                        "text": _text(feature),
-                        "place": lines[0].mean(axis=0).tolist(),
-                        "lines": lines.tolist(),
-                        "chosen": number == search.chosen,
-                    }
-                )
-        self._gaps = {key: value for key, value in self._gaps.items() if key[0] != body} | fresh
-        return told
+def told_sightings(mind: Model, body: Body) -> list[dict[str, Any]]:
+    """Returns the features that a mind's last searches have noticed: `text`, `place`, `lines`, and whether it has `chosen` it."""
+    told: list[dict[str, Any]] = []
+    for _, search in groupby(sightings(mind, body), key=lambda one: (one.module, one.bottom_up)):
+        found = list(islice(search, MOST))
+        points = points_of(found[0].view)
+        for sighting in found:
+            lines = _outline(sighting, points)
+            place = lines[0].mean(axis=0).tolist()
+            told.append({"text": _text(sighting.feature), "place": place, "lines": lines.tolist(), "chosen": sighting.chosen})
+    return told
 
 
 def _text(feature: Feature) -> str:
@@ -72,48 +42,38 @@ def _text(feature: Feature) -> str:
     return f"{feature.called()} {size}" if isinstance(feature, Opening) else f"{feature.called()} {size}, {distance}"
 
 
-def _view(vision: Vision, seen: int) -> View | None:
-    """Returns what a module saw at a time [us], as it was misjudged, where it has that still."""
-    looks = vision._looks
-    return next((look.view for look in (looks._now, looks._before) if look is not None and look.time == seen), None)
+def _outline(sighting: Sighting, points: Places) -> Places:
+    """Returns the lines that show a feature, `(n, 2, 3)`; the first is the one that is measured.
+
+    Of an opening: across it, and its sides. Where its edges are not found, it is drawn square to the line of sight. Of all else:
+    upright, at its nearest point.
+
+    Args:
+        sighting: What was noticed.
+        points: Those of its view.
+    """
+    upper_left, upper_right, lower_right, lower_left = np.array(sighting.corners)
+    if not isinstance(sighting.feature, Opening):
+        lower, upper = (lower_left + lower_right) / 2, (upper_left + upper_right) / 2
+        upper[2] = max(upper[2], lower[2] + LEAST)
+        return np.array([[lower, upper]])
+    sides = np.array([[lower_left, upper_left], [lower_right, upper_right]])
+    edges = _edges(sighting.feature, sighting.view, points)
+    if edges is not None:
+        sides[..., :2] = into_world(edges, sighting.stood)[:, None, :2]
+    return np.array([sides.mean(axis=1), *sides])
 
 
-def _edges(opening: Opening, view: View | None) -> Places | None:
-    """Returns the places of the left and the right edge between which an opening's middle was measured, `(2, 3)`."""
-    if view is None:
-        return None
-    points, labels, rows = points_of(view), view.extents["label"], view.extents["row"]
+def _edges(opening: Opening, view: View, points: Places) -> Places | None:
+    """Returns the places of the left and the right edge between which an opening's middle was measured, from the eye, `(2, 3)`."""
+    labels, rows = view.extents["label"], view.extents["row"]
     lefts, rights = np.flatnonzero(labels == opening.left), np.flatnonzero(labels == opening.right)
     one, other = (index.ravel() for index in np.meshgrid(lefts, rights))
     same = rows[one] == rows[other]
     one, other = one[same], other[same]
     if not len(one):
         return None
-    off = (points[one, 1, :2] + points[other, 0, :2]) / 2 - _at(opening)[:2]
+    middle = opening.distance * np.array((math.cos(opening.direction), math.sin(opening.direction)))
+    off = (points[one, 1, :2] + points[other, 0, :2]) / 2 - middle
     best = int(np.argmin(np.einsum("ij,ij->i", off, off)))
     return np.stack((points[one[best], 1], points[other[best], 0]))
-
-
-def _at(feature: Feature) -> Places:
-    return np.array((feature.distance * math.cos(feature.direction), feature.distance * math.sin(feature.direction), 0.0))
-
-
-def _outline(feature: Feature, edges: Places | None) -> Places:
-    """Returns the lines that show a feature, `(n, 2, 3)`, from the eye; the first is the one that is measured.
-
-    Of an opening: across it, and its sides. Where its edges are not known any more, it is drawn square to the line of sight. Of all
-    else: upright, at its nearest point.
-    """
-    middle = _at(feature)
-    top, bottom = (_finite(getattr(feature, name, 0.0)) for name in ("top", "bottom"))
-    if not isinstance(feature, Opening):
-        return np.array([[middle + bottom * UP, middle + max(top, bottom + 0.01) * UP]])
-    half = feature.width / 2 * np.array((-math.sin(feature.direction), math.cos(feature.direction), 0.0))
-    left, right = (middle + half, middle - half) if edges is None else edges * (1, 1, 0)
-    level = (top + bottom) / 2 * UP
-    sides = [[edge + bottom * UP, edge + top * UP] for edge in (left, right)]
-    return np.array([[left + level, right + level], *sides])
-
-
-def _finite(value: Any) -> float:
-    return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else 0.0
