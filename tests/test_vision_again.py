@@ -9,6 +9,7 @@ from living import near
 from looking import agent, events
 from walkers import digest
 
+from actr3d.camera import glance
 from actr3d.simulation import Simulation
 from actr3d.vision import sightings
 from actr3d.world import Aperture, Floor, Mannequin, Scene
@@ -94,6 +95,28 @@ def test_onlookers_are_told_what_was_seen_where() -> None:
     assert upper_left[2] - lower_left[2] == near(one.slots["height"], abs=2e-3)
     assert lower_left[2] == near(0.0, abs=0.3)
     assert digest(simulation) == before
+
+
+def test_what_was_seen_stays_where_it_was_though_the_eye_has_gone_on_looking() -> None:
+    """Two searches are told of, and the older one was seen from elsewhere; so is what an onlooker has glanced at meanwhile."""
+    both = KIND.replace("def look(", "def watch(goal='done'):\n        vision.request('feature:opening', bottom_up=True)\n    def look(")
+    scene = Scene(parts=(Floor(), Aperture(width=0.9), Mannequin(name="walker")))
+    simulation = Simulation(scene, {"walker": agent(both.replace(" OPTIONS", ""))}, seed=1)
+    body = simulation.world.bodies["walker"]
+    simulation.command("walk", 1.5, 0.0, 0.4)
+    simulation.run(1.0)
+
+    def places() -> dict[bool, Any]:
+        return {one.bottom_up: one.corners[0] for one in sightings(simulation.minds["walker"], body)}
+
+    before = places()
+    assert before[False][:2] == near((7.0, 0.45), abs=0.1)
+    assert before[True][:2] == near((7.0, 0.45), abs=0.1)
+    glance(body)
+    assert places() == before
+    simulation.seek(0.5)
+    simulation.run(0.5)
+    assert places() == before
 
 
 def test_who_has_not_looked_has_seen_nothing() -> None:

@@ -16,10 +16,10 @@ from actr3d.recording import Recorded
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.comparing import compare
+from workbench.html_replay.aside import replay_of
 from workbench.recordings import MOST as MOST_LISTED
 from workbench.recordings import curves, events_csv, states_csv
-from workbench.replay.aside import replay_of
-from workbench.replaying import replay as again
+from workbench.rerunning import rerun
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
 
@@ -109,7 +109,7 @@ async def open_recording(request: Request, recording: Id) -> dict[str, Any]:
 @router.post("/recordings/{recording}/replay")
 async def replay(request: Request, recording: Id) -> dict[str, Any]:
     """Runs a recording again, in a process of its own, and says whether every byte agrees; it ends when nobody waits any more."""
-    return await again(sessions_of(request).recordings.path(recording), request.is_disconnected)
+    return await rerun(sessions_of(request).recordings.path(recording), request.is_disconnected)
 
 
 @router.post("/recordings/{recording}/rename")

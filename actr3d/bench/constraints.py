@@ -36,8 +36,6 @@ STEADY = 1.0
 WIDE = 1.35
 """From this ratio on an aperture is wide."""
 
-Key = tuple[str, str]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:

@@ -70,7 +70,6 @@ class Peer:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._library: Any = importlib.import_module("python_actr")
         # It would print a last line when the program ends, in the middle of our output.
         atexit.unregister(importlib.import_module("python_actr.logger").finished)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.stand import Stand, stand_of
 from actr3d.camera.view import View
-from actr3d.world.frames import heading_of
 from actr3d.world.sensors.registry import SENSORS
 from actr3d.world.words import adder
 
@@ -31,15 +32,12 @@ class Sight:
     def __init__(self, body: Body, parameters: CameraParameters) -> None:
         self.parameters = parameters
         """How it sees."""
-        self._world = body.world
-        self._root = body.root
-        self._site = body.world.mj_model.site(body.eye).id
+        self._body = body
         self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
         self._moment = -1
         self._view: View | None = None
-        self.stood: tuple[float, float, float, float] | None = None
-        """Where the eye was at the last look, and where ahead was [m] [rad, in the world's frame]; for who looks on."""
+        self._stands: WeakKeyDictionary[View, Stand] = WeakKeyDictionary()
 
     def look(self) -> View:
         """Returns what is visible now.
@@ -47,15 +45,18 @@ class Sight:
         Raises:
             CameraError: If the poses are no numbers.
         """
-        world = self._world
+        world = self._body.world
         if self._view is None or self._moment != world.moment:
             world.refresh()
-            heading = heading_of(world.mj_data.xmat[self._root])
-            self._view = self._camera.look(world.mj_data, heading)
-            x, y, z = world.mj_data.site_xpos[self._site].tolist()
-            self.stood = (x, y, z, heading)
+            stand = stand_of(self._body, world.mj_data)
+            self._view = self._camera.look(world.mj_data, stand.heading)
+            self._stands[self._view] = stand
             self._moment = world.moment
         return self._view
+
+    def stood(self, view: View) -> Stand | None:
+        """Returns how the eye stood when it saw a view, for who looks on; None where it has not seen that."""
+        return self._stands.get(view)
 
     def state(self) -> tuple[int, ...]:
         """Returns the labels given so far."""

@@ -5,34 +5,29 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import asdict
 from functools import partial
-from pathlib import Path
 from typing import Any
 from zlib import crc32
 
 from actr3d.actr.limits import RunLimits, fresh_seed
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
-from actr3d.recording import Recording
 from actr3d.simulation.arguments import check_names, count_of, factor_of, named_minds, seed_of, steps_of, whole_ticks, world_of
 from actr3d.simulation.commands import Command
 from actr3d.simulation.course import Course
 from actr3d.simulation.glimpse import Glimpse
 from actr3d.simulation.global_random import GlobalRandom
-from actr3d.simulation.journal import Journal, Listener
+from actr3d.simulation.journal import Journal
 from actr3d.simulation.lockstep import Lockstep
-from actr3d.simulation.measuring import Measure
+from actr3d.simulation.looked_on import LookedOn
 from actr3d.simulation.minds import Factory
-from actr3d.simulation.onlookers import Observer, Onlookers
 from actr3d.simulation.pace import Ending, Pace, RunReport
 from actr3d.simulation.sources import told_facts
 from actr3d.simulation.submissions import Submissions
-from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
 
 
-class Simulation:
+class Simulation(LookedOn):
     """Runs minds and their bodies through the same time: a tick of cognition, then a tock of physics, then sensing.
 
     A tick lets every mind think for one period, events at its very end included. The tock carries out what the minds
@@ -71,24 +66,26 @@ class Simulation:
         self.seed: int | str = seed_of(seed) if seed is not None else fresh_seed() if limits is None else limits.next_seed()
         self._minds = named_minds(minds, "Simulation.minds")
         self._bodiless = named_minds(bodiless, "Simulation.bodiless")
-        self.world = world_of(scene, crc32(str(self.seed).encode()))
-        check_names(self._minds, self._bodiless, self.world.bodies)
-        self._steps = steps_of(period, self.world)
-        self._period = self._steps * self.world.scene.timestep_us
-        self._journal = Journal(trace)
+        world = world_of(scene, crc32(str(self.seed).encode()))
+        check_names(self._minds, self._bodiless, world.bodies)
+        self._steps = steps_of(period, world)
+        self._period = self._steps * world.scene.timestep_us
+        journal = Journal(trace)
         if limits is not None and limits.trace is not None:
-            self._journal.tell_program(limits.trace, limits.recorder)
-        self._course = Course(self.world, self._begin, self._journal)
+            journal.tell_program(limits.trace, limits.recorder)
         self._random = GlobalRandom()
-        self._onlookers = Onlookers(self._random)
         self._submitted = Submissions()
-        self._measure: Measure | None = None
+        super().__init__(world, Course(world, self._begin, journal), journal, self._random)
         self._owner = threading.get_ident()
 
     def _begin(self) -> Lockstep:
         minds = {**self._minds, **self._bodiless}
         with self._random:
             return Lockstep(self.world, minds, frozenset(self._minds), self.seed, self._steps, self._period, self._journal)
+
+    def _told(self, facts: Mapping[str, Any]) -> dict[str, Any]:
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
+        return told_facts(own, facts, [*self._minds.values(), *self._bodiless.values()])
 
     # -- where it stands
 
@@ -126,11 +123,6 @@ class Simulation:
     def done(self) -> bool:
         """Whether no mind has anything left to do, now or ever, and no user has asked for anything."""
         return self._course.lockstep.minds.done and not self._submitted and self.ticks >= self._course.furthest
-
-    @property
-    def trace(self) -> Trace | None:
-        """The trace of the run up to now; None where nothing is traced. After `seek` it is another one."""
-        return self._course.lockstep.trace
 
     # -- going on
 
@@ -249,6 +241,16 @@ class Simulation:
             self._course.command(word, values, named, body)
         self._journal.check()
 
+    def plan(self, commands: Sequence[Command]) -> None:
+        """Lets the commands of an earlier run be done again, each after its tick, as if this run had gone back to its start.
+
+        Raises:
+            SimulationError: If the run has begun already.
+        """
+        if self._course.begun:
+            raise SimulationError("commands are planned before the run begins, and this one has begun already")
+        self._course.plan(commands)
+
     def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
         """Asks for a command from any thread; it is carried out before the next tick.
 
@@ -260,101 +262,6 @@ class Simulation:
     def carry_out_submitted(self) -> None:
         """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
         self._submitted.carry_out()
-
-    # -- looking on
-
-    def observe(self, observer: Observer) -> None:
-        """Calls an observer with a `Glimpse` after each tock, and after `seek`; it sees copies and can change nothing."""
-        self._onlookers.add(observer)
-
-    def traced(self, level: str = "all") -> None:
-        """Lets the trace hold at least so much, whoever made the simulation, and keep it: `trace` then has it all.
-
-        Raises:
-            SimulationError: If the run has begun already.
-            ParameterError: If the level is unknown.
-        """
-        if self._course.begun:
-            raise SimulationError("a trace holds a run from its start on, and this one has begun already")
-        self._journal.raise_level(level, keep=True)
-
-    def plan(self, commands: Sequence[Command]) -> None:
-        """Lets the commands of an earlier run be done again, each after its tick, as if this run had gone back to its start.
-
-        Raises:
-            SimulationError: If the run has begun already.
-        """
-        if self._course.begun:
-            raise SimulationError("commands are planned before the run begins, and this one has begun already")
-        self._course.plan(commands)
-
-    def measure(self, measure: Measure) -> None:
-        """Lets a measure look at every physics step from the start of the run on; what it finds is the run's result.
-
-        Raises:
-            SimulationError: If the run has begun already, or has a measure.
-            Exception: What the measure raises, of what it does not find in the world.
-        """
-        if self._course.begun or self._measure is not None:
-            raise SimulationError("a run has one measure, which looks at it from its start on")
-        measure.begin(self.world)
-        self.world.watchers.append(measure.look)
-        self._measure = measure
-
-    def result(self) -> Any:
-        """Returns what has been measured of the run up to now; None where nothing is."""
-        if self._measure is None:
-            return None
-        minds = self._course.lockstep.minds
-        return self._measure.result(over=minds.stopped or minds.done)
-
-    def conclude(self) -> Any:
-        """Returns the result, and tells the trace of it: the run is not to go on."""
-        result = self.result()
-        if result is not None:
-            self._journal.result(self._course.lockstep.minds.time, asdict(result))
-            self._journal.check()
-        return result
-
-    def listen(self, listener: Listener) -> None:
-        """Calls a listener with every event of the trace from now on; not with those that `seek` goes through again.
-
-        Raises:
-            ParameterError: If nothing is traced.
-        """
-
-        def listen_aside(event: TraceEvent) -> None:
-            with self._onlookers.only_looking():
-                listener(event)
-
-        self._journal.listen(listen_aside)
-
-    def record(self, path: Path | str, **facts: Any) -> Recording:
-        """Records the whole run to a new file, with every event, state, command and answer; to be closed by who asks for it.
-
-        Args:
-            path: The file; it must not exist.
-            facts: What else is to be told of the run: plain values by names that a recording does not use itself.
-
-        Raises:
-            SimulationError: If the run has begun already, or is being recorded.
-            RecordingError: If the file exists, or cannot be made, or a fact cannot be recorded.
-        """
-        if self._course.begun:
-            raise SimulationError("a recording holds a run from its start on, and this one has begun already")
-        if self._journal.recorded:
-            raise SimulationError("this run is being recorded already; what records it holds everything")
-        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
-        recording = Recording(path, told_facts(own, facts, [*self._minds.values(), *self._bodiless.values()]))
-        self._journal.record(recording)
-        recording.ending = self._end_recording
-        return recording
-
-    def _end_recording(self) -> None:
-        self._journal.end_recording(whole=self._course.begun and not self._course.lockstep.broken)
-
-    def _glimpse(self) -> Glimpse:
-        return Glimpse(self.world, self.ticks)
 
     # -- going back
 

@@ -10,7 +10,7 @@ from actr3d.actr.answers import plain_answer
 from actr3d.actr.modules.port import Request, place_of_caller
 from actr3d.actr.parameters import WithParameters, named_parameters
 from actr3d.actr.searches import Searching, outcome_of
-from actr3d.camera import View
+from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
@@ -127,6 +127,18 @@ class Vision(WithParameters, Searching):
                 raise ParameterError(f"Vision.{name}: a camera cannot be changed; give it to Vision({name}=...) when that is made")
         super().__setattr__(name, value)
 
+    # -- for who looks on
+
+    @property
+    def eyesight(self) -> CameraParameters:
+        """How the eye sees."""
+        return CameraParameters.from_mapping(self._camera)
+
+    @property
+    def searches(self) -> tuple[Search, ...]:
+        """The last top-down and the last bottom-up search that have looked, as far as there have been such."""
+        return tuple(search for _, search in sorted(self._last.items()))
+
     # -- what it is asked
 
     def request(self, pattern: str, *, bottom_up: bool = False, **slots: Any) -> Search | None:
@@ -232,7 +244,8 @@ class Vision(WithParameters, Searching):
         trace = sch.trace
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
-        self._looks.take(self._perceived(search, answer), sch.now_us)
+        perceived = self._perceived(search, answer)
+        self._looks.take(perceived, sch.now_us)
         if search.again:
             self._look_again(search)
             return
@@ -241,7 +254,7 @@ class Vision(WithParameters, Searching):
         else:
             search.sift(self._looks.features(search.query), self._saliences[search.query.detector.name])
             search.choose(self.rule, self.random)
-        search.seen = sch.now_us
+        search.seen, search.view, search.perceived = sch.now_us, answer, perceived
         self._last[search.bottom_up] = search
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "search", search.to_data())
@@ -339,7 +352,7 @@ class Vision(WithParameters, Searching):
             trace.emit(self.sch.now_us, self._path, "sight", data if slots is None else {**data, "chunk": slots})
 
     def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:
-        return [(search.seen, search.to_data(), search.outcome) for _, search in sorted(self._last.items())]
+        return [(search.seen, search.to_data(), search.outcome) for search in self.searches]
 
     def _is_held(self) -> bool:
         """Tells whether the buffer has what a top-down request has just brought."""

@@ -7,6 +7,7 @@ from random import Random
 from typing import Any
 
 from actr3d.actr.modules.port import Reading
+from actr3d.camera import View
 from actr3d.vision.feature import Feature
 from actr3d.vision.query import Query, Test, refusal
 from actr3d.vision.salience import Function, share, survivors, weigh
@@ -24,9 +25,11 @@ class Search(Reading):
         "noise",
         "noticed",
         "outcome",
+        "perceived",
         "query",
         "refused",
         "seen",
+        "view",
         "weights",
         "why",
     )
@@ -46,6 +49,10 @@ class Search(Reading):
     """Whether it has looked, and waits for a second view, to see whether what it has chosen is still there."""
     noise: int | None
     """What the noise of its views comes from, once it has one."""
+    view: View | None
+    """What was seen when it looked; for who looks on, no mind gets it."""
+    perceived: View | None
+    """The same as it was misjudged, in which the features were found."""
 
     def __init__(self, query: Query, *, bottom_up: bool, begun: int, due: int) -> None:
         super().__init__("view")
@@ -63,7 +70,7 @@ class Search(Reading):
     def clear(self) -> None:
         """Forgets what it has found; it begins anew."""
         self.noticed, self.weights, self.refused, self.chosen, self.why, self.outcome = (), (), [], None, None, "pending"
-        self.again, self.noise = False, None
+        self.again, self.noise, self.view, self.perceived = False, None, None, None
 
     def sift(self, features: Sequence[Feature], salience: Function) -> None:
         """Notes what of the features is as was asked for and how salient it is, and what is not.

@@ -5,14 +5,17 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Generator
+import time
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 PATIENCE = 60_000
-"""[ms]"""
+"""So long a test waits for what must come [ms]; machines are slow at times."""
+expect.set_options(timeout=PATIENCE)  # whatever is expected, and not for five seconds only
+
 OPTIONS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
@@ -49,7 +52,20 @@ def chromium() -> Generator[Browser]:
 
 def shows(page: Page, where: str, text: str) -> None:
     """Waits until a place of the page has a text that the pattern `text` is found in."""
-    expect(page.locator(where)).to_have_text(re.compile(text), timeout=PATIENCE)
+    expect(page.locator(where)).to_have_text(re.compile(text))
+
+
+def until(page: Page, condition: Callable[[], bool]) -> None:
+    """Waits until something is so that no locator can tell."""
+    end = time.monotonic() + PATIENCE / 1000
+    while not condition():
+        assert time.monotonic() < end
+        page.wait_for_timeout(50)
+
+
+def drawn(page: Page) -> None:
+    """Waits until the page has been drawn with what it has taken in."""
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 def choose(page: Page, model: str) -> None:

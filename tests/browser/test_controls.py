@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import PATIENCE, open_tab, shows
+from tests.browser.looking import drawn, open_tab, shows, until
 from tests.server.serving import Served
 
 
@@ -41,7 +41,7 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     speed.fill("1.1")
     expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))
     page.get_by_role("button", name="Restart with these").click()
-    expect(page.locator(".note")).to_have_count(0, timeout=PATIENCE)
+    expect(page.locator(".note")).to_have_count(0)
     expect(speed).to_have_value("1.1")
     width = page.locator("#parameter-width")
     width.fill("0.8")
@@ -50,19 +50,20 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     expect(page.locator(".note")).to_have_count(0)
     page.get_by_label("seed", exact=True).fill("7")
     page.get_by_role("button", name="Restart with these").click()
-    expect(page.get_by_text("seed 7", exact=True)).to_be_visible(timeout=PATIENCE)
+    expect(page.get_by_text("seed 7", exact=True)).to_be_visible()
 
 
 def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     inset = page.get_by_role("complementary", name="Retina")
-    expect(inset).to_have_text(re.compile(r"\d+ extents in 100 rows"), timeout=PATIENCE)
+    expect(inset).to_have_text(re.compile(r"\d+ extents in 100 rows"))
     inset.get_by_role("button", name="Larger").click()
     expect(inset).to_have_count(0)
     labels = page.locator(".eye tbody tr td:first-child")
     expect(labels).to_have_text(["1", "2"])
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy as JSON").click()
+    until(page, lambda: page.evaluate("navigator.clipboard.readText()").startswith("{"))
     view = json.loads(page.evaluate("navigator.clipboard.readText()"))
     assert {extent[1] for extent in view["extents"]} == {1, 2}
     page.get_by_role("button", name="Edges").click()
@@ -102,6 +103,7 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     bar.focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowRight")
+    drawn(page)
     after = int(bar.get_attribute("aria-valuenow") or 0)
     assert after < before
     open_tab(page, "Runs")
@@ -138,9 +140,9 @@ def test_a_value_of_a_parameter_that_has_another_name_now_is_left_out_by_a_resta
     version = workbench.get("/api/model?path=renamed.py").json()["version"]
     assert workbench.put("/api/model", {"path": "renamed.py", "text": renamed(source), "version": version}).status_code == 200
     note = page.get_by_text("The text has no parameter width any more")
-    expect(note).to_be_visible(timeout=PATIENCE)
+    expect(note).to_be_visible()
     page.get_by_role("button", name="Restart with these").click()
-    expect(note).to_have_count(0, timeout=PATIENCE)
+    expect(note).to_have_count(0)
     expect(page.get_by_label("gap", exact=True)).to_have_value("0.5")
     shows(page, "#width", "50 cm")
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Dialog, Page, expect
 
-from tests.browser.looking import PATIENCE, choose, open_tab, shows
+from tests.browser.looking import choose, open_tab, shows, until
 from tests.server.serving import Served, served
 
 CODE = ".code .cm-content"
@@ -41,7 +41,7 @@ def edit(page: Page, model: str) -> None:
     shows(page, "#status", "paused|ended|failed|running")  # the editor begins with the model that is shown
     open_tab(page, "Editor")
     page.get_by_label("File", exact=True).select_option(model)
-    expect(page.locator(f"{CODE}[aria-label*='{model}']")).to_be_visible(timeout=PATIENCE)
+    expect(page.locator(f"{CODE}[aria-label*='{model}']")).to_be_visible()
 
 
 def write(page: Page, text: str, *, where: str = "Control+End") -> None:
@@ -51,8 +51,9 @@ def write(page: Page, text: str, *, where: str = "Control+End") -> None:
     page.keyboard.insert_text(text)
 
 
-def text_of(page: Page) -> str:
-    return "\n".join(page.locator(f"{CODE} .cm-line").all_text_contents())
+def ends(page: Page, text: str) -> None:
+    """Waits until the text in the editor ends with another."""
+    until(page, lambda: "\n".join(page.locator(f"{CODE} .cm-line").all_text_contents()).endswith(text))
 
 
 def unsaved(page: Page) -> Any:
@@ -142,7 +143,7 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     page = pages("counting.py")
     edit(page, "shared.py")
     written("shared.py", "a = 1\nb = 3\n")
-    expect(page.locator(CODE)).to_have_text(re.compile("b = 3"), timeout=PATIENCE)  # nothing was edited here
+    expect(page.locator(CODE)).to_have_text(re.compile("b = 3"))  # nothing was edited here
     shows(page, ".standing", "read again: the file had changed")
     write(page, "mine = 1\n")
     written("shared.py", "theirs = 1\n")
@@ -183,7 +184,8 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     edit(other, "draft.py")
     write(page, "b = 2\n")
     write(other, "c = 3\n")
-    page.wait_for_timeout(400)
+    drafts = "Object.keys(localStorage).filter((key) => key.startsWith('actr3d.draft.')).length"
+    until(page, lambda: page.evaluate(drafts) == 2)
     asked: list[str] = []
 
     def leave(dialog: Dialog) -> None:
@@ -196,7 +198,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     shows(page, "#status", "paused|ended|failed|running")  # the editor begins with the model that is shown
     open_tab(page, "Editor")
     page.get_by_label("File", exact=True).select_option("draft.py")
-    expect(page.locator(CODE)).to_have_text("a = 1b = 2", timeout=PATIENCE)
+    expect(page.locator(CODE)).to_have_text("a = 1b = 2")
     unsaved(page).to_have_text(re.compile("unsaved.*brought back"))
     assert path.read_text(encoding="utf-8") == "a = 1\n"
     page.keyboard.press("Control+s")
@@ -227,7 +229,7 @@ def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str)
     name.fill(f"new {choice[-5:]}")
     page.get_by_label(choice).check()
     page.get_by_role("button", name="Create").click()
-    expect(page.locator(CODE)).to_have_text(re.compile("Says in a line"), timeout=PATIENCE)
+    expect(page.locator(CODE)).to_have_text(re.compile("Says in a line"))
     shows(page, "#status", "at its start")
     page.keyboard.press("Control+Enter")
     shows(page, "#status", f"ended: {seen}")
@@ -277,22 +279,23 @@ def test_each_text_keeps_its_history_and_tab_can_leave(page: Page, workbench: Se
     expect(page.get_by_label("File", exact=True)).to_have_value("counting.py")  # the chosen model is shown
     write(page, "# two")
     page.get_by_label("File", exact=True).select_option("doorway.py")
+    ends(page, "# one")
     page.locator(CODE).focus()
     page.keyboard.press("Control+f")
     expect(page.locator(".cm-search [name=search]")).to_be_focused()
     page.keyboard.press("Escape")
     expect(page.locator(".cm-search")).to_have_count(0)
-    assert text_of(page).endswith("# one")
+    ends(page, "# one")
     page.keyboard.press("Control+z")
-    assert text_of(page).endswith('{"walker": mind})\n')
+    ends(page, '{"walker": mind})\n')
     page.keyboard.press("Tab")
-    assert text_of(page).endswith("\n    ")
+    ends(page, "\n    ")
     page.keyboard.press("Escape")
     page.keyboard.press("Tab")
     expect(page.locator(CODE)).not_to_be_focused()
     page.get_by_label("File", exact=True).select_option("counting.py")
+    ends(page, "# two")
     page.locator(CODE).focus()
-    assert text_of(page).endswith("# two")
     page.keyboard.press("Control+z")
     unsaved(page).not_to_have_text(re.compile("unsaved"))
 

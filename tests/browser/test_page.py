@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from tests.browser.looking import PATIENCE, choose, open_tab, shows
+from tests.browser.looking import choose, open_tab, shows
 from tests.server.serving import Served
 
 
@@ -23,7 +23,7 @@ def test_run_step_and_the_aperture(page: Page) -> None:
     page.locator("#aperture").fill("90")
     shows(page, "#width", "90 cm *A/S 2.00")
     scene = page.frame_locator("iframe[title='3D view']")
-    expect(scene.locator("canvas").first).to_be_visible(timeout=PATIENCE)
+    expect(scene.locator("canvas").first).to_be_visible()
     open_tab(page, "Productions")
     page.get_by_label("Filter the trace").fill("turn")
     page.click("#run")
@@ -47,7 +47,7 @@ def test_a_second_tab_and_a_reload_show_the_same(pages: Callable[..., Page], wor
     other = page.context.new_page()
     other.goto(f"{workbench.url}/?model=counting.py")
     open_tab(other, "Productions")
-    expect(other.locator("#events")).to_have_text(re.compile("start_counting"), timeout=PATIENCE)
+    expect(other.locator("#events")).to_have_text(re.compile("start_counting"))
     other.click("#cycle")
     shows(page, "#events", "count_on")
     page.reload()

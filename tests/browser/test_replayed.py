@@ -10,10 +10,8 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, expect
 
+from tests.browser.looking import PATIENCE, drawn, until
 from tests.server.serving import served
-
-PATIENCE = 120_000
-"""[ms]; without a graphics card, on a busy machine."""
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +49,11 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         expect(page.get_by_role("row", name="width")).to_be_visible()
         page.get_by_text("Parameters and result").click()
         canvas = page.locator("#canvas")
+        drawn(page)
         first = canvas.screenshot()
         page.get_by_role("slider", name="Time").fill("3")
         expect(page.locator("#clock")).to_have_text("3.00 s")
-        assert canvas.screenshot() != first  # it has walked on
+        until(page, lambda: canvas.screenshot() != first)  # it has walked on
         page.get_by_role("slider", name="Time").fill("0")
         page.get_by_label("Show").fill("look fires")
         expect(page.locator(".event").first).to_contain_text("look")
@@ -63,6 +62,6 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         expect(page.locator(".event.now")).to_contain_text("look")
         page.get_by_role("button", name="Play").click()
         expect(page.get_by_role("button", name="Pause")).to_be_visible()
-        expect(page.locator("#clock")).not_to_have_text("0.05 s", timeout=PATIENCE)
+        expect(page.locator("#clock")).not_to_have_text("0.05 s")
     assert complaints == []
     assert asked == [replay.as_uri()]

@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from actr3d.recording import Recording
-from tests.browser.looking import PATIENCE, open_tab
+from tests.browser.looking import open_tab
 from tests.server.serving import Served
 
 
@@ -78,7 +78,7 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     present = page.locator("tr.present")
     expect(present).to_contain_text("present run")
     page.click("#run")
-    expect(present).to_contain_text("6.80 s", timeout=PATIENCE)
+    expect(present).to_contain_text("6.80 s")
     expect(present).to_contain_text("a mind said stop")
 
 
@@ -88,7 +88,7 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     row(page, two[1]).click()
     page.get_by_role("button", name="Replay", exact=True).click()
     expect(page.get_by_text("running again")).to_be_visible()
-    expect(page.get_by_text("Every byte agrees. 685 ticks")).to_be_visible(timeout=PATIENCE)
+    expect(page.get_by_text("Every byte agrees. 685 ticks")).to_be_visible()
     expect(page.get_by_role("link", name="HTML replay")).to_have_attribute("href", re.compile("form=replay.html"))
     with page.expect_download() as taken:
         page.get_by_role("link", name="CSV of events").click()
@@ -96,8 +96,8 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     assert Path(taken.value.path()).read_text().startswith("time [s],source,kind,data")
 
     page.get_by_role("button", name="Open", exact=True).click()
-    expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)
-    expect(page.locator("#width")).to_have_text(re.compile("90 cm"), timeout=PATIENCE)
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"))
+    expect(page.locator("#width")).to_have_text(re.compile("90 cm"))
     expect(page.get_by_role("button", name="Compare with the present run")).to_be_disabled()  # it is not recorded once more
 
     page.get_by_label("Search recordings").fill("counting.py ended")
@@ -140,7 +140,7 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     expect(around.locator("tr.here")).to_contain_text(re.compile("walker.*fire.*production:turn.*fire.*production:|fire.*fire.*turn"))
     expect(dialog.get_by_role("list", name="What differs")).to_contain_text("production")
 
-    expect(dialog.get_by_role("figure", name="walker speed")).to_be_visible(timeout=PATIENCE)
+    expect(dialog.get_by_role("figure", name="walker speed")).to_be_visible()
     dialog.get_by_label("Add a curve").select_option("walker_torso_yaw speed")
     plot = dialog.get_by_role("figure", name="walker_torso_yaw speed")
     expect(plot.locator(".plot-of")).to_have_text([re.compile("first"), re.compile("second")])
@@ -154,7 +154,7 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
 
 
 def test_what_was_changed_while_a_run_went_on_is_told_beside_what_it_began_with(page: Page, two: list[str]) -> None:
-    expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     page.click("#step")
     expect(page.locator("#time")).to_have_text("t = 0.01 s")
     page.locator("#aperture").fill("90")
@@ -165,21 +165,19 @@ def test_what_was_changed_while_a_run_went_on_is_told_beside_what_it_began_with(
     row(page, two[0]).click()
     page.get_by_role("button", name="Compare with the present run").click()
     sides = page.get_by_role("dialog", name="Two runs").get_by_role("table", name="Side by side")
-    expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(
-        re.compile(r"≠width0\.5.* → 0\.9 at 0\.01 s$"), timeout=PATIENCE
-    )
+    expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(re.compile(r"≠width0\.5.* → 0\.9 at 0\.01 s$"))
 
 
 def test_a_recording_is_compared_with_the_present_run_of_another_model(pages: Callable[..., Page], two: list[str]) -> None:
     page = pages("counting.py")
-    expect(page.locator("#status")).to_have_text(re.compile("at its start"), timeout=PATIENCE)
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     open_tab(page, "Runs")
     row(page, two[0]).click()
     page.get_by_role("button", name="Compare with the present run").click()
     dialog = page.get_by_role("dialog", name="Two runs")
     expect(dialog.get_by_text("These are two different models")).to_be_visible()
     expect(dialog.locator(".compare-run").nth(1)).to_contain_text("present")
-    expect(dialog.get_by_role("figure", name="walker speed").locator(".plot-of")).to_have_count(1, timeout=PATIENCE)
+    expect(dialog.get_by_role("figure", name="walker speed").locator(".plot-of")).to_have_count(1)
 
 
 def test_of_a_thousand_recordings_those_are_drawn_that_are_seen(pages: Callable[..., Page], workbench: Served, recordings: Path) -> None:
@@ -190,11 +188,11 @@ def test_of_a_thousand_recordings_those_are_drawn_that_are_seen(pages: Callable[
     page = pages("counting.py")  # without a 3D view, which takes long to draw without a graphics card
     open_tab(page, "Runs")
     page.get_by_label("Search recordings").fill("many")
-    expect(page.get_by_text(re.compile(r"^1000 of \d+$"))).to_be_visible(timeout=PATIENCE)
+    expect(page.get_by_text(re.compile(r"^1000 of \d+$"))).to_be_visible()
     assert page.locator("tr[data-run]").count() < 50
     page.locator(".runs-list").evaluate("list => list.scrollTop = list.scrollHeight")
-    expect(row(page, copies[0].stem)).to_be_visible(timeout=PATIENCE)
+    expect(row(page, copies[0].stem)).to_be_visible()
     page.get_by_role("button", name="Sort by began").click()
-    expect(row(page, copies[-1].stem)).to_be_visible(timeout=PATIENCE)
+    expect(row(page, copies[-1].stem)).to_be_visible()
     for copy in copies:
         copy.unlink()

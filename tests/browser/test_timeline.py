@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 from playwright.sync_api import FloatRect, Page, expect
 
-from tests.browser.looking import PATIENCE, shows
+from tests.browser.looking import drawn, shows, until
 from tests.server.serving import Served
 
 NAMES = 150
@@ -38,7 +38,7 @@ def told(page: Page, share: float) -> list[str]:
     texts: list[str] = []
     for y in range(30, int(box(page)["height"]), LANE // 2):
         page.mouse.move(*at(page, share, y))
-        page.wait_for_timeout(60)
+        drawn(page)
         tip = page.get_by_role("tooltip")
         if tip.count() and (text := tip.inner_text().replace("\n\n", "\n")) not in texts:
             texts.append(text)
@@ -54,7 +54,7 @@ def slider(page: Page, name: str) -> float:
 def when(page: Page, time: str) -> None:
     """Waits until the run is at a time, and the playhead, too."""
     shows(page, "#time", re.escape(f"t = {time} s"))
-    expect(page.locator("#timeline")).to_have_attribute("aria-valuetext", re.compile(re.escape(f"{time} s of ")), timeout=PATIENCE)
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuetext", re.compile(re.escape(f"{time} s of ")))
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def ended(pages: Callable[..., Page]) -> Page:
           while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
         }"""
     )
-    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"), timeout=PATIENCE)
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     return page
 
 
@@ -98,6 +98,7 @@ def test_going_back_and_forth(ended: Page) -> None:
     page.mouse.down()
     for share in (0.7, 0.5, 0.3, 0.25):
         page.mouse.move(*at(page, share))
+        drawn(page)
         assert abs(slider(page, "valuenow") - 8 * share) < 0.02  # the playhead is there at once
     page.mouse.up()
     when(page, "2.00")
@@ -141,17 +142,19 @@ def test_zoom_and_choice_of_rows(ended: Page) -> None:
     page.mouse.click(*at(page, 0.5))
     when(page, "4.00")  # what the pointer was at has stayed where it was
     page.mouse.click(*at(page, 0.75))
+    until(page, lambda: 4.5 < slider(page, "valuenow") < 5.8)
     near = slider(page, "valuenow")
-    assert 4.5 < near < 5.8
+    when(page, f"{near:.2f}")
     page.mouse.move(*at(page, 0.5, 8))
     page.mouse.down()
     page.mouse.move(*at(page, 0.25, 8))
     page.mouse.up()
     page.mouse.click(*at(page, 0.5))
+    drawn(page)
     assert abs(slider(page, "valuenow") - near) < 0.05  # the axis was drawn to the left by a quarter
     fit.click()
     marks, curves = page.get_by_role("button", name="Marks"), page.get_by_role("button", name="Curves", exact=True)
-    assert any("printed" in text for text in told(page, 6.8 / 8))
+    until(page, lambda: any("printed" in text for text in told(page, 6.8 / 8)))
     marks.click()
     curves.click()
     assert not any("printed" in text or "speed at" in text for text in told(page, 6.8 / 8))
@@ -163,9 +166,8 @@ def test_zoom_and_choice_of_rows(ended: Page) -> None:
     shows(page, "#status", "paused|ended")
     expect(page.get_by_role("button", name="Marks")).to_have_attribute("aria-pressed", "false")
     page.get_by_label("Filter rows").fill("contact")
-    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"), timeout=PATIENCE)
-    page.wait_for_timeout(500)
-    assert any("contact force at" in text for text in told(page, 0.5))
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
+    until(page, lambda: any("contact force at" in text for text in told(page, 0.5)))  # once the curve has come
 
 
 def test_pictures(ended: Page, tmp_path: Path) -> None:
@@ -211,7 +213,7 @@ def test_what_a_model_says_is_text(pages: Callable[..., Page], workbench: Served
     shows(page, "#status", "at its start")
     page.click("#run")
     shows(page, "#status", "ended")
-    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", "0.8", timeout=PATIENCE)
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", "0.8")
     page.get_by_label("Filter rows").fill("printed")
     first, second = told(page, 0.05), told(page, 0.45)
     assert any("<img src=x onerror=alert(1)>\nat 0.050 s" in text for text in first), first

@@ -15,7 +15,7 @@ from actr3d.trace import TraceEvent
 from tests.server.desk import Desk
 from workbench.comparing import CONTEXT, compare
 from workbench.recordings import Recordings
-from workbench.replaying import BusyError, replay
+from workbench.rerunning import BusyError, rerun
 
 MODELS = Path(__file__).parents[2] / "models"
 APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
@@ -162,7 +162,7 @@ def test_a_recording_is_run_again_while_somebody_waits(tmp_path: Path) -> None:
         return time.monotonic() > begin + 1
 
     async def three() -> list[object]:
-        return await asyncio.gather(*(replay(path, gone) for _ in range(3)), return_exceptions=True)
+        return await asyncio.gather(*(rerun(path, gone) for _ in range(3)), return_exceptions=True)
 
     begin = time.monotonic()
     first, second, third = asyncio.run(three())

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
 
-from actr3d.vision import Feature
+from actr3d.camera.stand import Stand
+from actr3d.vision import Feature, Sighting
 from actr3d.vision.units import Metres
 from workbench.overlays.features import CLOSE, apart
+from workbench.worker.contours import Places
 from workbench.worker.sightings import DIAMOND, _outline
 
 
@@ -35,8 +38,16 @@ class Line(Feature):
     width: Metres = field(default=2.0)
 
 
+def outline(feature: Feature) -> Places:
+    """How it is drawn where an eye stands in the world's origin; of what it was found in nothing is asked."""
+    view: Any = None
+    stood = Stand(0.0, 0.0, 0.0, 0.0)
+    sighting = Sighting(module="vision", bottom_up=False, time=0.0, chosen=True, feature=feature, view=view, stood=stood)
+    return _outline(sighting, np.empty((0, 2, 3)))
+
+
 def test_what_has_no_size_is_a_mark_where_it_is() -> None:
-    lines = _outline(Spot(distance=2.0, direction=np.pi / 2), None)
+    lines = outline(Spot(distance=2.0, direction=np.pi / 2))
     assert lines.shape == (4, 2, 3)
     assert lines.reshape(-1, 3).mean(axis=0) == pytest.approx((0, 2, 0))
     assert np.ptp(lines[..., 2]) == pytest.approx(2 * DIAMOND)
@@ -45,12 +56,12 @@ def test_what_has_no_size_is_a_mark_where_it_is() -> None:
 
 
 def test_what_has_a_size_is_a_frame_of_that_size() -> None:
-    lines = _outline(Sign(distance=3.0, direction=0.0), None)
+    lines = outline(Sign(distance=3.0, direction=0.0))
     assert lines.shape == (4, 2, 3)
     assert (lines[..., 1].min(), lines[..., 1].max()) == pytest.approx((-0.3, 0.3))
     assert (lines[..., 2].min(), lines[..., 2].max()) == pytest.approx((-0.3, 0.5))
     assert lines[..., 0] == pytest.approx(3.0)
-    (line,) = _outline(Line(distance=3.0, direction=0.0), None)
+    (line,) = outline(Line(distance=3.0, direction=0.0))
     assert line == pytest.approx(np.array([(3, 1, 0), (3, -1, 0)]))
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.camera import View
+from actr3d.camera import Stand, View
 
 Places = NDArray[np.float64]
 """Points in the world [m], `(..., 3)`."""
@@ -46,10 +46,10 @@ def contours_of(view: View) -> Places:
     return np.array(lines).reshape(-1, 2, 3)
 
 
-def into_world(points: Places, heading: float, eye: Any) -> Places:
-    """Returns points of an upright frame in the world's, given where ahead is [rad] and where the eye is [m]."""
-    c, s = math.cos(heading), math.sin(heading)
-    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]) + np.asarray(eye)
+def into_world(points: Places, stand: Stand) -> Places:
+    """Returns points of an upright frame in the world's, given how the eye stands that is its origin."""
+    c, s = math.cos(stand.heading), math.sin(stand.heading)
+    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]) + np.array(stand[:3])
 
 
 def _tangent(part: Any, fov: float, view: View) -> Any:

@@ -9,17 +9,15 @@ import mujoco
 import numpy as np
 from mujoco import MjData
 
-from actr3d.camera import CameraParameters, glance
-from actr3d.camera.sense import Sight
+from actr3d.camera import CameraParameters, Sight, glance, stand_of
 from actr3d.clock import microseconds
 from actr3d.simulation import Simulation
-from actr3d.vision import Vision
+from actr3d.vision import visions
 from actr3d.world.body import Body
-from actr3d.world.frames import heading_of
 from workbench.curves import INTEGRATION
 from workbench.worker.contours import contours_of, into_world
 from workbench.worker.past import Past
-from workbench.worker.sightings import Sightings, Stand
+from workbench.worker.sightings import told_sightings
 
 PATH_STEP = 50_000
 """A path has a point for each so long a time [us]; or fewer, of a long run."""
@@ -33,7 +31,7 @@ class Drawings:
     """Tells by kind and body what is drawn of the present.
 
     `frustum`: the fields of view [rad], across and up; `edges`: lines in the world, as 4-byte numbers `(n, 2, 3)` [m]; `features`: see
-    `Sightings`; `path`: where the body's root was on the floor [m]; `posture`: targets of joints by where they are in `qpos`.
+    `told_sightings`; `path`: where the body's root was on the floor [m]; `posture`: targets of joints by where they are in `qpos`.
 
     Args:
         simulation: The run.
@@ -44,7 +42,6 @@ class Drawings:
         self._simulation = simulation
         self._past = past
         self._data = MjData(simulation.world.mj_model)
-        self._sightings = Sightings(self._stand)
         self._paths: dict[str, list[tuple[int, float, float]]] = {}
 
     def told(self, kinds: Collection[str]) -> dict[str, Any]:
@@ -68,11 +65,9 @@ class Drawings:
     def _parameters(self, name: str, body: Body) -> CameraParameters:
         """Returns how a mind looks: as it has first looked, or as its vision is going to."""
         looked = next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), None)
-        return looked or next((CameraParameters.from_mapping(vision._camera) for vision in self._visions(name)), CameraParameters())
-
-    def _visions(self, name: str) -> list[Vision]:
         mind = self._simulation.minds.get(name)
-        return [] if mind is None else [part for part in mind._tree() if isinstance(part, Vision)]
+        own = () if mind is None else visions(mind)
+        return looked or next((vision.eyesight for vision in own), CameraParameters())
 
     def _fields(self, name: str, body: Body) -> list[float]:
         parameters = self._parameters(name, body)
@@ -80,29 +75,19 @@ class Drawings:
 
     def _edges(self, name: str, body: Body) -> bytes:
         view = glance(body, self._parameters(name, body))
-        return into_world(NEARER * contours_of(view), *_standing(body, body.world.mj_data)).astype(np.float32).tobytes()
+        return into_world(NEARER * contours_of(view), stand_of(body, body.world.mj_data)).astype(np.float32).tobytes()
 
     def _features(self) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for name in self._simulation.world.bodies:
-            found[name] = [told for vision in self._visions(name) for told in self._sightings.told(name, vision)]
-        return found
+        minds = self._simulation.minds
+        bodies = self._simulation.world.bodies
+        return {name: told_sightings(minds[name], body) if name in minds else [] for name, body in bodies.items()}
 
-    def _stand(self, name: str, time: int) -> Stand | None:
-        """Returns how a body's eye stood at the end of a tick."""
-        body = self._simulation.world.bodies[name]
-        state = self._past.at(time // microseconds(self._simulation.period))
-        if state is None or body.eye is None:
-            return None
-        self._pose(state)
-        return _standing(body, self._data)
+    # -- the way
 
     def _pose(self, state: bytes) -> None:
         model = self._simulation.world.mj_model
         mujoco.mj_setState(model, self._data, np.frombuffer(state), INTEGRATION)
         mujoco.mj_kinematics(model, self._data)
-
-    # -- the way
 
     def _walked(self) -> dict[str, list[list[float]]]:
         """Returns the ways up to the present; what is known of them is kept, and goes on from there."""
@@ -125,13 +110,6 @@ class Drawings:
     def cut(self, tick: int) -> None:
         """Forgets the ways after a tick."""
         self._paths = {name: [point for point in path if point[0] <= tick] for name, path in self._paths.items()}
-
-
-def _standing(body: Body, data: Any) -> Stand:
-    """Returns how a body's eye stands in some data, whose geometry is up to date."""
-    assert body.eye is not None
-    site = mujoco.mj_name2id(body.world.mj_model, mujoco.mjtObj.mjOBJ_SITE, body.eye)
-    return Stand(heading_of(data.xmat[body.root]), data.site_xpos[site].copy())
 
 
 def _targets(body: Body) -> list[list[float]]:

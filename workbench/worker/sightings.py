@@ -1,68 +1,38 @@
-"""What a mind's vision has found last, put into the world: where each feature is, what is measured of it, and its outline."""
+"""What a mind's vision has found last, as it is drawn in the world: each feature's outline, and what was measured of it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from itertools import groupby, islice
+from typing import Any
 
 import numpy as np
 
+from actr3d.actr.model import Model
 from actr3d.camera import View
-from actr3d.vision import Feature, Obstacle, Opening, Vision
+from actr3d.vision import Feature, Obstacle, Opening, Sighting, sightings
+from actr3d.world.body import Body
 from workbench.worker.contours import Places, into_world, points_of
 
 MOST = 24
 """So many features of one search are told of."""
 DIAMOND = 0.08
 """Half the height of the mark of a feature that has no size [m]."""
-UP = np.array((0.0, 0.0, 1.0))
+LEAST = 0.01
+"""An obstacle that has no height is drawn as high as this [m]."""
 
 
-class Stand(NamedTuple):
-    """How an eye stood."""
-
-    heading: float
-    """Where ahead was for its body [rad]."""
-    place: Any
-    """Where the eye was [m]."""
-
-
-class Sightings:
-    """Tells the features of each module's last searches in the world, where the eye was when it saw them.
-
-    Args:
-        stand: Returns how the eye of a body stood at a time [us]; None where that is not known any more.
-    """
-
-    def __init__(self, stand: Callable[[str, int], Stand | None]) -> None:
-        self._stand = stand
-        self._gaps: dict[Any, Places | None] = {}
-        """The edges of openings by when and where they were seen: their views are gone soon."""
-
-    def told(self, body: str, vision: Vision) -> list[dict[str, Any]]:
-        """Returns the features that one module has noticed last: `text`, `place`, `lines`, and whether it `chosen` it."""
-        told: list[dict[str, Any]] = []
-        fresh: dict[Any, Places | None] = {}
-        for search in vision._last.values():
-            stand = self._stand(body, search.seen)
-            if stand is None:
-                continue
-            for number, feature in enumerate(search.noticed[:MOST]):
-                key = body, search.seen, feature.called(), feature.key, feature.direction
-                if isinstance(feature, Opening):
-                    fresh[key] = self._gaps[key] if key in self._gaps else _edges(feature, _view(vision, search.seen))
-                lines = into_world(_outline(feature, fresh.get(key)), *stand)
-                told.append(
-                    {
-                        "text": _text(feature),
-                        "place": lines[0].mean(axis=0).tolist(),
-                        "lines": lines.tolist(),
-                        "chosen": number == search.chosen,
-                    }
-                )
-        self._gaps = {key: value for key, value in self._gaps.items() if key[0] != body} | fresh
-        return told
+def told_sightings(mind: Model, body: Body) -> list[dict[str, Any]]:
+    """Returns the features that a mind's last searches have noticed: `text`, `place`, `lines`, and whether it has `chosen` it."""
+    told: list[dict[str, Any]] = []
+    for _, search in groupby(sightings(mind, body), key=lambda one: (one.module, one.bottom_up)):
+        found = list(islice(search, MOST))
+        points = points_of(found[0].view)
+        for sighting in found:
+            lines = _outline(sighting, points)
+            place = lines[0].mean(axis=0).tolist()
+            told.append({"text": _text(sighting.feature), "place": place, "lines": lines.tolist(), "chosen": sighting.chosen})
+    return told
 
 
 def _text(feature: Feature) -> str:
@@ -74,67 +44,53 @@ def _text(feature: Feature) -> str:
     return f"{feature.called()} {size}" if isinstance(feature, Opening) else f"{feature.called()} {size}, {distance}"
 
 
-def _view(vision: Vision, seen: int) -> View | None:
-    """Returns what a module saw at a time [us], as it was misjudged, where it has that still."""
-    looks = vision._looks
-    return next((look.view for look in (looks._now, looks._before) if look is not None and look.time == seen), None)
+def _outline(sighting: Sighting, points: Places) -> Places:
+    """Returns the lines that show a feature, `(n, 2, 3)`; the first is the one that is measured.
+
+    Of an opening: across it, and its sides. Where its edges are not found, it is drawn square to the line of sight. Of an obstacle:
+    upright, at its nearest point. Of what a model's own detectors find: see `_frame`.
+
+    Args:
+        sighting: What was noticed.
+        points: Those of its view.
+    """
+    upper_left, upper_right, lower_right, lower_left = np.array(sighting.corners)
+    if isinstance(sighting.feature, Obstacle):
+        lower, upper = (lower_left + lower_right) / 2, (upper_left + upper_right) / 2
+        upper[2] = max(upper[2], lower[2] + LEAST)
+        return np.array([[lower, upper]])
+    if not isinstance(sighting.feature, Opening):
+        return _frame(sighting)
+    sides = np.array([[lower_left, upper_left], [lower_right, upper_right]])
+    edges = _edges(sighting.feature, sighting.view, points)
+    if edges is not None:
+        sides[..., :2] = into_world(edges, sighting.stood)[:, None, :2]
+    return np.array([sides.mean(axis=1), *sides])
 
 
-def _edges(opening: Opening, view: View | None) -> Places | None:
-    """Returns the places of the left and the right edge between which an opening's middle was measured, `(2, 3)`."""
-    if view is None:
-        return None
-    points, labels, rows = points_of(view), view.extents["label"], view.extents["row"]
+def _frame(sighting: Sighting) -> Places:
+    """Returns a frame as wide and as high as a feature says that it is; a line where it says one of these, a small diamond where none."""
+    corners = np.array(sighting.corners)
+    wide, high = bool((corners[0] != corners[1]).any()), bool(corners[0, 2] > corners[2, 2])
+    if wide != high:
+        return np.array([[corners[0], corners[2]]])
+    if not wide:
+        way = sighting.stood.heading + sighting.feature.direction
+        up, aside = np.array((0.0, 0.0, DIAMOND)), DIAMOND * np.array((-math.sin(way), math.cos(way), 0.0))
+        corners = corners.mean(axis=0) + np.array((up, aside, -up, -aside))
+    return np.stack((corners, np.roll(corners, -1, axis=0)), axis=1)
+
+
+def _edges(opening: Opening, view: View, points: Places) -> Places | None:
+    """Returns the places of the left and the right edge between which an opening's middle was measured, from the eye, `(2, 3)`."""
+    labels, rows = view.extents["label"], view.extents["row"]
     lefts, rights = np.flatnonzero(labels == opening.left), np.flatnonzero(labels == opening.right)
     one, other = (index.ravel() for index in np.meshgrid(lefts, rights))
     same = rows[one] == rows[other]
     one, other = one[same], other[same]
     if not len(one):
         return None
-    off = (points[one, 1, :2] + points[other, 0, :2]) / 2 - _at(opening)[:2]
+    middle = opening.distance * np.array((math.cos(opening.direction), math.sin(opening.direction)))
+    off = (points[one, 1, :2] + points[other, 0, :2]) / 2 - middle
     best = int(np.argmin(np.einsum("ij,ij->i", off, off)))
     return np.stack((points[one[best], 1], points[other[best], 0]))
-
-
-def _at(feature: Feature) -> Places:
-    return np.array((feature.distance * math.cos(feature.direction), feature.distance * math.sin(feature.direction), 0.0))
-
-
-def _outline(feature: Feature, edges: Places | None) -> Places:
-    """Returns the lines that show a feature, `(n, 2, 3)`, from the eye; the first is the one that is measured.
-
-    Of an opening: across it, and its sides. Where its edges are not known any more, it is drawn square to the line of sight. Of an
-    obstacle: upright, at its nearest point. Of what a model's own detectors find: see `_frame`.
-    """
-    middle = _at(feature)
-    top, bottom = (_finite(getattr(feature, name, 0.0)) for name in ("top", "bottom"))
-    if isinstance(feature, Obstacle):
-        return np.array([[middle + bottom * UP, middle + max(top, bottom + 0.01) * UP]])
-    if not isinstance(feature, Opening):
-        return _frame(feature)
-    half = feature.width / 2 * np.array((-math.sin(feature.direction), math.cos(feature.direction), 0.0))
-    left, right = (middle + half, middle - half) if edges is None else edges * (1, 1, 0)
-    level = (top + bottom) / 2 * UP
-    sides = [[edge + bottom * UP, edge + top * UP] for edge in (left, right)]
-    return np.array([[left + level, right + level], *sides])
-
-
-def _frame(feature: Feature) -> Places:
-    """Returns a frame as wide and as high as a feature says that it is, square to the line of sight; of one that says neither, a
-    small diamond where it is."""
-    middle, aside = _at(feature), np.array((-math.sin(feature.direction), math.cos(feature.direction), 0.0))
-    half = _finite(getattr(feature, "width", 0.0)) / 2
-    height = _finite(getattr(feature, "height", 0.0)) / 2
-    top = _finite(getattr(feature, "top", height))
-    bottom = _finite(getattr(feature, "bottom", -height))
-    if half <= 0 and top <= bottom:
-        corners = [middle + DIAMOND * way for way in (UP, aside, -UP, -aside)]
-    elif half <= 0 or top <= bottom:
-        return np.array([[middle + half * aside + top * UP, middle - half * aside + bottom * UP]])
-    else:
-        corners = [middle + side * half * aside + level * UP for side, level in ((1, top), (-1, top), (-1, bottom), (1, bottom))]
-    return np.array(list(zip(corners, [*corners[1:], corners[0]], strict=True)))
-
-
-def _finite(value: Any) -> float:
-    return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else 0.0

@@ -1,4 +1,4 @@
-"""`python -m workbench.replay RECORDING FILE` writes the replay of a recording; the server runs it in a process of its own."""
+"""`python -m workbench.html_replay RECORDING FILE` writes the replay of a recording; the server runs it in a process of its own."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from actr3d.errors import Actr3dError
-from workbench.replay.make import write_replay
+from workbench.html_replay.make import write_replay
 
 if __name__ == "__main__":
     try:

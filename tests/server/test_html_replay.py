@@ -16,9 +16,9 @@ from actr3d.recording import Recorded
 from tests.server.desk import Desk
 from tests.server.test_overlays import LOOKING
 from tests.server.test_recorded_runs import recording
-from workbench.replay import make, shapes
-from workbench.replay.aside import ReplayError, replay_of
-from workbench.replay.make import write_replay
+from workbench.html_replay import make, shapes
+from workbench.html_replay.aside import ReplayError, replay_of
+from workbench.html_replay.make import write_replay
 
 EVIL = "</script><img src=x onerror=alert(1)><!--"
 PRINTS = f"from actr3d.actr import *\nprint('''{EVIL}''')\n"

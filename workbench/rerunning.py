@@ -31,7 +31,7 @@ class BusyError(Actr3dError):
     status = 409
 
 
-async def replay(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
+async def rerun(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
     """Returns whether every byte agrees (None where that cannot be told), and what the comparison says.
 
     Args:
@@ -47,12 +47,12 @@ async def replay(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, A
     mark = object()
     _going_on.add(mark)
     try:
-        return await _replay(path, left)
+        return await _rerun(path, left)
     finally:
         _going_on.discard(mark)
 
 
-async def _replay(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
+async def _rerun(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
     process = await asyncio.create_subprocess_exec(
         *(sys.executable, "-m", "actr3d.cli", "replay", str(path)),
         stdin=asyncio.subprocess.DEVNULL,

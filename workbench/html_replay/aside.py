@@ -44,7 +44,7 @@ async def replay_of(path: Path) -> Path:
 
 
 async def _make(path: Path, to: Path) -> None:
-    command = [sys.executable, "-m", "workbench.replay", str(path), str(to)]
+    command = [sys.executable, "-m", "workbench.html_replay", str(path), str(to)]
     quiet, pipe = asyncio.subprocess.DEVNULL, asyncio.subprocess.PIPE
     process = await asyncio.create_subprocess_exec(*command, stdin=quiet, stdout=quiet, stderr=pipe)
     try:

@@ -16,7 +16,7 @@ from actr3d.trace import TraceEvent
 from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import stride
-from workbench.replay.shapes import grounds_of, packed, poses_of, shapes_of
+from workbench.html_replay.shapes import grounds_of, packed, poses_of, shapes_of
 
 RATE = 30
 """About so many moments of each second of simulated time are shown; between them everything moves evenly."""
