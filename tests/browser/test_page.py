@@ -22,6 +22,8 @@ def test_run_step_and_the_aperture(page: Page) -> None:
     shows(page, "#time", "0.04 s")
     page.locator("#aperture").fill("90")
     shows(page, "#width", "90 cm *A/S 2.00")
+    open_tab(page, "Parameters")
+    expect(page.get_by_label("width", exact=True)).to_have_value("0.9")
     scene = page.frame_locator("iframe[title='3D view']")
     expect(scene.locator("canvas").first).to_be_visible()
     open_tab(page, "Productions")
