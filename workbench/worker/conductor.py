@@ -6,7 +6,7 @@ import threading
 from collections import deque
 from contextlib import suppress
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any
 
 import msgspec
 
@@ -17,10 +17,11 @@ from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.worker.bounds import bounded_json, event_json
+from workbench.worker.conducted import Conducted
 from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.trouble import told_of
-from workbench.worker.watch import Touches, Watch
+from workbench.worker.watch import Watch
 
 SHOWN = 1 / 30
 """How often a run that goes on is shown [s]; ours, as often as a page can be drawn with ease."""
@@ -34,66 +35,6 @@ LATE = 0.25
 
 class Leaving(EndOfRun):
     """Ends a run because the worker is to leave; no model catches it by `except Exception`."""
-
-
-class Conducted(Protocol):
-    """What is conducted."""
-
-    @property
-    def clock(self) -> int:
-        """How much time has passed since its start [us]."""
-        ...
-
-    @property
-    def furthest(self) -> int:
-        """How far it has come [us]."""
-        ...
-
-    @property
-    def period(self) -> int:
-        """A tick [us]."""
-        ...
-
-    @property
-    def trace(self) -> Trace | None:
-        """The trace up to now."""
-        ...
-
-    def do(self, command: Any) -> None:
-        """Does what a user wants of the run itself.
-
-        Raises:
-            Exception: Says why it cannot be done.
-        """
-        ...
-
-    def answer(self, question: Any) -> Any:
-        """Returns what is asked, as plain values.
-
-        Raises:
-            Exception: Says why it cannot be told.
-        """
-        ...
-
-    def scene(self) -> tuple[bytes | None, dict[str, float]]:
-        """Returns the physics' state, and how wide apertures are."""
-        ...
-
-    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns what overlays show of the present, by kind."""
-        ...
-
-    def result(self) -> dict[str, Any] | None:
-        """Returns what was measured of the run, if anything was."""
-        ...
-
-    def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns what all parts are like."""
-        ...
-
-    def touches(self) -> Touches:
-        """Returns what touches a body now, the ground left out."""
-        ...
 
 
 class Conductor:
