@@ -46,8 +46,10 @@ if pid == 0:
         time.sleep(1000)
     os._exit(0)
 os.waitpid(pid, 0)
+while not (os.path.exists({mark!r}) and os.path.getsize({mark!r})):
+    time.sleep(0.01)
 """
-"""A model that hides a process as daemons do."""
+"""A model that hides a process as daemons do, and goes on once that is there: when it ends, what it has left is ended with it."""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux lets a process adopt those whose parents have ended")
