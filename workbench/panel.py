@@ -28,6 +28,8 @@ class Panel:
 
     def __init__(self, gui: Any, apertures: list[str], look: Look, said: Callable[[Any], None]) -> None:
         self._said = said
+        self.apertures = apertures
+        """What it was made for."""
         gui.reset()
         gui.set_panel_label("ACT-R 3D")
         self._time = gui.add_markdown("")

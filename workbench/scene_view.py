@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import secrets
 import threading
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -47,6 +48,7 @@ class SceneView:
         self._look = session.look
         self._server: Any = None
         self._scene: _Drawn | None = None
+        self._panel: Panel | None = None
         self.ready = asyncio.Event()
         """Set once there is something to see."""
         self.over = False
@@ -114,7 +116,13 @@ class SceneView:
                 self._server.on_client_disconnect(self._wake)
             with self._server.atomic():
                 self._server.scene.reset()
-                self._scene = _Drawn(self._server, facts, self._look, self._said)
+                self._scene = _Drawn(self._server, facts, self._look, self._panel_for)
+
+    def _panel_for(self, apertures: list[str]) -> Panel:
+        """Returns the panel: that of the run before, where the same can be said to this one."""
+        if self._panel is None or self._panel.apertures != apertures:
+            self._panel = Panel(self._server.gui, apertures, self._look, self._said)
+        return self._panel
 
     def _stop(self) -> None:
         with self._lock, contextlib.suppress(Exception):
@@ -154,10 +162,10 @@ class _Drawn:
         server: Viser's server.
         facts: What is known of the run; it has a scene.
         look: How it is looked at.
-        said: Takes what users do in the panel.
+        panel: Returns viser's own panel for the apertures that there are.
     """
 
-    def __init__(self, server: Any, facts: Facts, look: Look, said: Any) -> None:
+    def __init__(self, server: Any, facts: Facts, look: Look, panel: Callable[[list[str]], Panel]) -> None:
         import msgspec
         from mjviser import ViserMujocoScene
 
@@ -173,7 +181,7 @@ class _Drawn:
         self._overlays: dict[OverlayName, Overlay] = make_overlays(server, self._scene, self._model, world, look)
         eyes: Any = self._overlays["frustum"]
         self.cameras = Cameras(server, self._model, eyes)
-        self._panel = Panel(server.gui, world["apertures"], look, said)
+        self._panel = panel(list(world["apertures"]))
         self._look: Look | None = None
 
     def asked(self, look: Look) -> tuple[OverlayName, ...]:

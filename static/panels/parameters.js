@@ -35,9 +35,10 @@ async function follow({ id, model, run, stale }) {
 
 /** Returns the value that a parameter has in the run; of the only doorway's width the world's, which the slider changes, too. */
 function inForce({ name, live, default: otherwise }) {
+  const begun = session.value?.parameters?.[name];
   const widths = Object.values(state.value?.apertures ?? {});
-  if (live?.word === "aperture" && widths.length === 1) return Number(widths[0].toFixed(4));
-  const value = told.value[name] ?? session.value?.parameters?.[name];
+  if (begun !== undefined && live?.word === "aperture" && widths.length === 1) return Number(widths[0].toFixed(4));
+  const value = told.value[name] ?? begun;
   return value === undefined ? otherwise : value;
 }
 
