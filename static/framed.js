@@ -1,60 +1,69 @@
 // What is put before viser's own script, in its page: it goes on connecting again when it is not in front, too; `?panel=hidden` hides its
-// panel and notices, for a page that has controls of its own around it; and it goes easy on a machine without a graphics card.
+// panel and notices, for a page that has controls of its own around it; and it goes easy on a machine without a graphics card. It is no
+// module, for those may run after viser has read its address.
 
-import { Rest } from "./rest.js";
+{
+  document.hasFocus = () => true;
 
-document.hasFocus = () => true;
-
-const asked = new URLSearchParams(location.search);
-if (asked.get("panel") === "hidden") {
-  const style = document.createElement("style");
-  style.textContent = ".mantine-Paper-root, .mantine-Notification-root { display: none !important; }";
-  document.documentElement.append(style);
-}
-
-/** Whether the processor draws, in place of a graphics card. */
-function drawnBySoftware() {
-  const gl = document.createElement("canvas").getContext("webgl");
-  const told = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
-}
-
-// Half of what a picture costs without a graphics card is its shadows.
-if (!asked.has("websocket") && drawnBySoftware()) {
-  asked.set("websocket", `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname.replace(/\/$/, "")}?shadows=off`);
-  history.replaceState(null, "", `?${asked}`);
-}
-
-// While the page around it says that the run goes as fast as it can, it rests between pictures that take long.
-const ask = requestAnimationFrame.bind(window);
-const forget = cancelAnimationFrame.bind(window);
-const rest = new Rest(ask);
-const waiting = new Map();
-let last = 0;
-
-addEventListener("message", ({ origin, data }) => {
-  if (origin === location.origin && typeof data?.hurried === "boolean") rest.hurried = data.hurried;
-});
-
-window.requestAnimationFrame = (draw) => {
-  last += 1;
-  const mine = last;
-  function now(time) {
-    if (rest.left > 0) {
-      waiting.set(mine, ask(now));
-      return;
-    }
-    waiting.delete(mine);
-    rest.drawing();
-    draw(time);
+  const asked = new URLSearchParams(location.search);
+  if (asked.get("panel") === "hidden") {
+    const style = document.createElement("style");
+    style.textContent = ".mantine-Paper-root, .mantine-Notification-root { display: none !important; }";
+    document.documentElement.append(style);
   }
-  waiting.set(mine, ask(now));
-  return mine;
-};
 
-window.cancelAnimationFrame = (mine) => {
-  forget(waiting.get(mine));
-  waiting.delete(mine);
-};
+  /** Whether the processor draws, in place of a graphics card. */
+  function drawnBySoftware() {
+    const gl = document.createElement("canvas").getContext("webgl");
+    const told = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  }
+
+  // Half of what a picture costs without a graphics card is its shadows.
+  if (!asked.has("websocket") && drawnBySoftware()) {
+    asked.set("websocket", `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname.replace(/\/$/, "")}?shadows=off`);
+    history.replaceState(null, "", `?${asked}`);
+  }
+
+  // While the page around it says that the run goes as fast as it can, it rests between pictures that take long.
+  const ask = requestAnimationFrame.bind(window);
+  const forget = cancelAnimationFrame.bind(window);
+  const waiting = new Map();
+  let rest = null;
+  let hurried = false;
+  let last = 0;
+
+  import("./rest.js").then(({ Rest }) => {
+    rest = new Rest(ask);
+    rest.hurried = hurried;
+  });
+
+  addEventListener("message", ({ origin, data }) => {
+    if (origin !== location.origin || typeof data?.hurried !== "boolean") return;
+    hurried = data.hurried;
+    if (rest) rest.hurried = hurried;
+  });
+
+  window.requestAnimationFrame = (draw) => {
+    last += 1;
+    const mine = last;
+    function now(time) {
+      if (rest?.left > 0) {
+        waiting.set(mine, ask(now));
+        return;
+      }
+      waiting.delete(mine);
+      rest?.drawing();
+      draw(time);
+    }
+    waiting.set(mine, ask(now));
+    return mine;
+  };
+
+  window.cancelAnimationFrame = (mine) => {
+    forget(waiting.get(mine));
+    waiting.delete(mine);
+  };
+}

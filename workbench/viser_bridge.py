@@ -23,7 +23,7 @@ MOST_VIEWS = 32
 """So many 3D views may be open at once."""
 
 
-FRAMED = '<script type="module" src="/static/framed.js"></script>'
+FRAMED = '<script src="/static/framed.js"></script>'
 """What is put into viser's page."""
 
 

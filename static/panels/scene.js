@@ -48,10 +48,11 @@ export function Scene() {
   const shown = Boolean(told?.world && told.scene);
   const address = useRef("about:blank");
   const frame = useRef(null);
-  useEffect(() => frame.current.contentWindow.postMessage({ hurried: hurried.value }, location.origin), [hurried.value]);
+  const tell = () => frame.current.contentWindow.postMessage({ hurried: hurried.peek() }, location.origin);
+  useEffect(tell, [hurried.value]);
   if (shown) address.current = `/viser/${told.id}/?panel=hidden${dark.value ? "&darkMode" : ""}`;
   return html`<section id="scene" class="scene" aria-label="3D view">
-    <iframe ref=${frame} title="3D view" src=${address.current} hidden=${!shown}></iframe>
+    <iframe ref=${frame} onLoad=${tell} title="3D view" src=${address.current} hidden=${!shown}></iframe>
     ${shown ? html`<${Switches} />` : html`<div class="empty" role="status"><p>${missing(told)}</p>${awaited(told) ? html`<progress aria-label="Loading" />` : null}</div>`}
     <${RetinaInset} />
   </section>`;
