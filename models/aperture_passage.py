@@ -16,11 +16,12 @@ width starts a turn of 240 degrees a second, 120 with the torso alone, whatever 
 of its vision, and turns on where that is no. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one each 175 ms, which
 is where the original's own means lie, and why a fast walker, who has time for fewer, turns less. It turns by about 18 degrees
 before any doorway. Two numbers of this are not facts but inferred from these means: that it turns in pieces, and how deep the trunk is.
-`--variant human` (the default) looks first: it turns below 1.30 times its width only, from 1.2 s before the wall on, and the faster it
-walks the faster it turns.
+`--variant human` (the default) looks first: it turns below 1.30 times its width only, from 1.6 s before the wall on, hips and legs with
+the shoulders, until there is as much room beside it as beside one who need not turn: 0.30 of its shoulders' width. The faster it walks
+the faster it turns. Its body is as much bigger as its shoulders are wider.
 
-What to expect: `--aperture 0.45` is passed with the shoulders turned by about 40 degrees, nothing is touched, and some 6 cm are left
-on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.35` is declined. The last lines say what
+What to expect: `--aperture 0.45` is passed with the body turned by about 45 degrees, nothing is touched, and 6 to 7 cm are left
+on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.25` is declined. The last lines say what
 the world measured.
 
 Try: `--condition fast`; `--variant replication --aperture 0.7`; `--margin 0`, and `--noise 0.05`.
@@ -41,11 +42,15 @@ from actr3d.world import Aperture, Floor, Mannequin, Scene
 
 WIDTHS = {"small": 0.404, "large": 0.484}
 SPEEDS = {("small", "normal"): 1.29, ("small", "fast"): 1.61, ("large", "normal"): 1.28, ("large", "fast"): 1.77}
-HEIGHT = 1.714
-"""[m]. Source: shoulders of 0.444 m, the mean of both groups, over 0.259, their part of the height (Drillis & Contini 1966)."""
+SHOULDERS, CHEST = 0.259, 0.563
+"""How wide shoulders are as a part of the height (Drillis & Contini 1966), and how deep the chest is as one of the shoulders' width:
+0.25 m (ANSUR II, 2012) at 0.444 m. So whoever has wider shoulders is bigger all over."""
 
-TORSO, CLAVICLE = 60, 20
-"""How far the torso and the shoulders on it turn [degrees]: 80 together. Source: the original's limits of 20 and 80 (human-data)."""
+TORSO, CLAVICLE, SIDEWAYS = 60, 20, 80
+"""How far the replication's torso and the shoulders on it turn, and how far a person does [degrees].
+Source: the original's limits of 20 and 80 (human-data)."""
+NECK = 60
+"""How far the head looks back over a turned body [degrees]; the eye does the rest. Source: the mannequin's limit."""
 BEARING = 19.6
 """What is further off the way ahead is no obstacle [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
 TIGHT = 1.03
@@ -123,28 +128,48 @@ class Arrival(Wait):
 class Pace(Model):
     """How fast it is to walk [m/s], which a user may change; None: as its condition says."""
 
-    def __init__(self):
-        self.wanted = self.kept = None
-
 
 class Shoulders(Model):
-    """Turns the shoulders against the legs, while the eye goes on looking ahead."""
+    """Turns torso and shoulders over legs that face the way they go, while the eye goes on looking ahead."""
 
-    def turn(self, part, torso_rate, clavicle_rate):
+    groups = "torso", "head", "left_shoulder", "right_shoulder"
+    posture = "rotate_torso"
+
+    def turn(self, part, rate):
         """Turns them to a part of all that they can be turned, to the side that was chosen [degrees/s]."""
         motor, angle = self.parent.motor, self.side * part
-        motor.rotate_torso(angle * TORSO, torso_rate)
-        motor.rotate("head", "yaw", -angle * TORSO, torso_rate)
-        motor.rotate("left_shoulder", "yaw", angle * CLAVICLE, clavicle_rate)
-        motor.rotate("right_shoulder", "yaw", angle * CLAVICLE, clavicle_rate)
+        motor.rotate_torso(angle * TORSO, rate)
+        motor.rotate("head", "yaw", -angle * TORSO, rate)
+        motor.rotate("left_shoulder", "yaw", angle * CLAVICLE, rate)
+        motor.rotate("right_shoulder", "yaw", angle * CLAVICLE, rate)
 
     def stop(self):
-        for group in ("torso", "head", "left_shoulder", "right_shoulder"):
+        for group in self.groups:
             self.parent.motor.stop(group)
 
+    def turned(self):
+        """Returns whether the torso is felt to be turned as far as it can be."""
+        return abs(float(self.parent.motor.torso_yaw_angle)) >= TORSO
+
+
+class WholeBody(Shoulders):
+    """Turns the shoulders with all of the body, hips and legs too, which go on the same way."""
+
+    groups = "stance", "head", "eye"
+    posture = "stance_yaw"
+
+    def turn(self, part, rate):
+        motor, angle, back = self.parent.motor, self.side * part, NECK / SIDEWAYS
+        motor.rotate("stance", "yaw", angle * SIDEWAYS, rate)
+        motor.rotate("head", "yaw", -angle * NECK, rate * back)
+        motor.rotate("eye", "yaw", angle * (NECK - SIDEWAYS), rate * (1 - back))
+
+    def turned(self):
+        return self.angle() >= SIDEWAYS
+
     def angle(self):
-        """Returns how far the torso is felt to be turned [degrees]."""
-        return abs(float(self.parent.motor.torso_yaw_angle))
+        """Returns how far the body is felt to be turned [degrees]."""
+        return abs(float(self.parent.motor.stance_yaw_angle))
 
 
 class Eyes(ACTR):
@@ -175,7 +200,7 @@ class Eyes(ACTR):
         near.walk(max(0, float(far) - NEAR), self.parent.speed)
 
     def turn(b_turn="do:turn"):
-        shoulders.turn(1, self.parent.torso_rate, self.parent.clavicle_rate)
+        shoulders.turn(1, self.parent.rate)
         b_turn.modify(do="ask")
 
     def ask(b_turn="do:ask", motor="width:?width"):
@@ -225,10 +250,10 @@ class EyesInPieces(Eyes):
 class EyesAtOnce(Eyes):
     """Turns on until an opening is found."""
 
-    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:False", near="state:!over"):
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:False", near="state:!over"):
         b_turn.modify(do="turn")
 
-    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="torso_busy:True", near="state:!over"):
+    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:True", near="state:!over"):
         b_turn.modify(do="ask")
 
     def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over"):
@@ -256,7 +281,6 @@ class Walker(SGOMS):
     DM = Memory(SGOMS.b_DM, latency=0)
     vision = Vision(b_visual, delay=0.05, bottom_up_delay=0.02, delay_sd=0.02)
     motor = Motor(memory=DM, size_grid=0.001, extreme_step=8)
-    shoulders = Shoulders()
     scan = Wait()
     way = Arrival()
     near = Arrival()
@@ -267,9 +291,6 @@ class Walker(SGOMS):
     def init():
         vision.distance_noise = noise
         shoulders.side = 1
-        pace.kept = self.given_speed
-        if pace.wanted is None:  # else a user was faster
-            pace.wanted = pace.kept
         b_context.set("way:open")
         b_plan_unit.set("planning_unit:pass_doorway")
 
@@ -278,17 +299,17 @@ class Walker(SGOMS):
     def swing_out(b_unit_task="unit_task:learn state:start", motor="busy:False"):
         b_method.set("method:swing left:4")
         b_unit_task.modify(state="out")
-        shoulders.turn(1, 120, 120)
+        shoulders.turn(1, swing)
 
     def swing_back(b_unit_task="unit_task:learn state:out", motor="busy:False"):
         b_unit_task.modify(state="back")
-        shoulders.turn(0, 120, 120)
+        shoulders.turn(0, swing)
 
     def swing_to_the_other_side(b_unit_task="unit_task:learn state:back", b_method="left:?left!1", motor="busy:False"):
         b_method.modify(left=int(left) - 1)
         b_unit_task.modify(state="out")
         shoulders.side = -shoulders.side
-        shoulders.turn(1, 120, 120)
+        shoulders.turn(1, swing)
 
     def know(b_unit_task="unit_task:learn state:back", b_method="left:1", motor="busy:False"):
         b_unit_task.modify(state="finished")
@@ -302,7 +323,7 @@ class Walker(SGOMS):
 
     def remember(b_unit_task="unit_task:judge state:looking", vision="busy:False error:True"):
         b_unit_task.modify(state="remembering")
-        DM.request(f"posture:rotate_torso end:done extreme:{'maximum' if shoulders.side > 0 else 'minimum'}")
+        DM.request(f"posture:{shoulders.posture} end:done extreme:{'maximum' if shoulders.side > 0 else 'minimum'}")
 
     def imagine(b_unit_task="unit_task:judge state:remembering", b_DM="posture:? width:?width"):
         b_unit_task.modify(state="imagining")
@@ -352,7 +373,7 @@ class Walker(SGOMS):
         b_turn.set("watch:no")
         b_unit_task.modify(state="turning")
         shoulders.stop()
-        shoulders.turn(0, 120, 120)
+        shoulders.turn(0, swing)
         motor.stop("legs")
 
     def stand(b_unit_task="unit_task:leave state:turning", motor="busy:False"):
@@ -369,50 +390,62 @@ class Replication(Walker):
     """The original ACT-R 3D's model. Source of all numbers: facts about its code (human-data)."""
 
     eyes = EyesInPieces()
+    shoulders = Shoulders()
     answer = "turn"
     passable = 1.139
-    torso_rate = clavicle_rate = 120.0
+    rate = swing = 120
 
     def wanted(self, width):
         """Returns how wide an opening must be for it not to turn further [m]."""
-        fits = self.b_turn["way"] == "clear" or self.shoulders.angle() >= TORSO
+        fits = self.b_turn["way"] == "clear" or self.shoulders.turned()
         return (TIGHT if fits else 1 + self.margin) * width
 
 
 class Human(Walker):
     """A model of people.
 
-    It has three numbers that are not measured: when it reacts, how fast it turns, and up to which ratio. The last two
-    leave 6 to 8 cm on each side (Higuchi), and let it turn more when it is fast.
+    It wants the same part of its shoulders' width as room, whatever its posture. It has three numbers that are not measured: when it
+    reacts, how fast it turns, and by how much it turns on. The last two let it turn more when it is fast.
     """
 
     eyes = EyesAtOnce()
+    shoulders = WholeBody()
     answer = "ask"
     passable = 1.16
+    swing = 120 * SIDEWAYS / TORSO  # to learn takes it no longer than the replication
 
     def go_at(self, speed):
         """Takes a speed for its own [m/s], with what depends on it."""
         self.speed = speed
-        self.radius = max(REACTION * speed, RADIUS * self.shoulder_width)
-        self.torso_rate = TURNING * speed * TORSO / (TORSO + CLAVICLE)
-        self.clavicle_rate = TURNING * speed * CLAVICLE / (TORSO + CLAVICLE)
+        self.radius = max(REACTION * speed, FAR)
+        self.rate = TURNING * speed
 
     def wanted(self, width):
         """Returns how wide an opening must be for it not to turn further [m]."""
-        angle = self.shoulders.angle()
-        return (TIGHT if angle >= TORSO else ENOUGH if angle > 1 else 1 + self.margin) * width
+        if self.shoulders.turned():
+            return TIGHT * width
+        if self.shoulders.angle() <= 1:
+            less = 0
+        else:  # what was enough is so too where it is seen a little narrower
+            less = 2 * ON if self.b_turn["way"] == "clear" else ON
+        return max(TIGHT * width, width + (self.margin - less) * self.shoulder_width)
 
 
-REACTION = 1.2
-"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as shoulders turn. Who walks so
-slowly that this is nearer than `RADIUS` would have the doorway's edges beside it, out of sight, before it reacts: `RADIUS` counts then."""
-TURNING = 93.0
-"""How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 120 degrees a second at 1.29 m/s, as the original's
-torso (human-data). That it grows with the speed is ours: people turn more when they are fast."""
-ENOUGH = 1.21
-"""Up to which ratio a person goes on turning. Ours: of what leaves 6 to 8 cm on each side (Higuchi, human-data)."""
+REACTION = 1.6
+"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as it can. Who walks so
+slowly that this is nearer than `FAR` would not have done so, or have the doorway's edges beside it, out of sight: `FAR` counts then."""
+FAR = 2.0
+"""How far ahead people look at least [m]. Ours: 1.3 m for turning as far as it can (`TURNING`), `NEAR`, and 0.2 for reacting."""
+TURNING = 62.0
+"""How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 80 degrees a second at 1.29 m/s. Ours: enough for
+turning sideways within `REACTION`. That it grows with the speed is ours, too: people turn more when they are fast."""
+ON = 0.055
+"""By which part of the shoulders' width the room still grows after it is seen to be enough, since a person who turns does not stop
+at once. Ours."""
 RADIUS = 3.0
-"""Within how many times its width an obstacle alerts the replication; people never look less far ahead. Source: human-data."""
+"""Within how many times its width an obstacle alerts the replication. Source: human-data."""
+HEIGHT = 1.714
+"""How tall the replication's body is, in both groups [m]. Source: shoulders of 0.444 m, the mean of both, over `SHOULDERS`."""
 TRUNK = 0.11
 """How deep the replication's trunk is [m]. Ours: of what fits the original's means best; how deep it was is not known."""
 
@@ -420,19 +453,22 @@ TRUNK = 0.11
 def body_of(parameters: Parameters) -> Mannequin:
     """Returns who walks."""
     p = parameters
-    trunk = {} if p.variant == "human" else {"trunk": "box", "depth": TRUNK}
-    return Mannequin(name="walker", height=HEIGHT, shoulder_width=p.shoulder_width or WIDTHS[p.group], **trunk)
+    width = p.shoulder_width or WIDTHS[p.group]
+    if p.variant == "human":
+        return Mannequin(name="walker", height=width / SHOULDERS, shoulder_width=width, depth=CHEST * width, sideways=True)
+    return Mannequin(name="walker", height=HEIGHT, shoulder_width=width, trunk="box", depth=TRUNK)
 
 
 def mind_of(parameters: Parameters) -> Walker:
     """Returns the mind of who walks."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "given_speed": p.speed}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise}
     if p.variant == "human":
         mind = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:
         mind = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
+    mind.pace.wanted = mind.pace.kept = p.speed
     mind.go_at(p.speed or mind.usual)
     return mind
 

@@ -65,6 +65,25 @@ def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, 
     assert wider == pytest.approx(0, abs=0.1)
 
 
+@pytest.mark.parametrize(("group", "least", "most"), [("small", 0.055, 0.075), ("large", 0.06, 0.09)])
+@pytest.mark.parametrize("aperture", [0.4, 0.45])
+def test_hips_that_turn_leave_the_margin_where_it_is_narrow(model: Any, group: str, least: float, most: float, aperture: float) -> None:
+    """0.30 of the shoulders' width, as before wider doorways (human-data); hips that face ahead would leave 5 cm and less at 40 cm."""
+    results = [passed(model, seed, group=group, aperture=aperture) for seed in range(1, 5)]
+    margin = sum((result.clearance_left_m or 0) + (result.clearance_right_m or 0) for result in results) / 8
+    assert least < margin < most
+
+
+def test_hips_turn_with_the_shoulders_and_the_eye_looks_ahead(model: Any) -> None:
+    simulation = built(model, aperture=0.36, group="large", noise=0.0)
+    body = simulation.world.bodies["walker"]
+    simulation.run(until=lambda _: body.base.place[0] > 6.9)
+    turned = {joint: round(math.degrees(body.joints[f"{joint}_yaw"].position)) for joint in ("stance", "pelvis", "torso", "head", "eye")}
+    side = 1 if turned["stance"] > 0 else -1
+    assert turned == {"stance": side * 80, "pelvis": 0, "torso": 0, "head": -side * 60, "eye": -side * 20}
+    assert body.get("pose").heading == pytest.approx(0, abs=0.01)
+
+
 def test_wide_shoulders_turn_more_at_equal_width(model: Any) -> None:
     small, large = (angles(model, (0.45, 0.55), group=group, noise=0.0) for group in ("small", "large"))
     assert all(b > a + 5 for a, b in zip(small, large, strict=True))
@@ -75,9 +94,15 @@ def test_it_walks_at_the_speed_it_was_given(model: Any) -> None:
     assert passed(model, aperture=0.8, speed=0.9).speed_m_s == pytest.approx(0.9, abs=0.01)
 
 
+@pytest.mark.parametrize("speed", [0.3, 0.6, 0.9])
+def test_who_walks_slowly_has_turned_in_time_too(model: Any, speed: float) -> None:
+    """As far as it can, where it must: it used to stop before the wall where it had not done so in time."""
+    assert passed(model, aperture=0.37, group="large", speed=speed).wall_angle_deg == pytest.approx(80, abs=1)
+
+
 @pytest.mark.parametrize("speed", [0.1, 0.3])
 def test_who_walks_slowly_turns_in_time_too(model: Any, speed: float) -> None:
-    """1.2 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
+    """1.6 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
     assert (passed(model, aperture=0.4, speed=speed).wall_angle_deg or 0.0) > 30
 
 
@@ -89,8 +114,7 @@ def test_it_judges_that_it_can_pass_as_it_is_from_a_ratio_of_116_on(model: Any, 
     assert said in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("variant", ["human", "replication"])
-@pytest.mark.parametrize("aperture", [0.05, 0.3, 0.34])
+@pytest.mark.parametrize(("variant", "aperture"), [("human", 0.05), ("human", 0.25), ("replication", 0.05), ("replication", 0.34)])
 def test_it_declines_what_it_cannot_fit(model: Any, variant: str, aperture: float, capsys: Any) -> None:
     simulation = built(model, variant=variant, aperture=aperture)
     report = simulation.run()
@@ -106,11 +130,11 @@ def test_what_it_knows_of_its_width_it_has_learned(model: Any) -> None:
     simulation = built(model, aperture=0.5, noise=0.0)
     simulation.run(WALKING)
     memory = simulation.minds["walker"].DM
-    postures = [chunk for chunk in memory.dm if "torso_yaw" in chunk]
-    left = sorted({(chunk["torso_yaw"], chunk["width"]) for chunk in postures if chunk["torso_yaw"] > 5})
-    right = sorted({(-chunk["torso_yaw"], chunk["width"]) for chunk in postures if chunk["torso_yaw"] < -5})
-    assert min(len(left), len(right)) >= 7
-    assert (left[-1][0], right[-1][0]) == (60, 60)
+    postures = [chunk for chunk in memory.dm if "stance_yaw" in chunk]
+    left = sorted({(chunk["stance_yaw"], chunk["width"]) for chunk in postures if chunk["stance_yaw"] > 5})
+    right = sorted({(-chunk["stance_yaw"], chunk["width"]) for chunk in postures if chunk["stance_yaw"] < -5})
+    assert min(len(left), len(right)) >= 9
+    assert (left[-1][0], right[-1][0]) == (80, 80)
     assert left[0][1] > left[-1][1] + 0.05
 
 
@@ -187,7 +211,7 @@ def scene_with(model: Any, names: tuple[str, str, str], variant: str, width: flo
     floor, aperture, walker = names
     parameters = model.Parameters(variant=variant, aperture=width, group="large")
     body = model.body_of(parameters)
-    person = Mannequin(**{field: getattr(body, field) for field in ("height", "shoulder_width", "trunk", "depth")}, name=walker)
+    person = Mannequin(**{field: getattr(body, field) for field in ("height", "shoulder_width", "trunk", "depth", "sideways")}, name=walker)
     scene = Scene(parts=(Floor(name=floor), Aperture(name=aperture, width=width), person))
     simulation = Simulation(scene, {walker: lambda: model.mind_of(parameters)}, seed=1, trace="all")
     simulation.measure(Passage(walker, aperture))
@@ -264,7 +288,7 @@ def test_the_last_line_of_json_is_the_result(capsys: Any) -> None:
 
 
 def test_who_declines_ends_with_0(capsys: Any) -> None:
-    assert main(["run", str(FILE), "--aperture", "0.3", "--seed", "1"]) == 0
+    assert main(["run", str(FILE), "--aperture", "0.2", "--seed", "1"]) == 0
     assert capsys.readouterr().out.splitlines()[-1].startswith("declined after")
 
 
@@ -335,6 +359,13 @@ def test_a_speed_that_changes_before_it_walks_is_the_one_it_walks_at(model: Any)
     simulation.command("parameter", "walker.pace.wanted", 0.9)
     simulation.run(20)
     assert (simulation.result().outcome, simulation.result().speed_m_s) == ("passed", pytest.approx(0.9, abs=0.02))
+
+
+def test_a_speed_taken_back_before_it_walks_is_that_of_its_condition(model: Any) -> None:
+    simulation = built(model, aperture=0.7, speed=0.9)
+    simulation.command("parameter", "walker.pace.wanted", None)
+    simulation.run(20)
+    assert (simulation.result().outcome, simulation.result().speed_m_s) == ("passed", pytest.approx(1.29, abs=0.02))
 
 
 def test_a_run_in_which_the_speed_changed_goes_back_and_on_with_the_same_bytes(model: Any) -> None:

@@ -102,6 +102,18 @@ def with_angle(trial: Trial, angle: float, **other: Any) -> PassageResult:
     return replace(good(trial), wall_angle_deg=angle, peak_angle_deg=angle, **other)
 
 
+def with_margin(trial: Trial, room: float) -> PassageResult:
+    return replace(good(trial), clearance_left_m=room, clearance_right_m=room)
+
+
+def test_who_does_not_turn_has_no_margin() -> None:
+    """At wide apertures there is more room than anyone wants, which is no margin."""
+    findings = Findings(outcomes(lambda trial: with_margin(trial, 0.07 if good(trial).wall_angle_deg else 0.14)))
+    assert findings.margin("large", "fast", 0.45) == pytest.approx(0.07)
+    assert findings.margin("small", "normal", 0.7) is None
+    assert findings.untouched().met
+
+
 def test_a_model_of_people_meets_all_constraints() -> None:
     assert unmet(good) == []
 
@@ -117,6 +129,8 @@ BAD: dict[str, tuple[list[int], Callable[[Trial], PassageResult]]] = {
     ),
     "touches once": ([6], lambda trial: replace(good(trial), contacts=int(trial.number == trial.agent == 1 and trial.aperture == 0.4))),
     "leaves too little": ([6], lambda trial: replace(good(trial), clearance_left_m=0.03)),
+    "leaves too little where it is narrowest": ([6], lambda trial: with_margin(trial, 0.04 if trial.aperture == 0.4 else 0.07)),
+    "leaves too much where it turns least": ([6], lambda trial: with_margin(trial, 0.09 if trial.aperture == 0.6 else 0.07)),
     "stops": ([6], lambda trial: replace(good(trial), outcome="stopped") if trial.aperture == 0.4 else good(trial)),
 }
 
@@ -163,6 +177,9 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
     assert f"root mean square difference {rise:.2f} degrees" in told
     assert f"{57.69 + rise:.1f} (57.7)" in told
     assert told.count("\nmet ") == 8
+    turned = {(trial.group, trial.condition, trial.aperture) for trial in experiment("human", 5) if (good(trial).wall_angle_deg or 0) > 5}
+    assert told.split("human: angle")[1].count(" (7.0)") == len(turned)
+    assert "mean margin of who turned 7.0 cm at 40, 7.0 cm at 45, 7.0 cm at 50, 7.0 cm at 55, 7.0 cm at 60" in told
     assert "5 trials a cell; a trial takes 300 ms of one processor for 11.0 s simulated" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == code
     measured = json.loads(capsys.readouterr().out)

@@ -70,9 +70,32 @@ def test_it_weighs_what_it_is_given_with_its_load() -> None:
     assert world.mj_model.body("walker").subtreemass == near(64, abs=0.5)
 
 
-def test_every_joint_is_three_hinges_that_stop_at_their_limits() -> None:
-    world, body = living()
-    assert set(body.joints) == {f"{segment}_{hinge}" for segment in SEGMENTS for hinge in ("yaw", "pitch", "roll")}
+def test_it_turns_hips_and_legs_with_the_trunk_and_goes_on_the_same_way() -> None:
+    world, body = living(sideways=True)
+    before = body.bounding_box("body").width
+    body.set("walk", 1.0)
+    body.set("position", "stance_yaw", math.radians(80), 2.5)
+    ticks(world, 200)
+    world.refresh()
+    pose = body.get("pose")
+    assert (pose.x, pose.y, pose.heading) == near((2.0, 0.0, 0.0), abs=0.02)
+    for pair in ("leg", "shoulder_joint"):
+        left, right = (world.mj_data.geom(f"walker_{side}_{pair}").xpos for side in ("left", "right"))
+        assert math.atan2(right[0] - left[0], left[1] - right[1]) == near(math.radians(80), abs=0.01)
+    hips = 0.191 * 1.75
+    assert body.bounding_box("body").width < hips - 0.05 < before, "narrower than hips that face ahead"
+
+
+def test_it_weighs_the_same_with_legs_that_turn() -> None:
+    (ahead, _), (sideways, _) = living(), living(sideways=True)
+    assert sideways.mj_model.body("walker").subtreemass == near(ahead.mj_model.body("walker").subtreemass)
+
+
+@pytest.mark.parametrize("sideways", [False, True])
+def test_every_joint_is_three_hinges_that_stop_at_their_limits(sideways: bool) -> None:
+    world, body = living(sideways=sideways)
+    stance = {"stance_yaw"} if sideways else set[str]()
+    assert set(body.joints) == {f"{segment}_{hinge}" for segment in SEGMENTS for hinge in ("yaw", "pitch", "roll")} | stance
     start = world.state()
     for name, joint in body.joints.items():
         for speed, limit, which in ((10, joint.upper, "upper"), (-10, joint.lower, "lower")):

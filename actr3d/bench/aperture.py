@@ -79,7 +79,7 @@ def measure(trials: int) -> dict[str, Any]:
         "failures": {"replication": failures(replication), "human": failures(human)},
         "rmse": round(root_mean_square(found, original), 3),
         "human": [
-            {"group": g, "condition": c, "aperture": a, "angle": round(findings.mean(g, c, a), 2)}
+            {"group": g, "condition": c, "aperture": a, "angle": round(findings.mean(g, c, a), 2), "margin": findings.margin(g, c, a)}
             for g in GROUPS
             for c in CONDITIONS
             for a in APERTURES
@@ -91,13 +91,13 @@ def measure(trials: int) -> dict[str, Any]:
     }
 
 
-def _table(title: str, rows: list[dict[str, Any]], beside: str | None = None) -> list[str]:
-    """Returns the lines of a table: a row for each group and condition, a column for each aperture."""
+def _table(title: str, rows: list[dict[str, Any]], beside: str, scale: float = 1) -> list[str]:
+    """Returns the lines of a table of angles and something beside them: a row for each group and condition, a column for each aperture."""
     lines = [title, " " * 14 + "".join(f"{100 * aperture:>14.0f}" for aperture in APERTURES)]
     for group in GROUPS:
         for condition in CONDITIONS:
             of = sorted((row for row in rows if (row["group"], row["condition"]) == (group, condition)), key=lambda row: row["aperture"])
-            texts = [f"{row['angle']:.1f}" + (f" ({row[beside]:.1f})" if beside else "") for row in of]
+            texts = [f"{row['angle']:.1f}" + ("" if row[beside] is None else f" ({scale * row[beside]:.1f})") for row in of]
             lines.append(f"  {group:<6}{condition:<6}" + "".join(f"{text:>14}" for text in texts))
     return lines
 
@@ -113,7 +113,7 @@ def main(*, json_output: bool, trials: int | None = None) -> int:
     print("\n".join(_table("replication: angle at the wall [degrees], mean (original's), by aperture [cm]", measured["cells"], "original")))
     holds = "holds" if measured["rmse"] <= BAR else "MISSED"
     print(f"{holds}  root mean square difference {measured['rmse']:.2f} degrees (at most {BAR:g}; we aim at {AIM:g})\n")
-    print("\n".join(_table("human: angle at the wall [degrees]", measured["human"])))
+    print("\n".join(_table("human: angle at the wall [degrees], mean (margin of who turned [cm])", measured["human"], "margin", 100)))
     for constraint in constraints:
         print(f"{'met    ' if constraint.met else 'NOT MET'}  {constraint.number}  {constraint.says}: {constraint.found}")
     for variant, texts in measured["failures"].items():

@@ -23,10 +23,10 @@ TURNED = 5.0
 """Who turns by more than this has turned [degrees]: people sway by a few degrees (human-data). Ours."""
 CRITICAL = (1.25, 1.35)
 """Where turning begins, as a ratio of aperture to shoulders. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of human-data."""
+POINT = 1.30
+"""Below this ratio people turn. Source: Warren & Whang (1987)."""
 MARGIN = (0.06, 0.08)
 """The margin on each side [m]. Source: Higuchi's review (human-data)."""
-HIPS = 0.191 * 1.714
-"""How wide the walker's hips are, which do not turn [m]. Source: Drillis & Contini (1966), as the mannequin's; its height."""
 PASSABLE = (1.11, 1.21)
 """Where it is judged to be passable as one is. Source: Warren & Whang (1987), about 1.16; the bounds are ours."""
 SAME = 5.0
@@ -55,6 +55,15 @@ def angle(outcome: Outcome) -> float:
     return result.wall_angle_deg if result.wall_angle_deg is not None else result.peak_angle_deg or 0.0
 
 
+def margin(outcome: Outcome) -> float | None:
+    """Returns the room on each side of one who had to turn, and did [m]: the mean of its sides, each where any part was nearest to
+    the wall. It is None for all others, who have whatever room the aperture leaves, or never were in it.
+    """
+    left, right = outcome.result.clearance_left_m, outcome.result.clearance_right_m
+    turned = outcome.trial.ratio < POINT and angle(outcome) > TURNED
+    return (left + right) / 2 if left is not None and right is not None and turned else None
+
+
 class Findings:
     """What the human variant did, by cell and by agent."""
 
@@ -71,6 +80,11 @@ class Findings:
     def mean(self, group: str, condition: str, aperture: float) -> float:
         """Returns the mean angle of a cell [degrees]."""
         return mean(angle(outcome) for outcome in self._cells[group, condition, aperture])
+
+    def margin(self, group: str, condition: str, aperture: float) -> float | None:
+        """Returns the mean margin of those of a cell who turned [m]; None where nobody did."""
+        margins = [found for outcome in self._cells[group, condition, aperture] if (found := margin(outcome)) is not None]
+        return mean(margins) if margins else None
 
     def agents(self, group: str) -> list[int]:
         """Returns the agents of a group."""
@@ -155,23 +169,20 @@ class Findings:
         return Constraint(number=5, says="fast > normal below the critical ratio", met=met, found=", ".join(found))
 
     def untouched(self) -> Constraint:
-        """6: no contact, and the margin of who turned, where hips do not leave less."""
+        """6: no contact, and the margin of who turned, at each aperture."""
         touched = sum(outcome.result.contacts > 0 for outcome in self.outcomes)
         passed = sum(outcome.result.outcome == "passed" for outcome in self.outcomes)
         margins: defaultdict[float, list[float]] = defaultdict(list)
         for outcome in self.outcomes:
-            left, right = outcome.result.clearance_left_m, outcome.result.clearance_right_m
-            if left is not None and right is not None and angle(outcome) > TURNED:
-                margins[outcome.trial.aperture].append((left + right) / 2)
-        roomy = [margin for aperture, of in margins.items() if aperture >= HIPS + 2 * MARGIN[0] for margin in of]
-        middle = mean(roomy) if roomy else math.nan
-        by_aperture = ", ".join(f"{100 * aperture:.0f} cm: {100 * mean(of):.1f}" for aperture, of in sorted(margins.items()))
-        found = (
-            f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin {100 * middle:.1f} cm where hips leave room for it "
-        )
-        found += f"({by_aperture})"
-        met = touched == 0 and passed == len(self.outcomes) and MARGIN[0] <= middle <= MARGIN[1]
-        return Constraint(number=6, says="no contact, margin 6 to 8 cm", met=met, found=found)
+            room = margin(outcome)
+            if room is not None:
+                margins[outcome.trial.aperture].append(room)
+        means = {aperture: mean(of) for aperture, of in sorted(margins.items())}
+        found = f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin of who turned "
+        found += ", ".join(f"{100 * room:.1f} cm at {100 * aperture:.0f}" for aperture, room in means.items())
+        met = touched == 0 and passed == len(self.outcomes) and bool(means)
+        met &= all(MARGIN[0] <= room <= MARGIN[1] for room in means.values())
+        return Constraint(number=6, says="no contact, margin 6 to 8 cm at each aperture", met=met, found=found)
 
     def upright(self) -> Constraint:
         """7: no fixed turn at wide apertures."""

@@ -32,7 +32,8 @@ class PassageResult:
     wall_angle_deg: float | None
     """The same as the axis reached the wall; None where it did not."""
     logged_angle_deg: float | None
-    """Torso plus clavicle, as joints, at that moment [degrees]: what the original model logged (human-data)."""
+    """Torso plus clavicle, as joints, at that moment [degrees]: what the original model logged (human-data); and the stance, where the
+    body can turn it."""
     onset_distance_m: float | None
     """How far before the wall the shoulders began to turn; None where they did not."""
     onset_time_s: float | None
@@ -77,7 +78,7 @@ class _Sample(NamedTuple):
     angle: float
     """Between shoulder line and wall [rad]."""
     logged: float
-    """Torso plus clavicle [rad]."""
+    """Torso plus clavicle, and the stance [rad]."""
     room: tuple[float, float] | None
     """To the left and right segment [m], while in the doorway."""
     touches: frozenset[tuple[str, str]]
@@ -123,8 +124,8 @@ class Passage:
         left, right = (int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right"))
         gap = Wall(wall.position, wall.heading, wall.thickness, (left, right))
         self._clearance = Clearance(model, data, self._body.geoms, gap)
-        hinges = (("torso_yaw", 1.0), ("left_shoulder_yaw", 0.5), ("right_shoulder_yaw", 0.5))
-        self._hinges = [(self._body.joints[name].q, self._body.joints[name].v, share) for name, share in hinges]
+        hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
+        self._hinges = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
         x, y, _ = self._places[self._body.root].tolist()
         self._start = x, y
         self._reach = 2.0 + wall.thickness

@@ -26,6 +26,9 @@ HINGED = (
 )
 """The segments that hang on three hinges."""
 
+LEG, FOOT = 0.161, 0.0145
+"""The mass of a leg with its foot, and of the foot, as parts of the whole."""
+
 CLEARANCE = 0.005
 """Between the legs and the floor [m], so that gliding meets no friction."""
 
@@ -63,7 +66,7 @@ class Limbs:
         """Adds everything to the specification."""
         person, tall = self.person, self.person.height
         self._base()
-        self._segment("pelvis", "legs", (0, 0, 0.53 * tall))
+        self._segment("pelvis", self._legs(), (0, 0, 0.53 * tall))
         self._trunk("pelvis", 0.50, 0.64, min(0.191 * tall, person.shoulder_width), 0.142)
         self._segment("torso", "pelvis", (0, 0, 0.60 * tall))
         width = 0.191 * tall if person.trunk == "ellipsoid" else 2 * self.shoulder_y
@@ -84,21 +87,33 @@ class Limbs:
         return f"{self.person.name}_{part}"
 
     def _base(self) -> None:
-        """Adds the legs, which slide along the world's x and y and turn about the vertical."""
-        person, tall = self.person, self.person.height
+        """Adds what slides along the world's x and y and turns about the vertical, and is to carry all the rest."""
+        person = self.person
         body = add_base(self.mj_spec, person.name, person.position, person.heading)
         body.add_site(name=self._name("base"))
         self.bodies["legs"] = (body, (0, 0, 0))
+
+    def _legs(self) -> str:
+        """Adds the legs, and returns the part that has them: the base, or one that turns on it, whose feet go ahead."""
+        person, tall = self.person, self.person.height
+        part, mass = "legs", LEG
+        if person.sideways:
+            base, _ = self.bodies["legs"]
+            feet = 2 * FOOT * person.mass
+            base.explicitinertial, base.mass, base.inertia = True, feet, [feet * person.depth**2] * 3
+            part, mass = "stance", LEG - FOOT
+            self._segment(part, "legs", (0, 0, 0), ("yaw",))
         thick = min(0.046 * tall, person.depth / 2)
         for side, sign in zip(SIDES, (1, -1), strict=True):
             y = sign * min(0.0955 * tall, person.shoulder_width / 2) - sign * thick
-            self._capsule("legs", f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, 0.161)
+            self._capsule(part, f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, mass)
+        return part
 
-    def _segment(self, part: str, parent: str, joint: Point) -> None:
-        """Adds a body on three hinges at one point, given in the world's frame of a body at the origin that faces along x."""
+    def _segment(self, part: str, parent: str, joint: Point, hinges: tuple[str, ...] = HINGES) -> None:
+        """Adds a body on hinges at one point, given in the world's frame of a body at the origin that faces along x."""
         on, at = self.bodies[parent]
         body = on.add_body(name=self._name(part), pos=[a - b for a, b in zip(joint, at, strict=True)], gravcomp=1)
-        for hinge, limits in zip(HINGES, limits_of(part), strict=True):
+        for hinge, limits in zip(hinges, limits_of(part), strict=True):
             body.add_joint(
                 name=self._name(f"{part}_{hinge}"),
                 type=mjtJoint.mjJNT_HINGE,
@@ -208,10 +223,9 @@ class Limbs:
         for name, axis, force in (("forward", 0, self.person.push), ("sideways", 1, self.person.push), ("turn", 5, TURN)):
             gear = tuple(float(n == axis) for n in range(6))
             add_servo(self.mj_spec, self._name(name), base, force, gear)
-        for segment in HINGED:
-            for hinge in HINGES:
-                joint = self._name(f"{segment}_{hinge}")
-                add_servo(self.mj_spec, joint, joint, strength_of(segment))
+        for segment, hinge in self.person.joints:
+            joint = self._name(f"{segment}_{hinge}")
+            add_servo(self.mj_spec, joint, joint, strength_of(segment))
         for side in SIDES:
             arm = self._name(f"{side}_upper_arm")
             hand = self.mj_spec.add_equality(name=self._name(f"{side}_hand"), type=mjtEq.mjEQ_WELD, objtype=mjtObj.mjOBJ_BODY, name1=arm)

@@ -11,7 +11,8 @@ def _degrees(lower: float, upper: float) -> Range:
     return (math.radians(lower), math.radians(upper))
 
 
-LIMITS: dict[str, tuple[Range, Range, Range]] = {
+LIMITS: dict[str, tuple[Range, ...]] = {
+    "stance": (_degrees(-90, 90),),
     "pelvis": (_degrees(-45, 45), _degrees(-20, 120), _degrees(-30, 30)),
     "torso": (_degrees(-90, 90), _degrees(-25, 80), _degrees(-35, 35)),
     "head": (_degrees(-60, 60), _degrees(-45, 45), _degrees(-45, 45)),
@@ -25,12 +26,13 @@ All axes are right-handed about the carrying segment's x (roll), y (pitch) and z
 pitch bows, a positive roll leans to the right; an arm is lifted forward by a negative pitch, the left one sideways by a positive roll.
 Source: ranges of motion of the American Academy of Orthopaedic Surgeons (hips, thoracolumbar and cervical spine, shoulder);
 clavicle elevation and depression from the same, its yaw of 20 degrees and the torso's of 90 from the original ACT-R 3D (human-data);
-eye: Guitton & Volle (1987), about 55 degrees to each side. The clavicle's pitch and the eye's roll are ours.
+eye: Guitton & Volle (1987), about 55 degrees to each side. The clavicle's pitch and the eye's roll are ours;
+so is the stance, the legs against the way they go: people can walk sideways.
 """
 
-STRENGTH = {"pelvis": 200.0, "torso": 150.0, "head": 25.0, "eye": 1.0, "shoulder": 80.0, "upper_arm": 60.0}
+STRENGTH = {"stance": 100.0, "pelvis": 200.0, "torso": 150.0, "head": 25.0, "eye": 1.0, "shoulder": 80.0, "upper_arm": 60.0}
 """The most a joint turns with, by the kind of segment [N m]. Source: ours, of the order of maximal voluntary torques of adults
-(hip 200, trunk rotation 100 to 150, neck 20 to 30, shoulder 50 to 80)."""
+(hip 200, trunk rotation 100 to 150, neck 20 to 30, shoulder 50 to 80); the stance less than what holds the feet against it."""
 
 
 FASTEST_WALK, FASTEST_TURN, FASTEST_JOINT = 12.5, 12.5, 16.0
@@ -39,8 +41,8 @@ Source: the fastest sprint, 12.4 m/s (Bolt, 2009); pirouettes of two turns a sec
 (Bahill, Clark & Stark, 1975), which the fastest trunks of golfers and pitchers hardly exceed."""
 
 
-def limits_of(segment: str) -> tuple[Range, Range, Range]:
-    """Returns the ranges of yaw, pitch and roll of a segment [rad]; the right side mirrors the left."""
+def limits_of(segment: str) -> tuple[Range, ...]:
+    """Returns the ranges of yaw, pitch and roll of a segment [rad], of the hinges that it has; the right side mirrors the left."""
     if not segment.startswith("right_"):
         return LIMITS[segment]
     yaw, pitch, roll = LIMITS["left_" + segment.removeprefix("right_")]

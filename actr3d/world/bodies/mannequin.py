@@ -62,6 +62,10 @@ class Mannequin(Configuration):
     trunk: Literal["ellipsoid", "box"] = "ellipsoid"
     """Shape of pelvis, torso and shoulders. A box gets wider when it begins to turn; people do not."""
 
+    sideways: bool = False
+    """Whether hips and legs can turn against the way it goes, with all that they carry, as those of who walks sideways: about one
+    joint more, `stance_yaw` of the part `stance`. Else the legs face the way that they go."""
+
     load: Load | None = None
     """What it holds in front of it with both hands; None holds nothing and lets the arms hang."""
 
@@ -110,6 +114,12 @@ class Mannequin(Configuration):
         """Height of the hands that hold a load, with square elbows [m]."""
         return SHOULDER * self.height - self.arms * UPPER_ARM
 
+    @property
+    def joints(self) -> tuple[tuple[str, str], ...]:
+        """All joints: the segment and the hinge."""
+        stance = (("stance", "yaw"),) if self.sideways else ()
+        return (*stance, *((segment, hinge) for segment in HINGED for hinge in HINGES))
+
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds all segments, joints and servos, and what its hands can hold things with."""
         Limbs(self, mj_spec).build()
@@ -118,7 +128,7 @@ class Mannequin(Configuration):
         """Returns what a `Body` needs to know of it."""
         prefix = f"{self.name}_"
         push = (f"{prefix}forward", f"{prefix}sideways", f"{prefix}turn")
-        joints = tuple(f"{prefix}{segment}_{hinge}" for segment in HINGED for hinge in HINGES)
+        joints = tuple(f"{prefix}{segment}_{hinge}" for segment, hinge in self.joints)
         return Anatomy(
             root=self.name,
             prefix=prefix,
