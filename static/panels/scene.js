@@ -48,7 +48,7 @@ export function Scene() {
   const shown = Boolean(told?.world && told.scene);
   const address = useRef("about:blank");
   const frame = useRef(null);
-  const tell = () => frame.current.contentWindow.postMessage({ hurried: hurried.peek() }, location.origin);
+  const tell = () => frame.current?.contentWindow?.postMessage({ hurried: hurried.peek() }, location.origin);
   useEffect(tell, [hurried.value]);
   if (shown) address.current = `/viser/${told.id}/?panel=hidden${dark.value ? "&darkMode" : ""}`;
   return html`<section id="scene" class="scene" aria-label="3D view">
