@@ -20,7 +20,7 @@ before any doorway. Two numbers of this are not facts but inferred from these me
 the shoulders, until there is as much room beside it as beside one who need not turn: 0.30 of its shoulders' width. The faster it walks
 the faster it turns. Its body is as much bigger as its shoulders are wider.
 
-What to expect: `--aperture 0.45` is passed with the body turned by about 45 degrees, nothing is touched, and 6 to 7 cm are left
+What to expect: `--aperture 0.45` is passed with the body turned by 40 to 47 degrees, nothing is touched, and about 6 or 7 cm are left
 on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.25` is declined. The last lines say what
 the world measured.
 

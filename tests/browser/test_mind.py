@@ -350,7 +350,7 @@ def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pa
     open_tab(page, "Memory")
     page.get_by_role("button", name="Body schema").click()
     schema = page.get_by_role("region", name="Body schema")
-    expect(schema.get_by_role("row", name=re.compile(r"rotate_torso done maximum 0\.\d{3}"))).to_be_visible()
+    expect(schema.get_by_role("row", name=re.compile(r"stance_yaw done maximum 0\.\d{3}"))).to_be_visible()
     page.get_by_role("button", name="Seen").click()
     expect(page.get_by_role("region", name="Search of walker.vision").first).to_contain_text("feature:opening")
 

@@ -67,8 +67,8 @@ def test_the_aperture_of_the_model_changes_while_it_runs(desk: Desk, tmp_path: P
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.8})
     talk.say("step", ticks=100)
     talk.until("paused", tick=100)
-    talk.say("set", name="aperture", value=0.3)
-    assert talk.wait(lambda: talk.state["apertures"]["aperture"] == pytest.approx(0.3))
+    talk.say("set", name="aperture", value=0.2)
+    assert talk.wait(lambda: talk.state["apertures"]["aperture"] == pytest.approx(0.2))
     ended(talk)
     assert talk.state["result"]["outcome"] == "declined"
     assert agrees(recording(desk, talk))

@@ -37,7 +37,7 @@ def firing(count: int, last: str = "go", data: object = None) -> list[TraceEvent
 
 
 def test_a_list_tells_the_result_and_what_is_not_the_default(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.3}, run=True, wait="ended")
+    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.2}, run=True, wait="ended")
     name = talk.facts["recording"]
     assert talk.sessions.writing() == {name: talk.session.name}
     desk.do(talk.session.stop())
