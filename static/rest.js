@@ -17,7 +17,7 @@ export class Rest {
 
   /** Is called as a picture is begun: measures what it costs, by when the one after the next could be begun. */
   drawing() {
-    if (this.#begun !== null) return;
+    if (!this.hurried || this.#begun !== null) return;
     this.#begun = performance.now();
     this.ask(() => this.ask(() => this.#done()));
   }

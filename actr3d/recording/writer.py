@@ -16,6 +16,7 @@ from actr3d.actr.answers import plain_answer
 from actr3d.errors import RecordingError
 from actr3d.recording.form import SCHEMA
 from actr3d.trace import TraceEvent
+from actr3d.values import plain_to_json
 
 INTERVAL = 0.25
 """How often what has come is written [s on the wall]; a run that is killed loses no more than what came since."""
@@ -26,8 +27,6 @@ MOST_EVENTS = 10_000
 
 MARKS = 4 * 8
 """How many bytes of marks a state has."""
-
-_ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
 
 
 class State(NamedTuple):
@@ -251,8 +250,8 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
 
 def _events_text(events: list[TraceEvent]) -> str:
     """Returns events as one JSON list; what JSON has no word for becomes what `TraceEvent.to_json` makes of it."""
-    try:
-        text = _ENCODE(events)
-    except (TypeError, ValueError):
-        text = _ENCODE([[event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]] for event in events])
-    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+    return plain_to_json(events, _one_by_one)
+
+
+def _one_by_one(events: list[TraceEvent]) -> str:
+    return plain_to_json([[event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]] for event in events])

@@ -2,6 +2,7 @@
 
 import { useMemo } from "../vendor/preact.js";
 import { events } from "../store.js";
+import { firstWhere } from "../timeline/search.js";
 
 export class Sifted {
   /** @param takes Tells of an event whether it is wanted. */
@@ -29,14 +30,7 @@ export class Sifted {
 
   /** Returns how many of them come before an event. */
   below(number) {
-    let low = 0;
-    let high = this.numbers.length;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.numbers[middle] < number) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+    return firstWhere(this.numbers, (one) => one >= number);
   }
 }
 

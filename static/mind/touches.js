@@ -1,6 +1,7 @@
 // Where something touches a body, as rows of the trace: the recording has no event for it, so the page makes them of the curves.
 
 import { contacts } from "../timeline/curves.js";
+import { firstWhere } from "../timeline/search.js";
 import { eventAt } from "./sifted.js";
 
 /** Returns touches as events, in their order: when each begins, who is touched, how hard and for how long. */
@@ -14,18 +15,7 @@ export class Mixed {
   constructor(numbers, touches) {
     this.numbers = numbers;
     this.touches = touches;
-    this.places = touches.map(([time], n) => this.#before(time) + n); // the rows that they have
-  }
-
-  /** Returns how many events are not after a time [us]. */
-  #before(time) {
-    let [low, high] = [0, this.numbers.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (eventAt(this.numbers[middle])[0] <= time) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+    this.places = touches.map(([time], n) => firstWhere(numbers, (number) => eventAt(number)[0] > time) + n); // the rows that they have
   }
 
   get count() {
