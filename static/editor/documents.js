@@ -131,20 +131,15 @@ addEventListener("beforeunload", (event) => {
 
 // -- opening and closing
 
-let newest = null;
-
 /** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. What is asked for last is shown. */
 export async function open(path, line = null) {
-  newest = path;
-  await drafts.ready;
-  if (newest !== path) return;
-  if (line) wanted.value = { path, line };
+  shown.value = { path, error: null };
+  wanted.value = line ? { path, line } : null;
   if (documents.value.has(path)) {
-    shown.value = { path, error: null };
     look(documents.value.get(path)).catch(() => {});
     return;
   }
-  shown.value = { path, error: null };
+  await drafts.ready;
   const draft = drafts.read(path);
   let file = null;
   let error = null;
@@ -156,8 +151,8 @@ export async function open(path, line = null) {
   if (!documents.value.has(path)) {
     if (file || (draft && error.status === 404)) put(made(path, file, draft));
     else {
-      wanted.value = null;
-      if (newest === path) shown.value = { path, error: error.message };
+      if (wanted.value?.path === path) wanted.value = null;
+      if (shown.value.path === path) shown.value = { path, error: error.message };
     }
   }
 }

@@ -103,7 +103,8 @@ function Editor() {
   const compares = document && comparing.value === document && document.theirs.value?.text != null;
   const chosen = session.value?.model ?? model.value;
   useLooking();
-  useEffect(() => {
+  // At once, not after the next picture: by then the user may have chosen a file, which this would take away again.
+  useLayoutEffect(() => {
     if (!chosen || chosen === followed || wanted.value) return;
     followed = chosen;
     open(chosen);

@@ -1,6 +1,6 @@
 // The model's parameters, as its class declares them: live ones act at once, the others with the next run.
 
-import { html, signal, useEffect } from "../vendor/preact.js";
+import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { boundsText, read, written } from "../parameters/values.js";
 import { call, order, say } from "../server.js";
 import { complain, noSession, session, state } from "../store.js";
@@ -16,9 +16,11 @@ let of = {};
 async function follow({ id, model, run, stale }) {
   if (of.id === id && of.run === run && of.stale === stale) return;
   const other = of.id !== id;
-  of = { id, run, stale };
+  const asked = { id, run, stale };
+  of = asked;
   told.value = {};
   if (other) {
+    listing.value = null;
     drafts.value = {};
     seed.value = "";
   } else {
@@ -26,10 +28,9 @@ async function follow({ id, model, run, stale }) {
   }
   try {
     const answer = await call("GET", `/api/model?path=${encodeURIComponent(model)}`);
-    if (of.id === id) listing.value = answer.listing;
+    if (of === asked) listing.value = answer.listing;
   } catch (error) {
-    listing.value = null;
-    complain(error.message);
+    if (of === asked) complain(error.message);
   }
 }
 
@@ -128,7 +129,7 @@ function Field({ parameter }) {
 
 function Parameters() {
   const shown = session.value;
-  useEffect(() => void (shown && follow(shown)));
+  useLayoutEffect(() => void (shown && follow(shown))); // before anything is written into a field of the model before
   if (!shown) return html`<p class="empty">${noSession("Choose a model above: its parameters are shown here.")}</p>`;
   if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
   const fields = known();

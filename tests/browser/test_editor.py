@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Dialog, Page, expect
 
-from tests.browser.looking import choose, open_tab, shows, until
+from tests.browser.looking import choose, drawn, open_tab, shows, until
 from tests.server.serving import Served, served
 
 CODE = ".code .cm-content"
@@ -173,6 +173,28 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     page.get_by_role("button", name="Save it again").click()
     shows(page, ".standing", "saved")
     assert "again = 1" in path.read_text(encoding="utf-8")
+
+
+def test_a_file_chosen_before_the_next_picture_stays_chosen(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
+    written("soon.py", "a = 1\n")
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.evaluate(
+        """() => {
+            const observer = new MutationObserver(() => {  // is told before anything is drawn
+                const file = document.querySelector("select[aria-label='File']");
+                if (!file) return;
+                observer.disconnect();
+                file.value = "soon.py";
+                file.dispatchEvent(new Event("change", { bubbles: true }));
+            });
+            observer.observe(document.body, { childList: true, subtree: true });
+            [...document.querySelectorAll("[role=tab]")].find((tab) => tab.textContent.startsWith("Editor")).click();
+        }"""
+    )
+    expect(page.locator(CODE)).to_have_text("a = 1")
+    drawn(page)
+    expect(page.get_by_label("File", exact=True)).to_have_value("soon.py")
 
 
 def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
