@@ -20,6 +20,9 @@ before any doorway. Two numbers of this are not facts but inferred from these me
 the shoulders, until there is as much room beside it as beside one who need not turn: 0.30 of its shoulders' width. The faster it walks
 the faster it turns. Its body is as much bigger as its shoulders are wider.
 
+Both go on looking until the doorway's edges are beside them. Where it becomes narrower they turn again (people stand still for that
+where they have come near), or stop; what changes less than 0.3 s before they are there is noticed too late.
+
 What to expect: `--aperture 0.45` is passed with the body turned by 40 to 47 degrees, nothing is touched, and about 6 or 7 cm are left
 on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.25` is declined. The last lines say what
 the world measured.
@@ -55,8 +58,12 @@ BEARING = 19.6
 """What is further off the way ahead is no obstacle [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
 TIGHT = 1.03
 """An opening this many times as wide as it is lets it through, if it cannot turn any further. Ours."""
-NEAR = 0.5
-"""Where an obstacle is as near as this and no opening is found, it stops walking [m]. Ours: it takes some 0.2 s for that."""
+BESIDE = 57.3
+"""What is further off the way ahead is beside it, not before it [degrees]. Ours."""
+FIELD = 2.6
+"""How wide the field of view is [rad]. Ours, to see the edges of a doorway until it is in it; people's is wider."""
+STOPPING = 0.25
+"""How long it takes it to see that there is no way through, and to stop [s]. Ours: three answers of its vision at most."""
 BEHIND = 0.8
 """How far it goes on behind the middle of an opening [m]: more than its own depth, sideways. Ours."""
 DOOR = "feature:opening height:>1.5 depth:>0.5"
@@ -183,21 +190,28 @@ class Eyes(ACTR):
     def scan_ahead(b_turn="watch:yes", scan="state:idle", vision="busy:False watching:False", b_visual=None):
         scan.go(0.05)
 
-    def search(b_turn="watch:yes", scan="state:over"):
+    def search(b_turn="watch:yes way:unknown", scan="state:over"):
         scan.reset()
         vision.request("feature:obstacle", bottom_up=True, radius=self.parent.radius, bearing=BEARING)
+
+    def search_the_way(b_turn="watch:yes way:clear", scan="state:over", motor="width:?width"):
+        scan.reset()
+        self.look_before(self.parent.radius, float(width))
+
+    def look_before(self, radius, width):
+        """Searches for what is right before it: the edges of an opening that is wide enough are beside it."""
+        aside = self.parent.wanted(width) / 2
+        self.parent.vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BESIDE, aside=aside)
 
     def first_alert(b_turn="watch:yes way:unknown", b_context="way:open", b_visual="feature:obstacle distance:?far"):
         b_context.set("way:narrow")
         b_interrupt.set("planning_unit:squeeze when:now")
-        b_turn.set(f"watch:no way:unknown near:{float(far) < NEAR} do:{answer}")
+        b_turn.set(f"watch:no way:unknown near:{self.parent.nears(far)} do:{answer}")
         b_visual.clear()
-        near.walk(max(0, float(far) - NEAR), self.parent.speed)
 
     def alert(b_turn="watch:yes way:?way", b_context="way:!open", b_visual="feature:obstacle distance:?far"):
-        b_turn.set(f"watch:no way:{way} near:{float(far) < NEAR} do:ask")
+        b_turn.set(f"watch:no way:{way} near:{self.parent.nears(far)} do:ask")
         b_visual.clear()
-        near.walk(max(0, float(far) - NEAR), self.parent.speed)
 
     def turn(b_turn="do:turn"):
         shoulders.turn(1, self.parent.rate)
@@ -213,23 +227,48 @@ class Eyes(ACTR):
         b_context.set("way:clear")
         b_turn.set("watch:yes way:clear")
         way.walk(float(far) + BEHIND, self.parent.speed)
+        if not motor.walking:
+            motor.walk(self.parent.speed)
 
-    def notice(b_turn="do:wait way:clear", vision="busy:False error:True"):
-        """What was wide enough is so no longer."""
+    def doubt(b_turn="do:wait way:clear", vision="busy:False error:True", motor="width:?width"):
+        """In a doorway, its edges are out of sight; else what was wide enough is so no longer."""
+        self.look_before(self.parent.radius, float(width))
+        b_turn.modify(do="doubt")
+
+    def pass_by(b_turn="do:doubt", vision="watching:False", b_visual=None):
+        b_turn.set("watch:yes way:clear")
+
+    def notice(b_turn="do:doubt", vision="watching:False", b_visual="feature:obstacle distance:?far"):
+        b_visual.clear()
         b_context.set("way:narrow")
         b_interrupt.set("planning_unit:squeeze when:now")
-        b_turn.modify(way="unknown")
+        b_turn.modify(do="wait", way="unknown", near=self.parent.nears(far))
 
     def give_up(b_turn="do:wait near:True way:unknown", vision="busy:False error:True"):
-        motor.stop()
-        print(f"{self.now():.2f} s: stops before the wall")
+        self.stay()
+
+    def stay(self):
+        """Stops for good."""
+        self.parent.motor.stop()
+        print(f"{self.now():.2f} s: stops")
         self.stop()
+
+    def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over", motor="width:?width"):
+        self.look_before(self.parent.stopping, float(width))
+        b_turn.modify(do="beware")
+
+    def go_on_with_care(b_turn="do:beware", vision="watching:False", b_visual=None):
+        b_turn.modify(do="ask")
+
+    def see_the_wall(b_turn="do:beware", vision="watching:False", b_visual="feature:obstacle"):
+        b_visual.clear()
+        b_turn.modify(do="ask", near=True)
 
 
 class EyesInPieces(Eyes):
     """Stops turning with each answer, scans again, and turns on."""
 
-    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True"):
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:!over"):
         shoulders.stop()
         scan.go(0.05)
         b_turn.modify(do="scan")
@@ -243,30 +282,30 @@ class EyesInPieces(Eyes):
         b_turn.modify(do="turn")
 
     def turn_on_before(b_turn="do:search", vision="watching:False", b_visual="feature:obstacle distance:?far"):
-        b_turn.modify(do="turn", near=float(far) < NEAR)
+        b_turn.modify(do="turn", near=self.parent.nears(far))
         b_visual.clear()
 
 
 class EyesAtOnce(Eyes):
-    """Turns on until an opening is found."""
+    """Turns on until an opening is found, and stands still meanwhile where it has come near."""
 
     def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:False", near="state:!over"):
         b_turn.modify(do="turn")
 
-    def go_on(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:True", near="state:!over"):
+    def go_on(b_turn="do:wait near:!True way:unknown", vision="busy:False error:True", motor="stance_busy:True", near="state:!over"):
         b_turn.modify(do="ask")
 
-    def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over"):
+    def halt(b_turn="do:wait near:True way:unknown", vision="busy:False error:True"):
+        motor.stop("legs")
+        way.reset()
         near.reset()
-        vision.request("feature:obstacle", bottom_up=True, radius=NEAR, bearing=BEARING)
-        b_turn.modify(do="beware")
+        b_turn.modify(do="ask", near="halted")
 
-    def go_on_with_care(b_turn="do:beware", vision="watching:False", b_visual=None):
-        b_turn.modify(do="ask")
+    def look_once_more(b_turn="do:wait near:halted way:unknown", vision="busy:False error:True", motor="stance_busy:False"):
+        b_turn.modify(do="ask", near="at_last")
 
-    def see_the_wall(b_turn="do:beware", vision="watching:False", b_visual="feature:obstacle"):
-        b_visual.clear()
-        b_turn.modify(do="ask", near=True)
+    def give_up(b_turn="do:wait near:at_last way:unknown", vision="busy:False error:True"):
+        self.stay()
 
 
 class Walker(SGOMS):
@@ -279,7 +318,7 @@ class Walker(SGOMS):
     b_visual = Buffer()
     b_turn = Buffer()
     DM = Memory(SGOMS.b_DM, latency=0)
-    vision = Vision(b_visual, delay=0.05, bottom_up_delay=0.02, delay_sd=0.02)
+    vision = Vision(b_visual, delay=0.05, bottom_up_delay=0.02, delay_sd=0.02, horizontal_fov=FIELD)
     motor = Motor(memory=DM, size_grid=0.001, extreme_step=8)
     scan = Wait()
     way = Arrival()
@@ -359,8 +398,15 @@ class Walker(SGOMS):
             motor.walk(self.speed)
 
     def go_at(self, speed):
-        """Takes a speed for its own [m/s]."""
+        """Takes a speed for its own [m/s]; who is turned sideways reaches half a shoulder's width ahead."""
         self.speed = speed
+        self.stopping = self.shoulder_width / 2 + STOPPING * speed
+
+    def nears(self, far):
+        """Expects to come too near to what is so far ahead [m], and returns whether it is so already."""
+        left = float(far) - self.stopping
+        self.near.walk(max(0, left), self.speed)
+        return left < 0
 
     def arrive(b_unit_task="unit_task:approach state:walking", way="state:over"):
         b_unit_task.modify(state="finished")
@@ -416,7 +462,7 @@ class Human(Walker):
 
     def go_at(self, speed):
         """Takes a speed for its own [m/s], with what depends on it."""
-        self.speed = speed
+        super().go_at(speed)
         self.radius = max(REACTION * speed, FAR)
         self.rate = TURNING * speed
 
@@ -435,7 +481,7 @@ REACTION = 1.6
 """How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as it can. Who walks so
 slowly that this is nearer than `FAR` would not have done so, or have the doorway's edges beside it, out of sight: `FAR` counts then."""
 FAR = 2.0
-"""How far ahead people look at least [m]. Ours: 1.3 m for turning as far as it can (`TURNING`), `NEAR`, and 0.2 for reacting."""
+"""How far ahead people look at least [m]. Ours: 1.3 m for turning as far as it can (`TURNING`), 0.5 for stopping, and 0.2 for reacting."""
 TURNING = 62.0
 """How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 80 degrees a second at 1.29 m/s. Ours: enough for
 turning sideways within `REACTION`. That it grows with the speed is ours, too: people turn more when they are fast."""
@@ -463,9 +509,9 @@ def mind_of(parameters: Parameters) -> Walker:
     """Returns the mind of who walks."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "shoulder_width": width}
     if p.variant == "human":
-        mind = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
+        mind = Human(margin=0.30 if p.margin is None else p.margin, **given)
     else:
         mind = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
     mind.pace.wanted = mind.pace.kept = p.speed

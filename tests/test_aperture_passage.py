@@ -164,13 +164,51 @@ def test_a_doorway_that_becomes_too_narrow_is_stopped_before(model: Any, variant
     assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
 
 
+def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> PassageResult:
+    """Returns what comes of a doorway that shrinks when the walker has gone so far; the wall stands at 7 m."""
+    simulation = built(model, seed, **given)
+    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > at)
+    simulation.command("aperture", to)
+    assert simulation.run(120).ended_by == "stop"
+    return simulation.result()
+
+
+@pytest.mark.parametrize(
+    ("at", "to", "given"),
+    [
+        (6.45, 0.25, {}),
+        (6.45, 0.38, {}),
+        (6.6, 0.38, {"speed": 0.5}),
+        (5.6, 0.25, {"speed": 3.0}),
+        (6.2, 0.42, {"speed": 3.0}),
+        (6.0, 0.3, {"group": "large", "condition": "fast"}),
+        (6.0, 0.25, {"speed": 0.5, "variant": "replication"}),
+    ],
+)
+def test_who_notices_late_stops(model: Any, at: float, to: float, given: dict[str, Any]) -> None:
+    """The edges of a doorway are off the way ahead when they are near, and a fast walker goes some way until it stands."""
+    for seed in (1, 2):
+        result = shrunk(model, at, to, seed, aperture=0.6, **given)
+        assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
+
+
+@pytest.mark.parametrize(("at", "speed"), [(6.0, None), (6.4, 0.5), (5.3, 3.0)])
+def test_who_notices_in_time_turns_halts_and_goes_on(model: Any, at: float, speed: float | None) -> None:
+    result = shrunk(model, at, 0.38, 2, aperture=0.6, speed=speed)
+    assert (result.outcome, result.contacts) == ("passed", 0)
+    assert (result.wall_angle_deg or 0) > 54
+
+
+def test_a_doorway_whose_edges_are_out_of_sight_is_not_doubted(model: Any) -> None:
+    """Where little room is left, the eye is beside the middle, and looks again until the doorway's edges are beside it."""
+    for seed in range(1, 7):
+        result = shrunk(model, 4.5, 0.26, seed, aperture=0.6, condition="fast")
+        assert (result.outcome, result.contacts) == ("passed", 0)
+
+
 def test_who_is_held_gives_up(model: Any) -> None:
-    """A doorway that closes right before it can no longer be noticed in time; then it does not push on for ever."""
-    simulation = built(model, aperture=0.6)
-    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 6.6)
-    simulation.command("aperture", 0.1)
-    assert simulation.run(5).ended_by == "stop"
-    assert simulation.result().outcome == "stopped"
+    """A doorway that closes right before it cannot be noticed in time; then it does not push on for ever."""
+    assert shrunk(model, 6.75, 0.1, aperture=0.6).outcome == "stopped"
 
 
 # -- the replication

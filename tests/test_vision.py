@@ -127,6 +127,8 @@ def test_obstacles_within_a_radius_and_a_bearing() -> None:
     assert -16 < near_by["direction"] < -2
     assert "time_to_contact" not in near_by
     assert Mindful(world, asking("vision.request('feature:obstacle', radius=1)")).tick(11).mind.vision.error
+    assert near_by["aside"] == near(0.05, abs=0.01)
+    assert Mindful(world, asking("vision.request('feature:obstacle', radius=2, aside=0.03)")).tick(11).mind.vision.error
     assert Mindful(world, asking("vision.request('feature:obstacle', time_to_contact=1)")).tick(11).mind.vision.error
     told = Mindful(world, asking("vision.request('feature:obstacle', time_to_contact=1, speed=1.4)")).tick(11).mind.visual.chunk
     assert told["time_to_contact"] == near(near_by["distance"] / 1.4, abs=0.04)

@@ -161,6 +161,7 @@ def test_a_bearing_bounds_where_it_is_looked() -> None:
         assert [one.object for one in some] == expected
     (aside,) = obstacle(view, bearing=math.radians(20))
     assert aside.distance == near(math.hypot(3.0, 0.6), abs=1e-3)
+    assert aside.aside == near(0.6, abs=1e-3)
 
 
 def test_an_eye_that_looks_back_over_the_shoulder_knows_where_ahead_is() -> None:

@@ -23,7 +23,7 @@ class Obstacle(Feature):
     """An object, as far as it is seen. `distance` and `direction` are those of its nearest point within the bearing."""
 
     salience: ClassVar[str] = "nearness"
-    bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "time_to_contact": "<=", "width": ">=", "height": ">="}
+    bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "time_to_contact": "<=", "aside": "<=", "width": ">=", "height": ">="}
     aliases: ClassVar[Mapping[str, str]] = {"radius": "distance"}
 
     width: Metres
@@ -38,6 +38,8 @@ class Obstacle(Feature):
     """The direction of its leftmost visible point."""
     rightmost: Radians
     """The direction of its rightmost visible point."""
+    aside: Metres
+    """How far its nearest point is beside the line straight ahead: what is not as wide as twice that passes it."""
     object: Label
     """Which object."""
     time_to_contact: Seconds | None = None
@@ -97,6 +99,7 @@ def _obstacle(
         bottom=bottom,
         leftmost=float(lefts[2]),
         rightmost=float(rights[2]),
+        aside=abs(aside),
         object=label,
         time_to_contact=distance / nearer if nearer > 0 else None,
     )
