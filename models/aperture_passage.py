@@ -62,8 +62,6 @@ BESIDE = 57.3
 """What is further off the way ahead is beside it, not before it [degrees]. Ours."""
 FIELD = 2.6
 """How wide the field of view is [rad]. Ours, to see the edges of a doorway until it is in it; people's is wider."""
-STOPPING = 0.25
-"""How long it takes it to see that there is no way through, and to stop [s]. Ours: three answers of its vision at most."""
 BEHIND = 0.8
 """How far it goes on behind the middle of an opening [m]: more than its own depth, sideways. Ours."""
 DOOR = "feature:opening height:>1.5 depth:>0.5"
@@ -253,22 +251,11 @@ class Eyes(ACTR):
         print(f"{self.now():.2f} s: stops")
         self.stop()
 
-    def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over", motor="width:?width"):
-        self.look_before(self.parent.stopping, float(width))
-        b_turn.modify(do="beware")
-
-    def go_on_with_care(b_turn="do:beware", vision="watching:False", b_visual=None):
-        b_turn.modify(do="ask")
-
-    def see_the_wall(b_turn="do:beware", vision="watching:False", b_visual="feature:obstacle"):
-        b_visual.clear()
-        b_turn.modify(do="ask", near=True)
-
 
 class EyesInPieces(Eyes):
     """Stops turning with each answer, scans again, and turns on."""
 
-    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:!over"):
+    def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True"):
         shoulders.stop()
         scan.go(0.05)
         b_turn.modify(do="scan")
@@ -294,6 +281,17 @@ class EyesAtOnce(Eyes):
 
     def go_on(b_turn="do:wait near:!True way:unknown", vision="busy:False error:True", motor="stance_busy:True", near="state:!over"):
         b_turn.modify(do="ask")
+
+    def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over", motor="width:?width"):
+        self.look_before(self.parent.stopping, float(width))
+        b_turn.modify(do="beware")
+
+    def go_on_with_care(b_turn="do:beware", vision="watching:False", b_visual=None):
+        b_turn.modify(do="ask")
+
+    def see_the_wall(b_turn="do:beware", vision="watching:False", b_visual="feature:obstacle"):
+        b_visual.clear()
+        b_turn.modify(do="ask", near=True)
 
     def halt(b_turn="do:wait near:True way:unknown", vision="busy:False error:True"):
         motor.stop("legs")
@@ -398,9 +396,8 @@ class Walker(SGOMS):
             motor.walk(self.speed)
 
     def go_at(self, speed):
-        """Takes a speed for its own [m/s]; who is turned sideways reaches half a shoulder's width ahead."""
+        """Takes a speed for its own [m/s]."""
         self.speed = speed
-        self.stopping = self.shoulder_width / 2 + STOPPING * speed
 
     def nears(self, far):
         """Expects to come too near to what is so far ahead [m], and returns whether it is so already."""
@@ -439,6 +436,7 @@ class Replication(Walker):
     shoulders = Shoulders()
     answer = "turn"
     passable = 1.139
+    stopping = 0.5  # where it has found no opening, it stops here [m]: ours, the original never did
     rate = swing = 120
 
     def wanted(self, width):
@@ -463,6 +461,7 @@ class Human(Walker):
     def go_at(self, speed):
         """Takes a speed for its own [m/s], with what depends on it."""
         super().go_at(speed)
+        self.stopping = self.shoulder_width / 2 + STOPPING * speed  # who is turned sideways reaches half its width ahead
         self.radius = max(REACTION * speed, FAR)
         self.rate = TURNING * speed
 
@@ -488,6 +487,8 @@ turning sideways within `REACTION`. That it grows with the speed is ours, too: p
 ON = 0.055
 """By which part of the shoulders' width the room still grows after it is seen to be enough, since a person who turns does not stop
 at once. Ours."""
+STOPPING = 0.25
+"""How long it takes a person to see that there is no way through, and to stop [s]. Ours: three answers of its vision at most."""
 RADIUS = 3.0
 """Within how many times its width an obstacle alerts the replication. Source: human-data."""
 HEIGHT = 1.714
@@ -509,9 +510,9 @@ def mind_of(parameters: Parameters) -> Walker:
     """Returns the mind of who walks."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "shoulder_width": width}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise}
     if p.variant == "human":
-        mind = Human(margin=0.30 if p.margin is None else p.margin, **given)
+        mind = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:
         mind = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
     mind.pace.wanted = mind.pace.kept = p.speed
