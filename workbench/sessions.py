@@ -10,6 +10,7 @@ import msgspec
 
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
+from workbench.attempt import Relived, Wanted
 from workbench.files import ModelFolder
 from workbench.recordings import Recordings
 from workbench.scene_view import SceneView
@@ -71,7 +72,7 @@ class Sessions:
         return {
             Path(session.start.record).stem: session.name
             for session in self.all()
-            if session._worker is not None and session.start is not None and session.start.record is not None
+            if session.alive and session.start is not None and session.start.record is not None
         }
 
     def view(self, name: str) -> SceneView | None:
@@ -89,7 +90,7 @@ class Sessions:
         where = self.folder.locate(model)
         self.folder.read(model)
         session = await self._new(where, model)
-        await session.begin(settings, seed=seed, record=record, run=run)
+        await session.begin(Wanted(settings=settings, seed=seed, record=record, run=run))
         return session
 
     async def reopen(self, recording: str) -> Session:
@@ -111,7 +112,8 @@ class Sessions:
         seed = facts.get("program_seed", facts["seed"])
         settings = facts.get("parameters", {})
         helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
-        await session.begin(settings, seed=seed, record=False, source=facts["sources"][file], commands=commands, helpers=helpers)
+        relived = Relived(source=facts["sources"][file], commands=commands, helpers=helpers)
+        await session.begin(Wanted(settings=settings, seed=seed, record=False, relived=relived))
         return session
 
     async def _new(self, path: Path, model: str) -> Session:
@@ -145,8 +147,7 @@ class Sessions:
     def saved(self, path: Path) -> None:
         """Takes note that a file has another text now."""
         for session in self.all():
-            if path.is_relative_to(session.path.parent):  # the model, or maybe a module that it imports
-                session.file_changed()
+            session.file_changed(path)
 
     def renamed(self, before: Path, path: Path, model: str) -> None:
         """Takes note that a model file has another name now: its sessions go on with it."""

@@ -433,25 +433,6 @@ def test_what_a_program_printed_before_an_endless_loop_is_shown(desk: Desk, tmp_
     assert talk.state["time"] > 0
 
 
-def test_a_run_is_stale_when_a_module_that_its_model_imports_has_changed(desk: Desk, tmp_path: Path) -> None:
-    (tmp_path / "deep.py").write_text("COUNT = 1\n", encoding="utf-8")
-    (tmp_path / "helper.py").write_text("from deep import COUNT\n", encoding="utf-8")
-    (tmp_path / "other.py").write_text("COUNT = 3\n", encoding="utf-8")
-    talk = desk.begin(tmp_path, "from helper import COUNT\n" + COUNTING)
-    assert not talk.facts["stale"]
-    (tmp_path / "other.py").write_text("COUNT = 4\n", encoding="utf-8")
-    assert not talk.facts["stale"]
-    (tmp_path / "deep.py").write_text("COUNT = 2\n", encoding="utf-8")
-    assert talk.facts["stale"]
-    (tmp_path / "deep.py").write_text("COUNT = 1\n", encoding="utf-8")
-    assert not talk.facts["stale"]
-    (tmp_path / "helper.py").write_text("COUNT = 2\n", encoding="utf-8")
-    assert talk.facts["stale"]
-    talk.say("restart")
-    talk.wait(lambda: talk.session.run == 2)
-    assert not talk.facts["stale"]
-
-
 def test_settings_of_a_parameter_that_has_another_name_now_are_said_to_be_wrong(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY, settings={"width": 0.9})
     renamed = DOORWAY.replace("    width: Annotated", "    gap: Annotated").replace("parameters.width", "parameters.gap")

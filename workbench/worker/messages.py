@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import Any, Literal
 
 import msgspec
@@ -21,6 +22,11 @@ def whole(text: str, most: int = 10_000) -> str:
     return told.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
+def digest_of(text: str) -> str:
+    """Returns what tells a text from others."""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
 # -- to the worker
 
 
@@ -33,7 +39,7 @@ class Start(Message, frozen=True, kw_only=True):
     source: str
     folder: str
     settings: dict[str, Any] = {}
-    seed: int | None = None
+    seed: int | str | None = None
     record: str | None = None
     commands: list[tuple[int, dict[str, Any]]] = []
     """What users did in an earlier run, to be done again: after which tick, and what (`Command.to_data`)."""
@@ -131,6 +137,15 @@ class Cut(Message, frozen=True, kw_only=True):
     events: int
 
 
+class Loaded(Message, frozen=True, kw_only=True):
+    """The model has loaded a helper module."""
+
+    file: str
+    """Where it lies."""
+    digest: str
+    """Tells its text from others; see `digest_of`."""
+
+
 class Notice(Message, frozen=True, kw_only=True):
     """Something to tell the user."""
 
@@ -170,7 +185,7 @@ class Over(Message, frozen=True, kw_only=True):
 
 
 ToWorker = Start | Do | Draw | Leave | Where
-FromWorker = Facts | State | News | Cut | Notice | Reply | At | Over
+FromWorker = Facts | State | News | Cut | Loaded | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)
