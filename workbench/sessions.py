@@ -6,16 +6,16 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from workbench.attempt import Relived, Wanted
 from workbench.files import ModelFolder
+from workbench.jobs import doing
 from workbench.recordings import Recordings
+from workbench.rerunning import Reruns
 from workbench.scene_view import SceneView
 from workbench.session import Session
-from workbench.worker.messages import Notice, Over, Reply, Start
+from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
 MOST = 8
@@ -49,6 +49,7 @@ class Sessions:
         self.folder = folder
         self.recordings = recordings
         self.workers = workers
+        self.reruns = Reruns(workers)
         self._sessions: dict[str, Session] = {}
         self._views: dict[str, SceneView] = {}
         self._count = 0
@@ -161,19 +162,16 @@ class Sessions:
         Raises:
             OSError: If no worker can be started.
         """
-        worker = await self.workers.launch()
         told: list[dict[str, Any]] = []
-        worker.send(Start(job="check", path=str(path), source=text, folder=str(path.parent)))
-        try:
-            async with asyncio.timeout(CHECK_TIME):
-                while (message := await worker.receive()) is not None and not isinstance(message, (Reply, Over)):
-                    if isinstance(message, Notice):
-                        own = message.file in (None, str(path))
-                        told.append({"level": message.level, "message": message.text, "line": message.line if own else None})
-        except TimeoutError:
-            told.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
-        except (ValueError, msgspec.MsgspecError) as error:
-            told.append({"level": "error", "message": f"the worker said what nobody understands ({error})", "line": None})
-        await worker.stop()
-        worker.release()
+        async with doing(self.workers, Start(job="check", path=str(path), source=text, folder=str(path.parent))) as checking:
+            try:
+                async with asyncio.timeout(CHECK_TIME):
+                    await checking.over.wait()
+            except TimeoutError:
+                told.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
+            for notice in checking.notices:
+                own = notice.file in (None, str(path))
+                told.append({"level": notice.level, "message": notice.text, "line": notice.line if own else None})
+            if checking.ending:
+                told.append({"level": "error", "message": checking.ending, "line": None})
         return told

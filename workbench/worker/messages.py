@@ -33,11 +33,15 @@ def digest_of(text: str) -> str:
 class Start(Message, frozen=True, kw_only=True):
     """Begins a run; the first message."""
 
-    job: Literal["run", "check"] = "run"
-    """`check` loads the model, builds what it describes and runs nothing."""
+    job: Literal["run", "check", "replay", "page"] = "run"
+    """`check` loads the model, builds what it describes and runs nothing; `replay` runs a recording again and compares; `page` makes
+    one HTML file of it."""
     path: str
-    source: str
-    folder: str
+    """The model; or the recording."""
+    source: str = ""
+    folder: str = ""
+    to: str = ""
+    """The file that is to be made."""
     settings: dict[str, Any] = {}
     seed: int | str | None = None
     record: str | None = None
@@ -146,6 +150,12 @@ class Loaded(Message, frozen=True, kw_only=True):
     """Tells its text from others; see `digest_of`."""
 
 
+class Share(Message, frozen=True, kw_only=True):
+    """So much of a job is done, from 0 to 1."""
+
+    done: float
+
+
 class Notice(Message, frozen=True, kw_only=True):
     """Something to tell the user."""
 
@@ -185,7 +195,7 @@ class Over(Message, frozen=True, kw_only=True):
 
 
 ToWorker = Start | Do | Draw | Leave | Where
-FromWorker = Facts | State | News | Cut | Loaded | Notice | Reply | At | Over
+FromWorker = Facts | State | News | Cut | Loaded | Share | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)
