@@ -53,6 +53,7 @@ class Sessions:
         self._sessions: dict[str, Session] = {}
         self._views: dict[str, SceneView] = {}
         self._count = 0
+        self._opening = asyncio.Lock()
 
     def all(self) -> list[Session]:
         """Returns all sessions, the oldest first."""
@@ -90,9 +91,7 @@ class Sessions:
         """
         where = self.folder.locate(model)
         self.folder.read(model)
-        session = await self._new(where, model)
-        await session.begin(Wanted(settings=settings, seed=seed, record=record, run=run))
-        return session
+        return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run))
 
     async def reopen(self, recording: str) -> Session:
         """Begins a session that lives through a recorded run again, with everything that users did.
@@ -109,12 +108,23 @@ class Sessions:
             raise SessionError("the recording does not say which model file made it")
         path = Path(file)
         inside = path.resolve().is_relative_to(self.folder.root)
-        session = await self._new(path, path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name)
+        shown = path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name
         seed = facts.get("program_seed", facts["seed"])
         settings = facts.get("parameters", {})
         helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
         relived = Relived(source=facts["sources"][file], commands=commands, helpers=helpers)
-        await session.begin(Wanted(settings=settings, seed=seed, record=False, relived=relived))
+        return await self._begun(path, shown, Wanted(settings=settings, seed=seed, record=False, relived=relived))
+
+    async def _begun(self, path: Path, model: str, wanted: Wanted) -> Session:
+        """Returns a new session that has begun a run; where that cannot be begun, there is no session either."""
+        async with self._opening:  # making room takes a moment, in which nobody else takes it
+            session = await self._new(path, model)
+        try:
+            await session.begin(wanted)
+        except BaseException:
+            if self._sessions.get(session.name) is session:
+                await self.close(session.name)
+            raise
         return session
 
     async def _new(self, path: Path, model: str) -> Session:

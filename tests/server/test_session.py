@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
@@ -379,6 +380,42 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     opened[3].part(opened[3].feeds[0])
     desk.do(open_watched())
     assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MOST + 1}"]
+
+
+def test_there_is_a_bound_to_sessions_that_are_opened_at_once(desk: Desk, tmp_path: Path) -> None:
+    from workbench.sessions import MOST
+
+    sessions = desk.sessions(tmp_path)
+    (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
+
+    def opening(count: int) -> list[Any]:
+        async def open_all() -> list[Any]:
+            one = (sessions.open("model.py", {}, seed=1, record=False, run=False) for _ in range(count))
+            return await asyncio.gather(*one, return_exceptions=True)
+
+        return desk.do(open_all())
+
+    for session in opening(MOST):
+        Talk(desk, session, sessions).until("paused")
+    opening(MOST)
+    assert len(sessions.all()) == MOST
+
+
+@pytest.mark.parametrize("where", ["launch", "recording"])
+def test_where_no_run_can_be_begun_there_is_no_session(desk: Desk, tmp_path: Path, where: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    sessions = desk.sessions(tmp_path)
+    (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
+
+    async def no_more() -> Any:
+        raise OSError("no more processes")
+
+    if where == "launch":
+        monkeypatch.setattr(desk.workers, "launch", no_more)
+    else:
+        (tmp_path / ".workbench").write_text("where a folder is to be", encoding="utf-8")
+    with pytest.raises(OSError, match=r"no more processes|\.workbench"):
+        desk.do(sessions.open("model.py", {}, seed=1, record=True, run=False))
+    assert sessions.all() == []
 
 
 def test_a_check_that_loads_says_what_loading_says(desk: Desk, tmp_path: Path) -> None:
