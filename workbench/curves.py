@@ -13,8 +13,6 @@ import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
-from actr3d.simulation.clearance import Clearance, Wall
-
 INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 Values = Sequence[float | None]
 
@@ -103,15 +101,17 @@ class Room(Source):
         data: Its state.
         name: The body's name.
         geoms: Its geoms.
-        wall: The wall with the doorway.
+        wall: The wall with the doorway, as `surroundings` tells it.
         where: What the names end with, where there are several doorways.
     """
 
     needs = 1
 
-    def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: Wall, where: str) -> None:
+    def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> None:
         self.curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
-        self._clearance = Clearance(model, data, geoms, wall)
+        from actr3d.simulation.clearance import Clearance, Wall  # they load the eye, too, without which the server starts sooner
+
+        self._clearance = Clearance(model, data, geoms, Wall(**wall))
 
     def read(self, numbers: NDArray[np.float64]) -> Values:
         """Returns the smallest distances to the left and the right segment; None where nothing of it is in the doorway."""
@@ -224,7 +224,7 @@ def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[So
     """Yields where the curves of bodies come from."""
     roots = np.append(model.body_rootid[model.geom_bodyid], -1)
     owners = np.where(roots == 0, -2 - np.arange(len(roots)), roots)  # what lies in the world itself is an object of its own
-    walls = {name: Wall(wall["position"], wall["heading"], wall["thickness"], wall["segments"]) for name, wall in world["walls"].items()}
+    walls = world["walls"]
     for name, body in world["bodies"].items():
         own = np.append(np.isin(model.geom_bodyid, _members(model, body["root"])), False)
         yield Motion(model, data, name, body["root"])

@@ -19,7 +19,6 @@ from workbench.comparing import compare
 from workbench.html_replay.aside import replay_of
 from workbench.recordings import MOST as MOST_LISTED
 from workbench.recordings import curves, events_csv, states_csv
-from workbench.rerunning import rerun
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
 
@@ -70,7 +69,7 @@ async def download(
     path = sessions_of(request).recordings.path(recording)
     name = f"{recording}.{form}"
     if form == "replay.html":
-        made = await replay_of(path)
+        made = await replay_of(sessions_of(request).workers, path)
         return FileResponse(made, media_type="text/html", filename=name, background=BackgroundTask(made.unlink, missing_ok=True))
     if form == "sqlite":
         return FileResponse(path, media_type="application/vnd.sqlite3", filename=name)
@@ -109,7 +108,15 @@ async def open_recording(request: Request, recording: Id) -> dict[str, Any]:
 @router.post("/recordings/{recording}/replay")
 async def replay(request: Request, recording: Id) -> dict[str, Any]:
     """Runs a recording again, in a process of its own, and says whether every byte agrees; it ends when nobody waits any more."""
-    return await rerun(sessions_of(request).recordings.path(recording), request.is_disconnected)
+    sessions = sessions_of(request)
+    return await sessions.reruns.run(sessions.recordings.path(recording), request.is_disconnected)
+
+
+@router.get("/recordings/{recording}/replay")
+async def replaying(request: Request, recording: Id) -> dict[str, Any]:
+    """Tells how much of a recording has been run again, from 0 to 1, while that goes on; null where it does not."""
+    sessions = sessions_of(request)
+    return {"share": sessions.reruns.share(sessions.recordings.path(recording))}
 
 
 @router.post("/recordings/{recording}/rename")

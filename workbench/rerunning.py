@@ -1,28 +1,25 @@
-"""Runs a recording again, in a process of its own."""
+"""Runs recordings again, each in a worker of its own."""
 
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
-import sys
 from collections.abc import Awaitable, Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from actr3d.errors import Actr3dError
+import msgspec
 
-LONGEST = 120.0
-"""So long a recording is run again for a comparison [s]."""
+from actr3d.errors import Actr3dError
+from workbench.jobs import Job, doing
+from workbench.worker.messages import Start
+from workbench.worker.workers import Workers
+
+PATIENCE = 120.0
+"""One that comes no further for so long is given up [s]."""
 MOST = 2
 """So many are run again at once; each takes a processor."""
-MOST_TEXT = 20_000
-"""No more is told of what it says [characters]."""
 LOOK = 0.25
 """How often it is looked whether anyone waits still [s]."""
-
-_going_on: set[object] = set()
 
 
 class BusyError(Actr3dError):
@@ -31,49 +28,55 @@ class BusyError(Actr3dError):
     status = 409
 
 
-async def rerun(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
-    """Returns whether every byte agrees (None where that cannot be told), and what the comparison says.
+class Reruns:
+    """The recordings that are being run again.
 
     Args:
-        path: The recording.
-        left: Tells whether nobody waits for it any more; then it is ended.
-
-    Raises:
-        BusyError: If enough are run again already.
-        OSError: If no process can be started.
+        workers: Who gives workers.
     """
-    if len(_going_on) >= MOST:
-        raise BusyError(f"{MOST} recordings are run again already; wait for one of them, or cancel it")
-    mark = object()
-    _going_on.add(mark)
-    try:
-        return await _rerun(path, left)
-    finally:
-        _going_on.discard(mark)
+
+    def __init__(self, workers: Workers) -> None:
+        self._workers = workers
+        self._going_on: list[tuple[Path, Job]] = []
+
+    def share(self, path: Path) -> float | None:
+        """Returns how much of a recording has been run again, from 0 to 1; None where it is not being run."""
+        return max((job.share for other, job in self._going_on if other == path), default=None)
+
+    async def run(self, path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
+        """Returns whether every byte agrees (None where that cannot be told), and what the comparison says.
+
+        Args:
+            path: The recording.
+            left: Tells whether nobody waits for it any more; then it is ended.
+
+        Raises:
+            BusyError: If enough are run again already.
+            OSError: If no worker can be started.
+        """
+        if len(self._going_on) >= MOST:
+            raise BusyError(f"{MOST} recordings are run again already; wait for one of them, or cancel it")
+        job = Job()
+        self._going_on.append((path, job))
+        try:
+            async with doing(self._workers, Start(job="replay", path=str(path)), job):
+                return await _outcome(job, left)
+        finally:
+            self._going_on.remove((path, job))
 
 
-async def _rerun(path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
-    process = await asyncio.create_subprocess_exec(
-        *(sys.executable, "-m", "actr3d.cli", "replay", str(path)),
-        stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.STDOUT,
-        env={**os.environ, "PYTHONHASHSEED": "0"},
-        start_new_session=True,
-    )
-    reading = asyncio.create_task(process.communicate())
-    end = asyncio.get_running_loop().time() + LONGEST
+async def _outcome(job: Job, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
+    loop = asyncio.get_running_loop()
+    share, since = 0.0, loop.time()
+    over = asyncio.create_task(job.over.wait())
     try:
-        while not (await asyncio.wait([reading], timeout=LOOK))[0]:
+        while not (await asyncio.wait([over], timeout=LOOK))[0]:
             if await left():
                 return {"agrees": None, "text": "cancelled"}
-            if asyncio.get_running_loop().time() > end:
-                return {"agrees": None, "text": f"it takes longer than {LONGEST:g} s"}
-        output, _ = reading.result()
+            if job.share != share:
+                share, since = job.share, loop.time()
+            elif loop.time() - since > PATIENCE:
+                return {"agrees": None, "text": f"it came no further for {PATIENCE:g} s"}
     finally:
-        with suppress(ProcessLookupError):  # what the model has started ends with it
-            os.killpg(process.pid, signal.SIGKILL)
-        reading.cancel()
-        await process.wait()
-    text = output.decode(errors="replace").strip()[-MOST_TEXT:].replace(f"'{path}'", "it")
-    return {"agrees": {0: True, 1: False}.get(-1 if process.returncode is None else process.returncode), "text": text}
+        over.cancel()
+    return {"agrees": None, "text": job.problem} if job.result is None else msgspec.json.decode(job.result)

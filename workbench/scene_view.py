@@ -57,7 +57,7 @@ class SceneView:
 
     # -- what the session tells
 
-    def _watch(self, _: Session, what: Facts | State | Look | None) -> None:
+    def _watch(self, what: Facts | State | Look | None) -> None:
         if what is None:
             self._task.cancel()
             self.over = True

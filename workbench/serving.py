@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import importlib
 import logging
 import socket
-import threading
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -58,10 +56,5 @@ def serve(app: Any, listening: socket.socket, started: Callable[[], None]) -> No
         timeout_graceful_shutdown=2,
     )
 
-    def begun() -> None:
-        started()
-        # What draws the 3D view takes long to load: it does so while the page comes, and the first model is built.
-        threading.Thread(target=importlib.import_module, args=("mjviser",), daemon=True).start()
-
     with suppress(KeyboardInterrupt):  # which is how users end it
-        _Server(config, begun, app.state.leave).run(sockets=[listening])
+        _Server(config, started, app.state.leave).run(sockets=[listening])

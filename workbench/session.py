@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
-from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from actr3d.actr.limits import fresh_seed
-from actr3d.actr.reading import read_source
-from actr3d.errors import Actr3dError, SimulationError
+from actr3d.errors import Actr3dError
 from workbench import protocol as say
+from workbench.attempt import Attempt, Wanted, start_of
 from workbench.attendant import Attendant
-from workbench.feed import MOST_NOTICES, EventLog, Feed
-from workbench.files import ModelFolder
+from workbench.feed import EventLog
 from workbench.keeping import erase, never_begun
-from workbench.look import Look
 from workbench.telling import Telling
-from workbench.worker.messages import At, Cut, Do, Draw, Facts, FromWorker, News, Notice, Reply, Start, State
+from workbench.waiting import Waiting
+from workbench.worker.messages import At, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
-
-MOST_WAITING = 200
-"""So many commands and questions of one session may wait for their answers."""
-
-Watcher = Callable[["Session", Facts | State | Look | None], None]
 
 
 class Session(Telling):
@@ -42,118 +33,83 @@ class Session(Telling):
     """
 
     def __init__(self, name: str, path: Path, workers: Workers, recording: Callable[[str], Path], shown_path: str) -> None:
-        self.name = name
-        self.path = path
-        self.model = shown_path
-        self.feeds: list[Feed] = []
-        self.watchers: list[Watcher] = []
-        """Are told of the facts of each new run, of each state, of another look, and by None of the end."""
-        self.look = Look()
-        self.run = self.epoch = self.state_version = self.facts_version = 0
-        self.log = EventLog()
-        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
-        self.state: State | None = None
-        self.facts: Facts | None = None
-        self.start: Start | None = None
-        """What the present run began with."""
+        super().__init__(name, path, shown_path)
         self.speed: float | None = None
-        self.breakpoints: tuple[str, ...] = ()
-        self.has_scene = False
-        """Whether there is a 3D view to look at."""
         self._workers = workers
         self._new_recording = recording
-        self._worker: Worker | None = None
+        self._beginning = asyncio.Lock()
+        """Held while a worker is being given to a new run."""
+        self._given_up = 0
+        """No attempt up to this one is wanted any more, if it has no worker yet."""
         self._tasks: set[asyncio.Task[Any]] = set()
-        self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
-        self._number = self._notice_number = self._attempt = 0
+        self._waiting = Waiting()
         self._drawn: tuple[str, ...] = ()
-        self._controlled_by = ""
-        self._ending = ""
-        self._stuck: dict[str, Any] | None = None
-        self._loading: Worker | None = None
         self._asked: set[Worker] = set()
         """The workers that were asked to end."""
 
     # -- its runs
 
-    async def begin(
-        self,
-        settings: dict[str, Any] | None = None,
-        *,
-        seed: int | None = None,
-        record: bool = True,
-        run: bool = False,
-        source: str | None = None,
-        commands: list[tuple[int, dict[str, Any]]] | None = None,
-        helpers: dict[str, tuple[str, str]] | None = None,
-    ) -> None:
+    @property
+    def _worker(self) -> Worker | None:
+        """The worker of the run that is shown; None once that has ended."""
+        return None if self._shown is None or self._shown.over else self._shown.worker
+
+    @property
+    def _newest(self) -> Attempt | None:
+        return self._loading or self._shown
+
+    async def begin(self, wanted: Wanted | None = None) -> None:
         """Begins a new run in a new worker; the old one stays until this one is built, so that an error leaves it on screen.
 
         Args:
-            settings: Values of parameters; None for those of the present run.
-            seed: None for a fresh one.
-            record: Whether it is recorded.
-            run: Whether it goes on at once.
-            source: The model's text; None for what is in the file now.
-            commands: What users did in an earlier run, to be done again.
-            helpers: The helper modules of that run, as `actr3d.actr.helper_texts` keeps them.
+            wanted: What is wanted of it; None for what its parameters declare.
 
         Raises:
             ModelFileError: If the file cannot be read.
             OSError: If no worker can be started.
         """
-        text = read_source(self.path) if source is None else source
-        before = self.start.settings if self.start is not None else {}
-        self._attempt += 1
-        start = Start(
-            path=str(self.path),
-            source=text,
-            folder=str(self.path.parent),
-            settings=before if settings is None else settings,
-            seed=fresh_seed() if seed is None else seed,
-            record=str(self._new_recording(self.path.stem)) if record else None,
-            commands=commands or [],
-            helpers=helpers or {},
-            factor=self.speed,
-            breakpoints=self.breakpoints,
-            run=run,
-            attempt=self._attempt,
-            version=ModelFolder.version(self.path) if source is None else hashlib.sha256(text.encode()).hexdigest(),
-        )
-        worker = await self._workers.launch()
-        if self._loading is not None:
-            self._leave(self._loading)
-        self._loading = worker
-        self._ending = ""
-        self._keep(Attendant(worker, start, self).serve())
-        self._changed(facts=True)
+        async with self._beginning:
+            wanted = wanted or Wanted()
+            record = str(self._new_recording(self.path.stem)) if wanted.record else None
+            more: dict[str, Any] = {"record": record, "factor": self.speed, "breakpoints": self.breakpoints}
+            start = start_of(self.path, wanted, attempt=self._attempt + 1, **more)
+            self._attempt = start.attempt
+            attempt = Attempt(start, await self._workers.launch())
+            self._keep(Attendant(attempt.worker, start, self).serve())
+            if start.attempt <= self._given_up:  # stopped meanwhile
+                self._asked.add(attempt.worker)
+                attempt.worker.kill()
+                return
+            if self._loading is not None:
+                self._leave(self._loading.worker)
+            self._loading = attempt
+            self._ending = ""
+            self._changed(facts=True)
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Takes what a worker says."""
         if isinstance(message, Reply):
-            waiting = self._waiting.pop(message.id, None)
-            if waiting is not None and not waiting[1].done():
-                waiting[1].set_result(message)
+            self._waiting.take(message)
             return
-        if isinstance(message, Facts) and worker is self._loading:
-            self._swap(worker, start, message)
-        if worker not in (self._worker, self._loading):
-            return
+        attempt = self._attempt_of(worker)
+        if isinstance(message, Facts) and attempt is not None and attempt is self._loading:
+            self._swap(attempt, message)
+        shown = attempt is self._shown
         match message:
-            case State() if worker is self._worker:
-                if self._stuck is not None:
-                    self._stuck = None
-                    self._changed(facts=True)
-                self.state = message
-                self.state_version += 1
-                self._tell_watchers(message)
-            case News() if worker is self._worker:
+            case _ if attempt is None:
+                return
+            case State() if shown:
+                self._take_state(message)
+            case News() if shown:
                 self.log.add(message.first, message.events)
-            case Cut() if worker is self._worker:
+            case Cut() if shown:
                 self.epoch += 1
                 self.log.cut(message.events)
                 for feed in self.feeds:
                     feed.cut(message.events)
+            case Loaded():
+                attempt.texts.take(message)
+                self._changed(facts=shown)
             case Notice():
                 self.tell(message, start)
             case At():
@@ -163,39 +119,50 @@ class Session(Telling):
                 pass
         self._changed()
 
-    def _swap(self, worker: Worker, start: Start, facts: Facts) -> None:
-        """Shows the run of a worker that has been built, in place of the one before."""
-        before, self._worker, self._loading = self._worker, worker, None
-        useless = self.start.record if self.start is not None and never_begun(self.state, self.log) else None
-        if before is not None:
-            self._leave(before, useless)
+    def _take_state(self, state: State) -> None:
+        if self._stuck is not None:
+            self._stuck = None
+            self._changed(facts=True)
+        self.state = state
+        self.state_version += 1
+        self._tell_watchers(state)
+
+    def _attempt_of(self, worker: Worker) -> Attempt | None:
+        """Returns the attempt whose worker this is; None where another one has taken its place."""
+        return next((one for one in (self._shown, self._loading) if one is not None and one.worker is worker), None)
+
+    def _swap(self, attempt: Attempt, facts: Facts) -> None:
+        """Shows a run that has been built, in place of the one before."""
+        before, worker = self._shown, self._worker
+        self._shown, self._loading = attempt, None
+        useless = before.start.record if before is not None and never_begun(self.state, self.log) else None
+        if before is not None and worker is not None:
+            self._leave(worker, useless)
         self.run += 1
         self.epoch += 1
         self.log = EventLog()
-        self.start, self.facts, self.state, self._stuck = start, facts, None, None
+        self.facts, self.state, self._stuck = facts, None, None
         if self._drawn:
-            worker.send(Draw(kinds=self._drawn))
+            attempt.worker.send(Draw(kinds=self._drawn))
         self._tell_watchers(facts)
         self._changed(facts=True)
 
     def take_end(self, worker: Worker, ending: str) -> None:
         """Takes how a worker ended, and tells it; nothing where it was in good order."""
-        for number in [number for number, (asked, _) in self._waiting.items() if asked is worker]:
-            _, waiting = self._waiting.pop(number)
-            if not waiting.done():
-                waiting.set_result(Reply(id=number, error="the run has ended"))
+        self._waiting.end(worker)
         asked = worker in self._asked
         self._asked.discard(worker)
-        if worker not in (self._worker, self._loading):
+        attempt = self._attempt_of(worker)
+        if attempt is None or attempt.over:
             return
         self._ending = "stopped" if asked else ending
         if ending and not asked:
             where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
             self.tell(Notice(level="error", text=f"{self._ending}{where}"))
-        if worker is self._loading:
+        attempt.over = True
+        if attempt is self._loading:
             self._loading = None
         else:
-            self._worker = None
             self._stuck = None
             if self.state is not None and self.state.status not in ("ended", "failed"):
                 status_now = "failed" if self._ending != "stopped" else "ended"
@@ -206,7 +173,8 @@ class Session(Telling):
 
     def busy(self, worker: Worker) -> bool:
         """Tells whether a worker is to be saying something."""
-        return worker is self._loading or (worker is self._worker and (self.going_on or bool(self._waiting)))
+        loading = self._loading is not None and worker is self._loading.worker
+        return loading or (worker is self._worker and (self.going_on or self._waiting.on(worker)))
 
     @property
     def going_on(self) -> bool:
@@ -226,15 +194,15 @@ class Session(Telling):
 
     async def stop(self) -> None:
         """Ends the workers, whatever they do; at the latest after two seconds they are gone."""
-        workers = [worker for worker in (self._worker, self._loading) if worker is not None]
+        self._given_up = self._attempt  # also one that has no worker yet
+        workers = [one.worker for one in (self._shown, self._loading) if one is not None and not one.over]
         self._asked.update(workers)
         await asyncio.gather(*(worker.stop() for worker in workers))
 
     async def close(self) -> None:
         """Ends everything."""
         await self.stop()
-        for watcher in self.watchers:
-            watcher(self, None)
+        self._tell_watchers(None)
         tasks = list(self._tasks)
         if tasks:
             await asyncio.wait(tasks, timeout=1)
@@ -259,8 +227,7 @@ class Session(Telling):
                 case say.Stop():
                     await self.stop()
                 case say.Restart():
-                    seed = said.seed if said.seed is not None or said.new_seed or self.start is None else self.start.seed
-                    await self.begin(said.settings, seed=seed, record=said.record, run=said.run)
+                    await self._begin_again(said)
                 case say.Overlay() | say.Camera():
                     self.look = self.look.after(said)
                     self._tell_watchers(self.look)
@@ -272,6 +239,13 @@ class Session(Telling):
             return Reply(id=0, error=str(error))
         return Reply(id=0)
 
+    async def _begin_again(self, said: say.Restart) -> None:
+        """Begins as the newest run was begun, but for what is said."""
+        newest = self._newest
+        settings = said.settings if said.settings is not None or newest is None else newest.start.settings
+        seed = said.seed if said.seed is not None or said.new_seed or newest is None else newest.start.seed
+        await self.begin(Wanted(settings=settings or {}, seed=seed, record=said.record, run=said.run))
+
     def _note(self, said: Any) -> None:
         """Keeps what holds for later runs, too."""
         if isinstance(said, say.Speed):
@@ -281,17 +255,20 @@ class Session(Telling):
             self._changed(facts=True)
 
     async def _ask(self, said: Any) -> Reply:
-        worker = self._worker
-        if worker is None:
-            raise SimulationError("there is no run: begin one")
-        if len(self._waiting) >= MOST_WAITING:
-            raise SimulationError("too much waits for its answer already; is the model busy?")
-        self._number += 1
-        number = self._number
-        waiting: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
-        self._waiting[number] = worker, waiting
-        worker.send(Do(id=number, say=said.model_dump_json().encode()))
-        return await waiting
+        """Tells it to the run that is meant: what is said of what is shown to that, any other command to the newest.
+
+        Whoever has begun a new run means that by what is said next, though the one before is on screen until it is built.
+        """
+        if isinstance(said, (*say.QUESTIONS, say.Back, say.Seek)):
+            return await self._waiting.ask(self._worker, said)
+        async with self._beginning:
+            loading = self._loading
+        if loading is None:
+            return await self._waiting.ask(self._worker, said)
+        if isinstance(said, say.Pause) and self._worker is not None:  # both are to stand
+            self._waiting.tell(loading.worker, said)
+            return await self._waiting.ask(self._worker, said)
+        return await self._waiting.ask(loading.worker, said)
 
     def draw(self, kinds: tuple[str, ...]) -> None:
         """Lets the states of this run and later ones tell what overlays of these kinds show."""
@@ -299,54 +276,6 @@ class Session(Telling):
             self._drawn = kinds
             if self._worker is not None:
                 self._worker.send(Draw(kinds=kinds))
-
-    # -- what is told of it
-
-    def tell(self, notice: Notice, start: Start | None = None) -> None:
-        """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
-        told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
-        told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
-        told |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
-        self.notices.append((self._notice_number, msgspec.json.encode(told)))
-        self._notice_number += 1
-        self._changed()
-
-    def scene_ready(self) -> None:
-        """Takes note that there is a 3D view now."""
-        self.has_scene = True
-        self._changed(facts=True)
-
-    def file_changed(self) -> None:
-        """Takes note that the model's file has been saved: the run may be stale now."""
-        self._changed(facts=True)
-
-    def renamed(self, path: Path, model: str) -> None:
-        """Takes note that the model's file has another name now."""
-        self.path, self.model = path, model
-        self._changed(facts=True)
-
-    # -- who watches
-
-    def join(self, name: str) -> Feed:
-        """Lets one more browser watch."""
-        feed = Feed(self, name)
-        self.feeds.append(feed)
-        self._changed(facts=True)
-        return feed
-
-    def part(self, feed: Feed) -> None:
-        """Takes note that a browser is gone."""
-        self.feeds.remove(feed)
-        self._changed(facts=True)
-
-    def _changed(self, *, facts: bool = False) -> None:
-        self.facts_version += facts
-        for feed in self.feeds:
-            feed.wake()
-
-    def _tell_watchers(self, what: Facts | State | Look) -> None:
-        for watcher in self.watchers:
-            watcher(self, what)
 
     def _keep(self, work: Any) -> None:
         task = asyncio.create_task(work)

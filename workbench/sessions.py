@@ -6,15 +6,16 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
+from workbench.attempt import Relived, Wanted
 from workbench.files import ModelFolder
+from workbench.jobs import doing
 from workbench.recordings import Recordings
+from workbench.rerunning import Reruns
 from workbench.scene_view import SceneView
 from workbench.session import Session
-from workbench.worker.messages import Notice, Over, Reply, Start
+from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
 MOST = 8
@@ -48,9 +49,11 @@ class Sessions:
         self.folder = folder
         self.recordings = recordings
         self.workers = workers
+        self.reruns = Reruns(workers)
         self._sessions: dict[str, Session] = {}
         self._views: dict[str, SceneView] = {}
         self._count = 0
+        self._opening = asyncio.Lock()
 
     def all(self) -> list[Session]:
         """Returns all sessions, the oldest first."""
@@ -71,7 +74,7 @@ class Sessions:
         return {
             Path(session.start.record).stem: session.name
             for session in self.all()
-            if session._worker is not None and session.start is not None and session.start.record is not None
+            if session.alive and session.start is not None and session.start.record is not None
         }
 
     def view(self, name: str) -> SceneView | None:
@@ -88,9 +91,7 @@ class Sessions:
         """
         where = self.folder.locate(model)
         self.folder.read(model)
-        session = await self._new(where, model)
-        await session.begin(settings, seed=seed, record=record, run=run)
-        return session
+        return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run))
 
     async def reopen(self, recording: str) -> Session:
         """Begins a session that lives through a recorded run again, with everything that users did.
@@ -107,11 +108,23 @@ class Sessions:
             raise SessionError("the recording does not say which model file made it")
         path = Path(file)
         inside = path.resolve().is_relative_to(self.folder.root)
-        session = await self._new(path, path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name)
+        shown = path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name
         seed = facts.get("program_seed", facts["seed"])
         settings = facts.get("parameters", {})
         helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
-        await session.begin(settings, seed=seed, record=False, source=facts["sources"][file], commands=commands, helpers=helpers)
+        relived = Relived(source=facts["sources"][file], commands=commands, helpers=helpers)
+        return await self._begun(path, shown, Wanted(settings=settings, seed=seed, record=False, relived=relived))
+
+    async def _begun(self, path: Path, model: str, wanted: Wanted) -> Session:
+        """Returns a new session that has begun a run; where that cannot be begun, there is no session either."""
+        async with self._opening:  # making room takes a moment, in which nobody else takes it
+            session = await self._new(path, model)
+        try:
+            await session.begin(wanted)
+        except BaseException:
+            if self._sessions.get(session.name) is session:
+                await self.close(session.name)
+            raise
         return session
 
     async def _new(self, path: Path, model: str) -> Session:
@@ -145,8 +158,7 @@ class Sessions:
     def saved(self, path: Path) -> None:
         """Takes note that a file has another text now."""
         for session in self.all():
-            if path.is_relative_to(session.path.parent):  # the model, or maybe a module that it imports
-                session.file_changed()
+            session.file_changed(path)
 
     def renamed(self, before: Path, path: Path, model: str) -> None:
         """Takes note that a model file has another name now: its sessions go on with it."""
@@ -160,19 +172,16 @@ class Sessions:
         Raises:
             OSError: If no worker can be started.
         """
-        worker = await self.workers.launch()
         told: list[dict[str, Any]] = []
-        worker.send(Start(job="check", path=str(path), source=text, folder=str(path.parent)))
-        try:
-            async with asyncio.timeout(CHECK_TIME):
-                while (message := await worker.receive()) is not None and not isinstance(message, (Reply, Over)):
-                    if isinstance(message, Notice):
-                        own = message.file in (None, str(path))
-                        told.append({"level": message.level, "message": message.text, "line": message.line if own else None})
-        except TimeoutError:
-            told.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
-        except (ValueError, msgspec.MsgspecError) as error:
-            told.append({"level": "error", "message": f"the worker said what nobody understands ({error})", "line": None})
-        await worker.stop()
-        worker.release()
+        async with doing(self.workers, Start(job="check", path=str(path), source=text, folder=str(path.parent))) as checking:
+            try:
+                async with asyncio.timeout(CHECK_TIME):
+                    await checking.over.wait()
+            except TimeoutError:
+                told.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
+            for notice in checking.notices:
+                own = notice.file in (None, str(path))
+                told.append({"level": notice.level, "message": notice.text, "line": notice.line if own else None})
+            if checking.ending:
+                told.append({"level": "error", "message": checking.ending, "line": None})
         return told

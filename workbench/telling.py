@@ -1,43 +1,70 @@
-"""What pages are told of a session, as JSON."""
+"""What pages are told of a session, and who watches it."""
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from actr3d.actr.reading import read_source
-from actr3d.errors import Actr3dError
-from workbench.feed import Feed, Raw
-from workbench.helpers import helper_texts
+from workbench.attempt import Attempt
+from workbench.feed import MOST_NOTICES, EventLog, Feed, Raw
 from workbench.look import Look
-from workbench.worker.messages import Facts, Start, State
-from workbench.worker.workers import Worker
+from workbench.worker.messages import Facts, Notice, Start, State
+
+Watcher = Callable[[Facts | State | Look | None], None]
 
 
 class Telling:
-    """The part of a session that says in JSON what it is like."""
+    """The part of a session that is shown: what it is like, and who watches it.
 
-    name: str
-    path: Path
-    model: str
-    run: int
-    state: State | None
-    facts: Facts | None
-    start: Start | None
-    feeds: list[Feed]
-    breakpoints: tuple[str, ...]
-    has_scene: bool
-    look: Look
-    _worker: Worker | None
-    _loading: Worker | None
-    _ending: str
-    _stuck: dict[str, Any] | None
-    _controlled_by: str
-    _attempt: int
-    _began_with: tuple[Start, dict[Path, str]] | None = None
-    """The texts of the modules that the model imports from its folder, as the run of this start began."""
+    Args:
+        name: What it is called.
+        path: The model file.
+        shown_path: The model as pages call it.
+    """
+
+    def __init__(self, name: str, path: Path, shown_path: str) -> None:
+        self.name = name
+        self.path = path
+        self.model = shown_path
+        self.feeds: list[Feed] = []
+        self.watchers: list[Watcher] = []
+        """Are told of the facts of each new run, of each state, of another look, and by None of the end."""
+        self.look = Look()
+        self.run: int = 0
+        self.epoch: int = 0
+        self.state_version: int = 0
+        self.facts_version: int = 0
+        self.log = EventLog()
+        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
+        self.state: State | None = None
+        self.facts: Facts | None = None
+        self.breakpoints: tuple[str, ...] = ()
+        self.has_scene = False
+        """Whether there is a 3D view to look at."""
+        self._shown: Attempt | None = None
+        """Whose run is on screen, also once its worker has ended."""
+        self._loading: Attempt | None = None
+        """Whose run is being built."""
+        self._attempt = 0
+        """The number of the latest."""
+        self._notice_number = 0
+        self._controlled_by = ""
+        self._ending = ""
+        self._stuck: dict[str, Any] | None = None
+
+    @property
+    def start(self) -> Start | None:
+        """What the present run began with."""
+        return None if self._shown is None else self._shown.start
+
+    @property
+    def alive(self) -> bool:
+        """Whether the present run can still be told something."""
+        return self._shown is not None and not self._shown.over
 
     def _shown_file(self, file: str | None, start: Start | None = None) -> str | None:
         """Returns a file of the models folder as pages call it; the model itself by its present name."""
@@ -58,7 +85,7 @@ class Telling:
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": facts.seed if facts is not None else None,
-            "stale": start is not None and self._text_differs(start),
+            "stale": self._shown is not None and self._shown.texts.differ(self.path),
             "gone": not self.path.is_file(),
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
@@ -75,7 +102,7 @@ class Telling:
             "id": self.name,
             "model": self.model,
             "run": self.run,
-            "alive": self._worker is not None,
+            "alive": self.alive,
             "loading": self._loading is not None,
             "ending": self._ending,
             "status": None if self.state is None else self.state.status,
@@ -91,13 +118,49 @@ class Telling:
         told = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
         return msgspec.json.encode({**told, "apertures": state.apertures, "result": Raw(state.result), "parts": Raw(state.parts)})
 
-    def _text_differs(self, start: Start) -> bool:
-        """Tells whether the model's file, or a module beside it that it imports, is not what it was when the run began."""
-        folder = Path(start.folder)
-        if self._began_with is None or self._began_with[0] is not start:
-            relived = {folder / file: text for file, text in start.helpers.values()}
-            self._began_with = start, relived or helper_texts(start.source, folder)
-        try:
-            return read_source(self.path) != start.source or any(read_source(path) != text for path, text in self._began_with[1].items())
-        except Actr3dError:
-            return True
+    # -- who watches
+
+    def join(self, name: str) -> Feed:
+        """Lets one more browser watch."""
+        feed = Feed(self, name)
+        self.feeds.append(feed)
+        self._changed(facts=True)
+        return feed
+
+    def part(self, feed: Feed) -> None:
+        """Takes note that a browser is gone."""
+        self.feeds.remove(feed)
+        self._changed(facts=True)
+
+    def tell(self, notice: Notice, start: Start | None = None) -> None:
+        """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
+        told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
+        told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
+        told |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
+        self.notices.append((self._notice_number, msgspec.json.encode(told)))
+        self._notice_number += 1
+        self._changed()
+
+    def scene_ready(self) -> None:
+        """Takes note that there is a 3D view now."""
+        self.has_scene = True
+        self._changed(facts=True)
+
+    def file_changed(self, path: Path) -> None:
+        """Takes note that a file may have another text now: the run is stale where it was made of that."""
+        if path == self.path or (self._shown is not None and self._shown.texts.has_helper(path)):
+            self._changed(facts=True)
+
+    def renamed(self, path: Path, model: str) -> None:
+        """Takes note that the model's file has another name now."""
+        self.path, self.model = path, model
+        self._changed(facts=True)
+
+    def _changed(self, *, facts: bool = False) -> None:
+        self.facts_version += facts
+        for feed in self.feeds:
+            feed.wake()
+
+    def _tell_watchers(self, what: Facts | State | Look | None) -> None:
+        for watcher in self.watchers:
+            watcher(what)

@@ -55,7 +55,17 @@ class _Events:
         return sum(1 for _ in self._recorded)
 
 
-def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, any_version: bool = False) -> Comparison:
+Progress = Callable[[float], object]
+"""Is told which share of a recording has been run again, from 0 to 1."""
+
+
+def replay(
+    recorded: Recorded,
+    make: Callable[[], Simulation] | None = None,
+    *,
+    any_version: bool = False,
+    progress: Progress = lambda _: None,
+) -> Comparison:
     """Runs again what a recording holds, and compares every event, and every state at the end of a tick.
 
     What the model prints is not shown.
@@ -64,6 +74,7 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
         recorded: The recording.
         make: Makes the simulation; None for what the recorded model file builds, or for a recorded program.
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
+        progress: Is told again and again which share has been run: of the ticks, or of a program's events.
 
     Raises:
         RecordingError: If the file is damaged, versions differ, or the recording does not say how the simulation was made, or
@@ -75,17 +86,17 @@ def replay(recorded: Recorded, make: Callable[[], Simulation] | None = None, *, 
         _check_versions(recorded.facts["versions"])
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
-            return _replay_program(recorded)
+            return _replay_program(recorded, progress)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
         seed = recorded.facts.get("program_seed", recorded.facts["seed"])
         with RunLimits(seed=seed), shared_random(seed):
             if make is not None:
-                return _replay_simulation(recorded, make())
+                return _replay_simulation(recorded, make(), progress)
             with BuiltOutput() as output:
                 simulation = _built(recorded)
                 output.lead_to(simulation)
-                return _replay_simulation(recorded, simulation)
+                return _replay_simulation(recorded, simulation, progress)
 
 
 def _check_versions(then: dict[str, str]) -> None:
@@ -112,11 +123,13 @@ def _helpers(facts: Mapping[str, Any]) -> HelperTexts:
     return HelperTexts(facts.get("helpers"))
 
 
-def _replay_program(recorded: Recorded) -> Comparison:
+def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
     facts = recorded.facts
     beside = Beside(recorded)
     trace = Trace("all", keep=False)
     trace.listen(beside.event)
+    whole = max(1, recorded.event_count)
+    trace.listen(lambda _: progress(min(1.0, beside.counts["event"] / whole)))
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace, recorder=beside)
     file = facts["file"]
     trouble = ""
@@ -141,7 +154,7 @@ def _replay_program(recorded: Recorded) -> Comparison:
     return Comparison(ticks=beside.ticks, events=beside.counts["event"], difference=difference, unfinished=unfinished)
 
 
-def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison:
+def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Progress) -> Comparison:
     """Runs a simulation beside its recording."""
     events = _Events(recorded)
     period = recorded.facts["period_us"]
@@ -154,11 +167,13 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation) -> Comparison
     scene = "" if recorded.facts["scene"] == simulation.world.fingerprint else "; it compiles to another scene than then"
     difference: str | None = None
     begun = False
+    whole = max(1, recorded.ticks)
     try:
         for _, tick, state, count in recorded.states():
             begun = True
             if tick:
                 simulation.step()
+                progress(tick / whole)
             now = simulation.world.state_bytes()
             where = f"at the end of tick {tick} ({seconds(tick * period):g} s)"
             if now != state:

@@ -36,7 +36,7 @@ function Replayed({ run }) {
   if (!told) return null;
   if (since) {
     return html`<div class="replayed" role="status">
-      <progress aria-label="Running again"></progress> running again … <span class="number">${passed.value.toFixed(0)} s</span>
+      <progress aria-label="Running again" value=${told.share || undefined}></progress> running again … <span class="number">${told.share ? `${Math.floor(100 * told.share)} %, ` : ""}${passed.value.toFixed(0)} s</span>
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }

@@ -8,11 +8,12 @@ import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
 import { whenText } from "./words.js";
 
-/** By their ids, what came of running recordings again: {since} while that goes on, then {agrees, text}. */
+/** By their ids, what came of running recordings again: {since, share} while that goes on, then {agrees, text}. */
 export const replays = signal({});
 /** What is being done and takes a while; null for nothing: {text, done?, of?}. */
 export const busy = signal(null);
 
+const LOOK = 300; // how often it is asked how far one has been run again [ms]
 const cancels = new Map();
 
 /** Begins a session that lives through a recording again, and shows it; one that was only looked at is ended. */
@@ -51,12 +52,19 @@ function note(id, told) {
 export async function replayRun(run) {
   const cancel = new AbortController();
   cancels.set(run.id, cancel);
-  note(run.id, { since: Date.now() });
+  const path = `/api/recordings/${run.id}/replay`;
+  note(run.id, { since: Date.now(), share: 0 });
+  const look = setInterval(async () => {
+    const told = await call("GET", path, undefined, cancel.signal).catch(() => null);
+    const { since } = replays.value[run.id];
+    if (since && told?.share) note(run.id, { since, share: told.share });
+  }, LOOK);
   try {
-    note(run.id, await call("POST", `/api/recordings/${run.id}/replay`, {}, cancel.signal));
+    note(run.id, await call("POST", path, {}, cancel.signal));
   } catch (error) {
     note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }
+  clearInterval(look);
   cancels.delete(run.id);
 }
 

@@ -82,12 +82,43 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     expect(present).to_contain_text("a mind said stop")
 
 
+HALF = """import os, time
+from actr3d.actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n!10"):
+        while int(n) == 5 and os.path.exists(__file__ + ".held"):
+            time.sleep(0.01)
+        goal.set(f"count {int(n) + 1}")
+Agent().run(1)
+"""
+
+
+def test_a_recording_that_is_run_again_shows_how_far_it_is(page: Page, workbench: Served, recordings: Path) -> None:
+    (workbench.folder / "half.py").write_text(HALF, encoding="utf-8")
+    name = recorded(workbench, "half.py")
+    held = workbench.folder / "half.py.held"
+    held.touch()
+    open_tab(page, "Runs")
+    page.get_by_role("button", name="Read the list again").click()
+    row(page, name).click()
+    page.get_by_role("button", name="Replay", exact=True).click()
+    expect(page.get_by_text(re.compile(r"running again … 6\d %, \d+ s"))).to_be_visible()
+    share = float(page.get_by_role("progressbar", name="Running again").get_attribute("value") or 0)
+    assert 0.6 <= share < 0.7
+    held.unlink()
+    expect(page.get_by_text("Every byte agrees.")).to_be_visible()
+    workbench.post(f"/api/recordings/{name}/delete")
+    (workbench.folder / "half.py").unlink()
+
+
 def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, workbench: Served, recordings: Path, two: list[str]) -> None:
     spare = [recorded(workbench, "counting.py") for _ in range(2)]
     open_tab(page, "Runs")
     row(page, two[1]).click()
     page.get_by_role("button", name="Replay", exact=True).click()
-    expect(page.get_by_text("running again")).to_be_visible()
     expect(page.get_by_text("Every byte agrees. 685 ticks")).to_be_visible()
     expect(page.get_by_role("link", name="HTML replay")).to_have_attribute("href", re.compile("form=replay.html"))
     with page.expect_download() as taken:

@@ -6,9 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
+import httpx
 import pytest
 
 from tests.server.desk import PATIENCE
@@ -62,6 +65,48 @@ def test_nothing_stays_behind(tmp_path: Path, sign: signal.Signals) -> None:
         running.process.send_signal(sign)
         assert running.process.wait(PATIENCE) == (0 if sign == signal.SIGINT else -sign)
         all_end(processes)
+
+
+ONCE = """
+import os, time
+from pathlib import Path
+mark = Path({mark!r})
+while mark.exists():
+    mark.write_text(str(os.getpid()))
+    time.sleep(0.01)
+"""
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL])
+def test_a_recording_that_is_run_again_ends_with_the_server(tmp_path: Path, sign: signal.Signals) -> None:
+    with served(tmp_path / "models") as running:
+        mark = running.folder / "mark"
+        (running.folder / "once.py").write_text(ONCE.format(mark=str(mark)), encoding="utf-8")
+        name = running.post("/api/sessions", {"model": "once.py", "run": True}).json()["id"]
+        end = time.monotonic() + PATIENCE
+        while (told := running.get(f"/api/sessions/{name}").json())["state"] is None or told["state"]["status"] != "ended":
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        running.post(f"/api/sessions/{name}/close")
+        mark.touch()
+        replay = f"/api/recordings/{told['session']['recording']}/replay"
+
+        def ask() -> None:
+            with suppress(httpx.HTTPError):
+                running.post(replay)
+
+        asking = threading.Thread(target=ask, daemon=True)
+        asking.start()
+        while not mark.read_text(encoding="utf-8"):
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        assert running.get(replay).json() == {"share": 0.0}
+        processes = descendants(running.process.pid)
+        assert int(mark.read_text(encoding="utf-8")) in processes
+        running.process.send_signal(sign)
+        running.process.wait(PATIENCE)
+        all_end(processes)
+        asking.join(PATIENCE)
 
 
 def test_it_ends_while_a_model_waits_to_begin(tmp_path: Path) -> None:

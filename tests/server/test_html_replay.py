@@ -90,10 +90,10 @@ def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, mo
 
 
 def test_it_is_made_aside_and_what_goes_wrong_is_told(desk: Desk, walked: Path, tmp_path: Path) -> None:
-    made = desk.do(replay_of(walked))
+    made = desk.do(replay_of(desk.workers, walked))
     assert inside(made.read_text(encoding="utf-8"))["model"] == "model.py"
     made.unlink()
     broken = tmp_path / "broken.sqlite"
     broken.write_bytes(b"nothing")
     with pytest.raises(ReplayError, match="is no recording"):
-        desk.do(replay_of(broken))
+        desk.do(replay_of(desk.workers, broken))

@@ -80,6 +80,13 @@ def test_a_port_that_is_taken_is_told(server: Served) -> None:
     assert (done.returncode, "in use" in done.stderr) == (1, True)
 
 
+def test_the_server_answers_before_it_has_loaded_what_only_runs_and_their_views_need() -> None:
+    text = "import sys, workbench.cli, workbench.app, workbench.serving; print(*{name.partition('.')[0] for name in sys.modules})"
+    loaded = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True).stdout.split()
+    assert not {"numba", "scipy", "viser", "mjviser", "trimesh"} & set(loaded)
+    assert "fastapi" in loaded
+
+
 # -- REST
 
 

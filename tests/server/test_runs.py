@@ -1,8 +1,7 @@
-"""What lists tell of recordings, how two are compared, and how they are run again."""
+"""What lists tell of recordings, and how two are compared."""
 
 from __future__ import annotations
 
-import asyncio
 import os
 import time
 from pathlib import Path
@@ -15,7 +14,6 @@ from actr3d.trace import TraceEvent
 from tests.server.desk import Desk
 from workbench.comparing import CONTEXT, compare
 from workbench.recordings import Recordings
-from workbench.rerunning import BusyError, rerun
 
 MODELS = Path(__file__).parents[2] / "models"
 APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
@@ -151,21 +149,3 @@ def test_damaged_recordings_are_not_compared(tmp_path: Path) -> None:
     one, other = written(tmp_path, "a", firing(3)), written(tmp_path, "b", firing(3), parameters=["no", "dict"])
     with pytest.raises(RecordingError, match="damaged"):
         compare(one, other)
-
-
-def test_a_recording_is_run_again_while_somebody_waits(tmp_path: Path) -> None:
-    sleeper = "import time\ntime.sleep(600)\n"
-    facts = {"sources": {"m.py": sleeper}, "file": "m.py", "until": None}
-    path = written(tmp_path, "a", [], **facts)
-
-    async def gone() -> bool:
-        return time.monotonic() > begin + 1
-
-    async def three() -> list[object]:
-        return await asyncio.gather(*(rerun(path, gone) for _ in range(3)), return_exceptions=True)
-
-    begin = time.monotonic()
-    first, second, third = asyncio.run(three())
-    assert first == second == {"agrees": None, "text": "cancelled"}
-    assert isinstance(third, BusyError)
-    assert time.monotonic() - begin < 30

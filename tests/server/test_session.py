@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
@@ -381,6 +382,42 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MOST + 1}"]
 
 
+def test_there_is_a_bound_to_sessions_that_are_opened_at_once(desk: Desk, tmp_path: Path) -> None:
+    from workbench.sessions import MOST
+
+    sessions = desk.sessions(tmp_path)
+    (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
+
+    def opening(count: int) -> list[Any]:
+        async def open_all() -> list[Any]:
+            one = (sessions.open("model.py", {}, seed=1, record=False, run=False) for _ in range(count))
+            return await asyncio.gather(*one, return_exceptions=True)
+
+        return desk.do(open_all())
+
+    for session in opening(MOST):
+        Talk(desk, session, sessions).until("paused")
+    opening(MOST)
+    assert len(sessions.all()) == MOST
+
+
+@pytest.mark.parametrize("where", ["launch", "recording"])
+def test_where_no_run_can_be_begun_there_is_no_session(desk: Desk, tmp_path: Path, where: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    sessions = desk.sessions(tmp_path)
+    (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
+
+    async def no_more() -> Any:
+        raise OSError("no more processes")
+
+    if where == "launch":
+        monkeypatch.setattr(desk.workers, "launch", no_more)
+    else:
+        (tmp_path / ".workbench").write_text("where a folder is to be", encoding="utf-8")
+    with pytest.raises(OSError, match=r"no more processes|\.workbench"):
+        desk.do(sessions.open("model.py", {}, seed=1, record=True, run=False))
+    assert sessions.all() == []
+
+
 def test_a_check_that_loads_says_what_loading_says(desk: Desk, tmp_path: Path) -> None:
     sessions = desk.sessions(tmp_path)
     path = tmp_path / "model.py"
@@ -431,25 +468,6 @@ def test_what_a_program_printed_before_an_endless_loop_is_shown(desk: Desk, tmp_
     assert next(data["production"] for _, _, kind, data in talk.events if kind == "fire") == "begin"
     assert talk.state["status"] == "running"
     assert talk.state["time"] > 0
-
-
-def test_a_run_is_stale_when_a_module_that_its_model_imports_has_changed(desk: Desk, tmp_path: Path) -> None:
-    (tmp_path / "deep.py").write_text("COUNT = 1\n", encoding="utf-8")
-    (tmp_path / "helper.py").write_text("from deep import COUNT\n", encoding="utf-8")
-    (tmp_path / "other.py").write_text("COUNT = 3\n", encoding="utf-8")
-    talk = desk.begin(tmp_path, "from helper import COUNT\n" + COUNTING)
-    assert not talk.facts["stale"]
-    (tmp_path / "other.py").write_text("COUNT = 4\n", encoding="utf-8")
-    assert not talk.facts["stale"]
-    (tmp_path / "deep.py").write_text("COUNT = 2\n", encoding="utf-8")
-    assert talk.facts["stale"]
-    (tmp_path / "deep.py").write_text("COUNT = 1\n", encoding="utf-8")
-    assert not talk.facts["stale"]
-    (tmp_path / "helper.py").write_text("COUNT = 2\n", encoding="utf-8")
-    assert talk.facts["stale"]
-    talk.say("restart")
-    talk.wait(lambda: talk.session.run == 2)
-    assert not talk.facts["stale"]
 
 
 def test_settings_of_a_parameter_that_has_another_name_now_are_said_to_be_wrong(desk: Desk, tmp_path: Path) -> None:

@@ -1,14 +1,16 @@
-"""Makes replays in processes of their own, so that the server never waits for one."""
+"""Makes replays in workers, so that the server never waits for one."""
 
 from __future__ import annotations
 
 import asyncio
 import os
-import sys
 import tempfile
 from pathlib import Path
 
 from actr3d.errors import Actr3dError
+from workbench.jobs import doing
+from workbench.worker.messages import Start
+from workbench.worker.workers import Workers
 
 MOST = 2
 """So many are made at once; others wait for their turn."""
@@ -24,38 +26,26 @@ class ReplayError(Actr3dError):
     status = 409
 
 
-async def replay_of(path: Path) -> Path:
+async def replay_of(workers: Workers, path: Path) -> Path:
     """Returns a new file with the replay of a recording, for the caller to delete.
 
     Raises:
         ReplayError: If it cannot be made, or not in time.
-        OSError: If no file or process can be had.
+        OSError: If no file or worker can be had.
     """
     descriptor, name = tempfile.mkstemp(prefix="replay-", suffix=".html")
     os.close(descriptor)
     made = Path(name)
     try:
-        async with _turns:
-            await _make(path, made)
+        async with _turns, doing(workers, Start(job="page", path=str(path), to=name)) as making:
+            async with asyncio.timeout(LONGEST):
+                await making.over.wait()
+            if making.result is None:
+                raise ReplayError(f"the replay cannot be made: {making.problem}")
+    except TimeoutError:
+        made.unlink(missing_ok=True)
+        raise ReplayError(f"the replay was not made within {LONGEST:g} s") from None
     except BaseException:
         made.unlink(missing_ok=True)
         raise
     return made
-
-
-async def _make(path: Path, to: Path) -> None:
-    command = [sys.executable, "-m", "workbench.html_replay", str(path), str(to)]
-    quiet, pipe = asyncio.subprocess.DEVNULL, asyncio.subprocess.PIPE
-    process = await asyncio.create_subprocess_exec(*command, stdin=quiet, stdout=quiet, stderr=pipe)
-    try:
-        async with asyncio.timeout(LONGEST):
-            _, complaint = await process.communicate()
-    except TimeoutError:
-        raise ReplayError(f"the replay was not made within {LONGEST:g} s") from None
-    finally:
-        if process.returncode is None:
-            process.kill()
-            await process.wait()
-    if process.returncode:
-        lines = complaint.decode(errors="replace").strip().splitlines()
-        raise ReplayError(f"the replay cannot be made: {lines[-1] if lines else f'exit code {process.returncode}'}")

@@ -34,6 +34,7 @@ from workbench.worker.drawings import Drawings
 from workbench.worker.messages import Facts
 from workbench.worker.past import Past
 from workbench.worker.surroundings import surroundings
+from workbench.worker.told_helpers import ToldHelpers
 from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
@@ -73,7 +74,7 @@ class BuiltRun:
         start = self._start
         limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
         with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
-            helpers = HelperTexts(start.helpers)
+            helpers = ToldHelpers(self._conductor.link, start.helpers)
             simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder), helpers)
             output.lead_to(simulation)
             self._simulation = simulation

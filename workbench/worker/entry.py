@@ -57,6 +57,11 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
 
 def _run(link: Link, conductor: Conductor) -> None:
     start = link.start
+    if start.job in ("replay", "page"):
+        from workbench.worker.recorded import make_page, replay_again
+
+        link.post(Reply(id=0, result=to_json((replay_again if start.job == "replay" else make_page)(link)).encode()))
+        return
     compile_source(start.source, start.path)  # what is wrong with the text is told before anything else
     listing = listing_of(start.source, start.path)
     if start.job == "check":

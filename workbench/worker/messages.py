@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import Any, Literal
 
 import msgspec
@@ -21,19 +22,28 @@ def whole(text: str, most: int = 10_000) -> str:
     return told.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
+def digest_of(text: str) -> str:
+    """Returns what tells a text from others."""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
 # -- to the worker
 
 
 class Start(Message, frozen=True, kw_only=True):
     """Begins a run; the first message."""
 
-    job: Literal["run", "check"] = "run"
-    """`check` loads the model, builds what it describes and runs nothing."""
+    job: Literal["run", "check", "replay", "page"] = "run"
+    """`check` loads the model, builds what it describes and runs nothing; `replay` runs a recording again and compares; `page` makes
+    one HTML file of it."""
     path: str
-    source: str
-    folder: str
+    """The model; or the recording."""
+    source: str = ""
+    folder: str = ""
+    to: str = ""
+    """The file that is to be made."""
     settings: dict[str, Any] = {}
-    seed: int | None = None
+    seed: int | str | None = None
     record: str | None = None
     commands: list[tuple[int, dict[str, Any]]] = []
     """What users did in an earlier run, to be done again: after which tick, and what (`Command.to_data`)."""
@@ -131,6 +141,21 @@ class Cut(Message, frozen=True, kw_only=True):
     events: int
 
 
+class Loaded(Message, frozen=True, kw_only=True):
+    """The model has loaded a helper module."""
+
+    file: str
+    """Where it lies."""
+    digest: str
+    """Tells its text from others; see `digest_of`."""
+
+
+class Share(Message, frozen=True, kw_only=True):
+    """So much of a job is done, from 0 to 1."""
+
+    done: float
+
+
 class Notice(Message, frozen=True, kw_only=True):
     """Something to tell the user."""
 
@@ -170,7 +195,7 @@ class Over(Message, frozen=True, kw_only=True):
 
 
 ToWorker = Start | Do | Draw | Leave | Where
-FromWorker = Facts | State | News | Cut | Notice | Reply | At | Over
+FromWorker = Facts | State | News | Cut | Loaded | Share | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)

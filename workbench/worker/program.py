@@ -7,7 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.picture import picture_of
@@ -25,6 +24,7 @@ from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor, Leaving
 from workbench.worker.messages import Facts
 from workbench.worker.recorded_once import RecordedOnce
+from workbench.worker.told_helpers import ToldHelpers
 from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
 
@@ -60,7 +60,7 @@ class ProgramRun:
         """Up to where it goes without being shown or held [us]."""
         self._again = False
         self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
-        """The helper modules as they were the first time; see `HelperTexts`."""
+        """The helper modules as they were the first time; see `actr3d.actr.helper_texts`."""
 
     def play(self) -> None:
         """Runs it, and again where a user goes back, until the worker is to leave."""
@@ -92,7 +92,7 @@ class ProgramRun:
         self._clock = 0
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass)
-        helpers = HelperTexts(self._helpers)
+        helpers = ToldHelpers(conductor.link, self._helpers)
         helpers.heard = self._keep_helpers
         if self._recording is not None:
             limits.recorder = again = RecordedOnce(self._recording)

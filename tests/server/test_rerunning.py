@@ -1,0 +1,127 @@
+"""Recordings that are run again: each in a worker of its own, which tells how far it has come."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.desk import PATIENCE, Desk
+from workbench.rerunning import BusyError, Reruns
+
+BUILT = """import os, time
+from pathlib import Path
+from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n!9"):
+        {does}
+        goal.set(f"count {{int(n) + 1}}")
+    def end(goal="count 9"):
+        self.stop()
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {{"walker": Walker}}, seed=1)
+"""
+PROGRAM = BUILT.replace("def build() -> Simulation:\n    return ", "made = ") + "made.run(0.6)\n"
+HALF = """
+        while int(n) == 5 and not Path({gate!r}).exists():
+            time.sleep(0.01)
+"""
+
+
+async def waits() -> bool:
+    return False
+
+
+def recorded(desk: Desk, folder: Path, source: str) -> Path:
+    """Records a run, and returns the recording."""
+    talk = desk.begin(folder, source, record=True, run=True, wait="ended")
+    desk.do(talk.session.stop())
+    return talk.sessions.recordings.path(talk.facts["recording"])
+
+
+@pytest.mark.parametrize("source", [BUILT, PROGRAM], ids=["built", "program"])
+def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, source: str) -> None:
+    gate = tmp_path / "gate"
+    gate.touch()
+    path = recorded(desk, tmp_path, source.format(does=HALF.format(gate=str(gate))))
+    gate.unlink()
+    reruns = Reruns(desk.workers)
+
+    async def run() -> tuple[float, dict[str, Any]]:
+        assert reruns.share(path) is None
+        running = asyncio.create_task(reruns.run(path, waits))
+        share: float | None = 0.0
+        end = time.monotonic() + PATIENCE
+        while share is not None and share < 0.4:
+            assert time.monotonic() < end
+            await asyncio.sleep(0.01)
+            share = reruns.share(path)
+        assert share is not None, await running
+        gate.touch()
+        return share, await running
+
+    share, told = desk.do(run())
+    assert share < 0.7
+    assert told["agrees"] is True
+    assert told["text"].startswith("every byte agrees: ")
+    assert reruns.share(path) is None
+
+
+@pytest.mark.parametrize(
+    ("does", "agrees", "text"),
+    [
+        ("print(os.path.exists({mark!r}))", False, "differs: event "),
+        ("os.path.exists({mark!r}) and os._exit(7)", None, "exit code 7"),
+        ("os.path.exists({mark!r}) and os.abort()", None, "ended by SIGABRT"),
+        ("os.path.exists({mark!r}) and bytearray(10**12)", False, "MemoryError"),
+        ("os.path.exists({mark!r}) and os.write(1, b'x' * 10**7)", True, "every byte agrees"),
+    ],
+)
+def test_whatever_a_model_does_the_second_time_is_told(desk: Desk, tmp_path: Path, does: str, agrees: bool | None, text: str) -> None:
+    mark = tmp_path / "mark"
+    path = recorded(desk, tmp_path, BUILT.format(does=does.format(mark=str(mark))))
+    mark.touch()
+    told = desk.do(Reruns(desk.workers).run(path, waits))
+    assert told["agrees"] is agrees
+    assert text in told["text"]
+
+
+def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) -> None:
+    path = tmp_path / "x.sqlite"
+    path.write_bytes(b"nothing" * 1000)
+    told = desk.do(Reruns(desk.workers).run(path, waits))
+    assert told == {"agrees": None, "text": "it is no recording: file is not a database"}
+
+
+def test_it_ends_when_nobody_waits_any_more_and_when_it_comes_no_further(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gate = tmp_path / "gate"
+    gate.touch()
+    path = recorded(desk, tmp_path, BUILT.format(does=HALF.format(gate=str(gate))))
+    gate.unlink()
+    reruns = Reruns(desk.workers)
+    begin = time.monotonic()
+
+    async def gone() -> bool:
+        return time.monotonic() > begin + 0.5
+
+    async def three() -> list[object]:
+        return await asyncio.gather(*(reruns.run(path, gone) for _ in range(3)), return_exceptions=True)
+
+    first, second, third = desk.do(three())
+    assert first == second == {"agrees": None, "text": "cancelled"}
+    assert isinstance(third, BusyError)
+    monkeypatch.setattr("workbench.rerunning.PATIENCE", 0.5)
+    assert desk.do(reruns.run(path, waits)) == {"agrees": None, "text": "it came no further for 0.5 s"}
+    assert reruns.share(path) is None

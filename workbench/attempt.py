@@ -1,0 +1,79 @@
+"""An attempt to begin a run: what it begins with, and the worker that it is given."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.limits import fresh_seed
+from actr3d.actr.reading import read_source
+from workbench.files import ModelFolder
+from workbench.texts import Texts
+from workbench.worker.messages import Start
+from workbench.worker.workers import Worker
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relived:
+    """An earlier run that is to be lived through again."""
+
+    source: str
+    """The model's text then."""
+    commands: list[tuple[int, dict[str, Any]]]
+    """What users did, to be done again: after which tick, and what."""
+    helpers: dict[str, tuple[str, str]]
+    """Its helper modules, as `actr3d.actr.helper_texts` keeps them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """What is wanted of a run; see `Start`."""
+
+    settings: dict[str, Any] = field(default_factory=dict[str, Any])
+    """Values of parameters."""
+    seed: int | str | None = None
+    """None for a fresh one."""
+    record: bool = True
+    run: bool = False
+    """Whether it goes on at once."""
+    relived: Relived | None = None
+    """The run that it is to be once more; None for a new one of what is in the file now."""
+
+
+def start_of(path: Path, wanted: Wanted, **more: Any) -> Start:
+    """Returns how a run of a model begins.
+
+    Args:
+        path: The model file.
+        wanted: What is wanted of it.
+        more: Other fields of `Start`, as they are.
+
+    Raises:
+        ModelFileError: If the file cannot be read.
+        OSError: If it cannot be read any more.
+    """
+    relived = wanted.relived
+    if relived is None:
+        more |= {"source": read_source(path), "version": ModelFolder.version(path)}
+    else:
+        more |= {"source": relived.source, "version": hashlib.sha256(relived.source.encode()).hexdigest()}
+        more |= {"commands": relived.commands, "helpers": relived.helpers}
+    seed = fresh_seed() if wanted.seed is None else wanted.seed
+    return Start(path=str(path), folder=str(path.parent), settings=wanted.settings, seed=seed, run=wanted.run, **more)
+
+
+@dataclass(eq=False)
+class Attempt:
+    """A run in its worker, from when that is told to begin."""
+
+    start: Start
+    worker: Worker
+    texts: Texts = field(init=False)
+    """What it is made of."""
+    over: bool = False
+    """Whether the worker has ended."""
+
+    def __post_init__(self) -> None:
+        self.texts = Texts(self.start)

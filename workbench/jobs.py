@@ -1,0 +1,81 @@
+"""What a worker is needed for that is no run: it does one thing, and ends."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+
+from workbench.attendant import Attendant
+from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
+from workbench.worker.workers import Worker, Workers
+
+MOST_NOTICES = 500
+"""No more is kept of what a worker complains of."""
+
+
+class Job:
+    """One thing that a worker does, as far as it has come."""
+
+    def __init__(self) -> None:
+        self.share = 0.0
+        """How much is done, from 0 to 1."""
+        self.result: bytes | None = None
+        """What came of it, as JSON; None where nothing did, or not yet."""
+        self.notices: list[Notice] = []
+        """What the worker complained of."""
+        self.ending = ""
+        """How the worker ended, where that was not in good order."""
+        self.over = asyncio.Event()
+
+    @property
+    def problem(self) -> str:
+        """Why nothing came of it."""
+        errors = [notice.text for notice in self.notices if notice.level == "error"]
+        return errors[-1] if errors else self.ending or "the worker has ended"
+
+    def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
+        """Takes what the worker says."""
+        if isinstance(message, Share):
+            self.share = message.done
+        elif isinstance(message, Reply):
+            self.result = message.result
+        elif isinstance(message, Notice):
+            self.tell(message)
+
+    def take_end(self, worker: Worker, ending: str) -> None:
+        """Takes how the worker ended."""
+        self.ending = ending
+        self.over.set()
+
+    def tell(self, notice: Notice) -> None:
+        """Takes what the worker complains of."""
+        if notice.level != "info":  # what is printed is of no interest
+            self.notices = [*self.notices[1 - MOST_NOTICES :], notice]
+
+    def busy(self, worker: Worker) -> bool:
+        """Tells that nobody wants to know where the worker is."""
+        return False
+
+
+@asynccontextmanager
+async def doing(workers: Workers, start: Start, job: Job | None = None) -> AsyncGenerator[Job]:
+    """Lets a worker do something inside the block; it is ended with that.
+
+    Args:
+        workers: Who gives workers.
+        start: What the worker is told.
+        job: Where it is noted how far it has come; None for a new one.
+
+    Raises:
+        OSError: If no worker can be started.
+    """
+    noted = job or Job()
+    worker = await workers.launch()
+    serving = asyncio.create_task(Attendant(worker, start, noted).serve())
+    try:
+        yield noted
+    finally:
+        if not noted.over.is_set():
+            await worker.stop()
+        await serving
