@@ -101,6 +101,16 @@ def test_a_cycle_ends_when_a_production_fires(desk: Desk, tmp_path: Path) -> Non
     assert len(times) == 3
 
 
+def test_cycles_that_come_fast_add_up(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY)
+    talk.say("speed", factor=0.05)
+    for _ in range(3):
+        talk.say("cycle")
+    talk.say("speed", factor=None)
+    talk.until("paused", tick=talk.wait(lambda: talk.state["reason"].endswith(" fired"))["tick"])
+    assert [name for _, name in fires(talk.events)][2:] == [talk.state["reason"].removesuffix(" fired")]
+
+
 def test_a_breakpoint_holds_the_run_where_its_production_fires(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
     talk.say("breakpoints", productions=["turn"])
