@@ -1,6 +1,6 @@
 // Two recordings side by side, over the whole page: what they began with, what came of them, where their traces part, their curves.
 
-import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { call } from "../server.js";
 import { whenText } from "../runs/words.js";
@@ -63,7 +63,7 @@ function Dialog() {
   const box = useRef(null);
   const kinds = useSignal([]);
   const told = useComparison(kinds.value);
-  useEffect(() => box.current.showModal(), []);
+  useLayoutEffect(() => box.current.showModal(), []);
 
   return html`<dialog ref=${box} class="compare" aria-labelledby="compare-title" onClose=${() => (pair.value = null)}>
     <header>

@@ -66,7 +66,7 @@ export function ProductionList({ all, chosen }) {
     if (to !== undefined && ordered.length > 0) {
       const { system, name } = ordered[Math.max(0, Math.min(ordered.length - 1, to))];
       production.value = { system, name };
-      if (event.target.tagName !== "INPUT") requestAnimationFrame(() => box.current?.querySelector("[aria-current=true]")?.focus());
+      if (event.target.tagName !== "INPUT") box.current.querySelectorAll("button.name")[ordered.findIndex((one) => one.system === system && one.name === name)].focus();
     } else if (event.key === "b" && event.target.classList.contains("name") && chosen) toggleBreakpoint(chosen.name);
     else return;
     event.preventDefault();

@@ -83,7 +83,8 @@ export async function deleteRuns(all) {
     }
   }
   busy.value = null;
-  chosen.value = new Set();
+  const done = new Set(list.map(({ id }) => id));
+  chosen.value = new Set([...chosen.value].filter((id) => !done.has(id))); // others may have been chosen meanwhile
   if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
   await listRuns();
 }
