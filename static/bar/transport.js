@@ -5,7 +5,7 @@ import { bindKey, keyText } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { settable } from "../parts/settable.js";
 import { order } from "../server.js";
-import { running, session, state } from "../store.js";
+import { over, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { runUntil } from "./until.js";
 
@@ -14,7 +14,7 @@ const SPEEDS = [["1/20 x", 0.05], ["1/10 x", 0.1], ["1/4 x", 0.25], ["1/2 x", 0.
 
 /** Whether the run cannot go on from here. */
 function isOver() {
-  return ["ended", "failed"].includes(state.value?.status) || !session.value?.alive;
+  return over.value || !session.value?.alive;
 }
 
 /** Runs or pauses; a run that is over begins again. */

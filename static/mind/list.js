@@ -2,15 +2,16 @@
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { systemsOf } from "./agents.js";
-import { production } from "./asked.js";
+import { at, production } from "./asked.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
-import { state } from "../store.js";
+import { over, state } from "../store.js";
 
 /** How a production stands: [class, sign, in words]. */
 export function standing(reason) {
   if (!reason) return ["", "", ""];
   if (reason.matches === null) return ["unknown", "?", "cannot be told"];
-  if (reason.selected) return ["selected", "▸", reason.matches ? "matches, and is about to fire" : "was chosen, but matches no longer"];
+  const comes = over.value && at.value === null ? "was chosen as the run ended" : "is about to fire";
+  if (reason.selected) return ["selected", "▸", reason.matches ? `matches, and ${comes}` : "was chosen, but matches no longer"];
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }
 

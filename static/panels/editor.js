@@ -137,5 +137,5 @@ export const editor = {
   id: "editor",
   title: "Editor",
   View: Editor,
-  badge: () => (unsaved().length > 0 ? { text: "●", title: "unsaved" } : null),
+  badge: () => (unsaved().length > 0 ? { text: "", title: "unsaved" } : null),
 };

@@ -104,5 +104,5 @@ export const productions = {
   id: "productions",
   title: "Productions",
   View: Productions,
-  badge: () => (held.value === null ? null : { text: "●", level: "bad" }),
+  badge: () => (held.value === null ? null : { text: "", title: "paused at a breakpoint", level: "bad" }),
 };

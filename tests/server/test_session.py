@@ -237,6 +237,7 @@ def test_why_and_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     assert parts["walker.eye"]["state"]["busy"] in (True, False)
     world = talk.facts["world"]
     assert (world["apertures"], world["bodies"]["walker"]["shoulders"]) == (["aperture"], 0.45)
+    assert world["widths"] == {"aperture": [1, 300]}
 
 
 def test_a_program_runs_steps_goes_back_and_is_explained(desk: Desk, tmp_path: Path) -> None:
