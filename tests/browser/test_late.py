@@ -217,6 +217,45 @@ def test_a_row_chosen_before_the_next_picture_stays_chosen(pages: Callable[..., 
     expect(page.locator("#events tr.fire").first).to_have_attribute("aria-selected", "true")
 
 
+def test_the_focus_is_where_an_arrow_key_has_taken_it_at_once(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    open_tab(page, "Productions")
+    name = page.locator(".production-list button.name[tabindex='0']")
+    expect(name).to_be_visible()
+    name.focus()
+    moved = page.evaluate(
+        """() => {
+            const before = document.activeElement;
+            before.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowDown", bubbles: true, cancelable: true }));
+            return before.matches(".name") && document.activeElement.matches(".name") && document.activeElement !== before;
+        }"""
+    )
+    assert moved
+
+
+def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    for _ in range(2):
+        shows(page, "#status", "at its start")
+        page.click("#run")
+        shows(page, "#status", "ended")
+        page.click("#restart")
+    shows(page, "#status", "at its start")
+    open_tab(page, "Runs")
+    finished = page.locator(".runs-table tbody tr:not(.space):not(.present)")
+    names = [finished.nth(n).get_attribute("data-run") for n in range(2)]
+    first, second = (page.locator(f"[data-run='{name}']") for name in names)
+    first.click()
+    with holding(page, "**/api/recordings/*/delete", lambda _: True):
+        page.get_by_role("toolbar", name="The chosen run").get_by_role("button", name="Delete").click()
+        page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+        second.click()
+        expect(second).to_have_attribute("aria-selected", "true")
+    expect(first).to_have_count(0)
+    drawn(page)
+    expect(second).to_have_attribute("aria-selected", "true")
+
+
 def test_what_is_written_in_fields_stays_as_it_is_written(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)

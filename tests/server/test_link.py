@@ -27,11 +27,15 @@ def state(tick: int) -> State:
     )
 
 
+def rests(_: Link) -> None:
+    """Is what a thread of the link does here."""
+
+
 @pytest.fixture
 def link(monkeypatch: pytest.MonkeyPatch) -> Link:
     """A link that sends nothing yet, so that all waits in its order."""
-    monkeypatch.setattr(Link, "_read", lambda _: None)
-    monkeypatch.setattr(Link, "_write", lambda _: None)
+    monkeypatch.setattr(Link, "_read", rests)
+    monkeypatch.setattr(Link, "_write", rests)
     server, worker = socket.socketpair()
     server.sendall(framed(Start(path="model.py", source="", folder=".")))
     with server, worker:
