@@ -2,6 +2,7 @@
 
 import { signal } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
+import { saveFile } from "../parts/picture.js";
 import { call, show, wish } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
@@ -58,6 +59,20 @@ export async function replayRun(run) {
     note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }
   cancels.delete(run.id);
+}
+
+/** Has the HTML replay of a recording made, which takes a while, and hands it to the user. */
+export async function takeHtml(run, address) {
+  if (busy.value) return;
+  busy.value = { text: "Making the HTML replay …" };
+  try {
+    const response = await fetch(address);
+    if (!response.ok) throw new Error((await response.json()).error);
+    saveFile(`${run.id}.replay.html`, await response.blob());
+  } catch (error) {
+    complain(`The HTML replay of ${run.model} cannot be made: ${error.message}`);
+  }
+  busy.value = null;
 }
 
 export function cancelReplay(id) {

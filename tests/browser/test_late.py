@@ -256,6 +256,27 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     expect(second).to_have_attribute("aria-selected", "true")
 
 
+def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    open_tab(page, "Runs")
+    page.locator("tr.present").click()
+    asked: list[Route] = []
+    page.route(re.compile("form=replay.html"), lambda route: asked.append(route))
+    link, told = page.get_by_role("link", name="HTML replay"), page.get_by_text("Making the HTML replay")
+    link.click()
+    expect(told).to_be_visible()
+    link.click()  # one is enough
+    with page.expect_download() as taken:
+        asked[0].fulfill(body="<title>replay</title>")
+    assert taken.value.suggested_filename.startswith("doorway-")
+    assert taken.value.suggested_filename.endswith(".replay.html")
+    expect(told).to_have_count(0)
+    assert len(asked) == 1
+
+
 def test_what_is_written_in_fields_stays_as_it_is_written(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
