@@ -44,8 +44,13 @@ export async function call(method, path, body, signal) {
  * of two things chosen one soon after the other, the first may be ready last. */
 export function wish() {
   wishes += 1;
-  const mine = wishes;
-  return () => mine === wishes;
+  return sinceNow();
+}
+
+/** Returns what tells whether the user has wanted nothing else to be shown since now. */
+export function sinceNow() {
+  const now = wishes;
+  return () => now === wishes;
 }
 
 /** Shows a session from now on. */
@@ -56,11 +61,22 @@ export function show(session) {
   else connect();
 }
 
-/** Shows no session until another one is there to be shown. */
+/** Whether an error only says that another run is shown by now than the one that was spoken to. */
+export const isLeft = (error) => error.left === true;
+
+/** Shows no session until another one is there to be shown; of the one before nothing is heard any more. */
 function leave() {
   shown = null;
   held.length = 0;
   forget();
+  abandon(() => Object.assign(new Error("another run is shown now"), { left: true }));
+}
+
+/** Gives up waiting for whatever was said. */
+function abandon(reason) {
+  const all = [...waiting.values()];
+  waiting.clear();
+  for (const { reject } of all) reject(reason());
 }
 
 /** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
@@ -69,6 +85,7 @@ export async function showModel(model, { run = false } = {}) {
   if (model !== session.peek()?.model) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessions.filter((session) => session.model === model).at(-1);
+  if (!wanted() && !run) return;
   if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
     if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
@@ -103,8 +120,7 @@ function connect() {
   };
   socket.onclose = () => {
     connected.value = false;
-    for (const done of waiting.values()) done({ result: null, error: "the connection was lost" });
-    waiting.clear();
+    abandon(() => new Error("the connection was lost"));
     setTimeout(connect, AGAIN);
   };
 }
@@ -131,8 +147,10 @@ function update() {
   rest.hurried = hurried.peek();
   for (const { replies = [] } of messages) {
     for (const reply of replies) {
-      waiting.get(reply.id)?.(reply);
+      const { resolve, reject } = waiting.get(reply.id) ?? {};
       waiting.delete(reply.id);
+      if (reply.error === null) resolve?.(reply.result);
+      else reject?.(new Error(reply.error));
     }
   }
 }
@@ -140,17 +158,17 @@ function update() {
 /** Says a command or asks a question; returns what comes of it, or throws an Error that says why not. */
 export function say(what) {
   return new Promise((resolve, reject) => {
-    if (socket?.readyState !== WebSocket.OPEN) {
-      reject(new Error("there is no connection to the workbench"));
+    if (shown === null || socket?.readyState !== WebSocket.OPEN) {
+      reject(new Error(shown === null ? "no run is shown" : "there is no connection to the workbench"));
       return;
     }
     number += 1;
-    waiting.set(number, ({ result, error }) => (error === null ? resolve(result) : reject(new Error(error))));
+    waiting.set(number, { resolve, reject });
     socket.send(JSON.stringify({ id: number, say: what }));
   });
 }
 
-/** Does a command whose result does not matter; an error is shown among the messages. */
+/** Does a command whose result does not matter; an error is shown among the messages, but for that another run is shown by now. */
 export function order(what) {
-  return say(what).catch((error) => complain(error.message));
+  return say(what).catch((error) => isLeft(error) || complain(error.message));
 }

@@ -20,6 +20,8 @@ export const opening = signal(null);
 export const connected = signal(null);
 
 export const running = computed(() => state.value?.status === "running");
+/** Whether the run is over, as it stands now. */
+export const over = computed(() => ["ended", "failed"].includes(state.value?.status));
 /** Whether the run goes as fast as it can: then drawing it is not to take too much of the processor. */
 export const hurried = computed(() => running.value && state.value.wanted === null);
 /** Whether there is a run that can be asked. */

@@ -12,8 +12,6 @@ from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": say.Run, "pause": say.Pause, "step": say.Step, "back": say.Back}
 MOST_SLIDERS = 8
-WIDEST = 300
-"""A slider goes up to this [cm]."""
 
 
 class Panel:
@@ -21,12 +19,12 @@ class Panel:
 
     Args:
         gui: Viser's side of it.
-        apertures: The names of the apertures.
+        apertures: By the name of each aperture the least and the greatest width that it can be set to [cm].
         look: How the scene is looked at.
         said: Takes what users do.
     """
 
-    def __init__(self, gui: Any, apertures: list[str], look: Look, said: Callable[[Any], None]) -> None:
+    def __init__(self, gui: Any, apertures: dict[str, tuple[int, int]], look: Look, said: Callable[[Any], None]) -> None:
         self._said = said
         self.apertures = apertures
         """What it was made for."""
@@ -40,8 +38,8 @@ class Panel:
             said(WORDS[buttons.value]())
 
         self._sliders: dict[str, Any] = {}
-        for name in apertures[:MOST_SLIDERS]:
-            slider = gui.add_slider(f"{name} [cm]", min=0, max=WIDEST, step=1, initial_value=0)
+        for name, (least, most) in list(apertures.items())[:MOST_SLIDERS]:
+            slider = gui.add_slider(f"{name} [cm]", min=least, max=most, step=1, initial_value=least)
             slider.on_update(partial(self._slid, name, slider))
             self._sliders[name] = slider
         self._camera = gui.add_dropdown("camera", VIEWS, initial_value=look.camera)
@@ -61,8 +59,9 @@ class Panel:
             self._time.content = text
         for name, width in state.apertures.items():
             slider = self._sliders.get(name)
-            if slider is not None and round(slider.value) != round(100 * width):
-                slider.value = min(WIDEST, round(100 * width))
+            shown = 0 if slider is None else max(slider.min, min(slider.max, round(100 * width)))
+            if slider is not None and round(slider.value) != shown:
+                slider.value = shown
 
     def choose(self, look: Look) -> None:
         """Shows how the scene is looked at."""

@@ -118,7 +118,7 @@ class SceneView:
                 self._server.scene.reset()
                 self._scene = _Drawn(self._server, facts, self._look, self._panel_for)
 
-    def _panel_for(self, apertures: list[str]) -> Panel:
+    def _panel_for(self, apertures: dict[str, tuple[int, int]]) -> Panel:
         """Returns the panel: that of the run before, where the same can be said to this one."""
         if self._panel is None or self._panel.apertures != apertures:
             self._panel = Panel(self._server.gui, apertures, self._look, self._said)
@@ -165,7 +165,7 @@ class _Drawn:
         panel: Returns viser's own panel for the apertures that there are.
     """
 
-    def __init__(self, server: Any, facts: Facts, look: Look, panel: Callable[[list[str]], Panel]) -> None:
+    def __init__(self, server: Any, facts: Facts, look: Look, panel: Callable[[dict[str, tuple[int, int]]], Panel]) -> None:
         import msgspec
         from mjviser import ViserMujocoScene
 
@@ -181,7 +181,7 @@ class _Drawn:
         self._overlays: dict[OverlayName, Overlay] = make_overlays(server, self._scene, self._model, world, look)
         eyes: Any = self._overlays["frustum"]
         self.cameras = Cameras(server, self._model, eyes)
-        self._panel = panel(list(world["apertures"]))
+        self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
         self._look: Look | None = None
 
     def asked(self, look: Look) -> tuple[OverlayName, ...]:

@@ -1,30 +1,25 @@
 // The aperture's free width: live, in cm and in shoulder widths (A/S).
 
-import { html, useRef, useSignal } from "../vendor/preact.js";
-import { order } from "../server.js";
+import { computed, html } from "../vendor/preact.js";
+import { settable } from "../parts/settable.js";
 import { alive, session, state } from "../store.js";
 
-const MOST = 200; // [cm]
-const HELD = 500; // so long after the last move the slider is the user's, not the run's [ms]
+const name = computed(() => Object.keys(state.value?.apertures ?? {})[0]);
+/** The free width [cm]. */
+const width = settable(
+  () => 100 * (state.value?.apertures[name.value] ?? 0),
+  (cm) => ({ type: "aperture", width: cm / 100, name: name.peek() }),
+);
 
 export function Aperture() {
-  const slid = useSignal(null); // what the user has set and the run may not show yet [cm]
-  const timer = useRef(0);
-  const name = Object.keys(state.value?.apertures ?? {})[0];
-  if (name === undefined) return null;
-  const width = slid.value ?? 100 * state.value.apertures[name];
-  const shoulders = Object.values(session.value?.world?.bodies ?? {}).find((body) => body.shoulders)?.shoulders;
-
-  function slide(event) {
-    slid.value = Number(event.currentTarget.value);
-    clearTimeout(timer.current);
-    timer.current = setTimeout(() => (slid.value = null), HELD);
-    order({ type: "aperture", width: slid.value / 100, name });
-  }
-
+  if (name.value === undefined) return null;
+  const cm = width.value.value;
+  const { bodies = {}, widths = {} } = session.value?.world ?? {};
+  const shoulders = Object.values(bodies).find((body) => body.shoulders)?.shoulders;
+  const [least, most] = widths[name.value] ?? [0, Math.round(cm)];
   return html`<label class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
     <span>${name}</span>
-    <input id="aperture" type="range" min="0" max=${MOST} step="1" value=${Math.round(width)} disabled=${!alive.value} onInput=${slide} />
-    <output id="width">${width.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(width / 100 / shoulders).toFixed(2)}</span>` : null}</output>
+    <input id="aperture" type="range" min=${least} max=${most} step="1" value=${Math.round(cm)} disabled=${!alive.value} onInput=${(event) => width.set(Number(event.currentTarget.value))} />
+    <output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>
   </label>`;
 }

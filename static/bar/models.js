@@ -1,6 +1,6 @@
 // Which model is shown: choosing one shows the session with it, or begins one.
 
-import { html, signal, useEffect } from "../vendor/preact.js";
+import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { call, say, showModel } from "../server.js";
 import { complain, connected, session } from "../store.js";
 
@@ -13,9 +13,14 @@ export const model = signal(null);
 
 const FIRST = ["aperture_passage.py", "doorway.py"];
 
-/** Reads anew which models there are. */
+let asked = 0;
+
+/** Reads anew which models there are; what is asked last holds. */
 export async function listModels() {
+  asked += 1;
+  const mine = asked;
   const told = await call("GET", "/api/models");
+  if (mine !== asked) return;
   folder.value = told.folder;
   models.value = told.models;
 }
@@ -59,12 +64,13 @@ async function begin() {
     complain("There is no model in the folder yet: make one in the tab Editor, or put a Python file there.", "info");
     return;
   }
+  if (model.value !== null) return; // the user has chosen one already
   const wanted = [new URLSearchParams(location.search).get("model"), sessionStorage.getItem("model"), ...FIRST];
   await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
 }
 
 export function ModelChoice() {
-  useEffect(() => void begin(), []);
+  useLayoutEffect(() => void begin(), []);
   const shown = session.value?.model ?? model.value ?? "";
   const gone = shown && models.value.length > 0 && !models.value.some(({ path }) => path === shown);
   const folders = Map.groupBy(models.value, ({ path }) => path.split("/").slice(0, -1).join("/"));

@@ -1,10 +1,10 @@
 // «Run until»: a time, a production, a buffer that matches a pattern, a contact; and which breakpoints there are.
 
 import { html, signal, useId } from "../vendor/preact.js";
-import { bindKey } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
-import { order, say } from "../server.js";
+import { breakpoints, toggleBreakpoint } from "../mind/breakpoints.js";
 import { complain, session, state } from "../store.js";
+import { orderThere } from "../timeline/seek.js";
 
 const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
 const kind = signal("time");
@@ -54,13 +54,9 @@ function Name({ of, among, label, otherwise }) {
     <datalist id=${id}>${among.map((name) => html`<option key=${name} value=${name} />`)}</datalist>`;
 }
 
-function remove(name) {
-  order({ type: "breakpoints", productions: session.value.breakpoints.filter((other) => other !== name) });
-}
-
 function Body() {
   const texts = Object.fromEntries(KINDS);
-  const stops = session.value?.breakpoints ?? [];
+  const stops = breakpoints.value;
   const bodies = Object.keys(session.value?.world?.bodies ?? {});
   return html`
     <${Line} id="time" text=${texts.time}>
@@ -74,7 +70,7 @@ function Body() {
     ${bodies.length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} among=${bodies} label="Body" otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>
     ${stops.length
-      ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span><button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => remove(name)}>✕</button></li>`)}</ul>`
+      ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span><button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`
       : html`<p class="quiet">None. In the tab Productions one is set beside each production.</p>`}
   `;
 }
@@ -88,11 +84,5 @@ export async function runUntil() {
     complain(`Run until ${Object.fromEntries(KINDS)[kind.value]}: ${missing} is wanted`);
     return;
   }
-  try {
-    await say(wanted());
-  } catch (error) {
-    complain(error.message);
-  }
+  orderThere(wanted());
 }
-
-bindKey("u", "Run until …", runUntil);

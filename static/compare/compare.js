@@ -1,8 +1,9 @@
 // Two recordings side by side, over the whole page: what they began with, what came of them, where their traces part, their curves.
 
-import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { call } from "../server.js";
+import { present } from "../runs/list.js";
 import { whenText } from "../runs/words.js";
 import { COLOURS, Curves } from "./curves.js";
 import { Difference } from "./difference.js";
@@ -36,7 +37,7 @@ function Head({ runs }) {
     ${runs.map(
       (run, n) => html`<span key=${n} class="compare-run" title=${run.id}>
         <svg width="14" height="14" aria-hidden="true"><rect width="14" height="14" rx="3" fill="var(--${COLOURS[n]})" /></svg>
-        <b>${run.model}</b> <span class="number">${whenText(run.made)}</span>${run.session ? html` <b class="mark">present</b>` : null}
+        <b>${run.model}</b> <span class="number">${whenText(run.made)}</span>${run.id === present.value ? html` <b class="mark">present</b>` : null}
       </span>`,
     )}
   </div>`;
@@ -63,7 +64,7 @@ function Dialog() {
   const box = useRef(null);
   const kinds = useSignal([]);
   const told = useComparison(kinds.value);
-  useEffect(() => box.current.showModal(), []);
+  useLayoutEffect(() => box.current.showModal(), []);
 
   return html`<dialog ref=${box} class="compare" aria-labelledby="compare-title" onClose=${() => (pair.value = null)}>
     <header>

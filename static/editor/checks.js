@@ -23,7 +23,7 @@ async function check(document) {
   if (doc.length > LARGEST) return;
   try {
     const { problems } = await call("POST", "/api/check", { path: document.path, text: doc.toString() });
-    mark(document, doc, problems);
+    if (checked.get(document) !== doc) mark(document, doc, problems); // else it has been loaded meanwhile, which tells more
   } catch (error) {
     if (error.status !== 0) mark(document, doc, [{ level: "error", message: error.message, line: null }]);
   }
@@ -37,7 +37,7 @@ export async function checkByLoading(document) {
     const { problems, listing } = await call("POST", "/api/check", { path: document.path, text: doc.toString(), load: true });
     mark(document, doc, problems);
     const fine = listing.kind === "simulation" ? "it loads, and nothing is wrong" : "nothing is wrong as far as can be told without a run";
-    document.note.value = problems.length === 0 ? fine : "";
+    document.note.value = problems.length === 0 && document.state.doc === doc ? fine : "";
   } catch (error) {
     document.note.value = "";
     complain(error.message);

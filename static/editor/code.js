@@ -120,10 +120,10 @@ function taken(transactions) {
 export function goTo(line) {
   const place = view.state.doc.line(Math.max(1, Math.min(line, view.state.doc.lines)));
   view.dispatch({ selection: EditorSelection.cursor(place.from), effects: EditorView.scrollIntoView(place.from, { y: "center" }) });
-  view.focus();
+  focusText();
 }
 
-/** Moves into the text. */
+/** Moves into the text, but not away from a field in which the user may be writing by now. */
 export function focusText() {
-  view?.focus();
+  if (!document.activeElement?.matches("input, select, textarea")) view?.focus();
 }

@@ -1,7 +1,7 @@
 // A file that has changed on disk while its text was changed here: both are shown, and the user chooses.
 
 import { html, useEffect, useRef } from "../vendor/preact.js";
-import { EditorState, EditorView, lineNumbers, python, unifiedMergeView } from "../vendor/codemirror.js";
+import { EditorState, EditorView, lineNumbers, unifiedMergeView } from "../vendor/codemirror.js";
 import { look as colours } from "./look.js";
 
 const FOLD = { margin: 3, minSize: 6 };
@@ -17,8 +17,8 @@ export function Conflict({ document, choose }) {
       doc: document.text,
       extensions: [
         lineNumbers(),
-        python(),
-        colours,
+        EditorView.lineWrapping, // what differs may stand far to the right
+        colours, // without those of the language, which cannot be read on every ground
         EditorState.readOnly.of(true),
         EditorView.contentAttributes.of({ "aria-label": "Both texts" }),
         unifiedMergeView({ original: theirs.text, mergeControls: false, collapseUnchanged: FOLD }),

@@ -246,7 +246,7 @@ export async function look(document, again = false) {
   const theirs = document.theirs.value;
   if (version === (theirs ? theirs.version : known)) return;
   const file = version === null ? { text: null, version: null } : await call("GET", `/api/model?${query}`);
-  if (document.version !== known || document.path !== path) return; // saved or renamed meanwhile
+  if (document.version !== known || document.path !== path || (document.saving.value && !again)) return; // saved or renamed meanwhile
   if (file.version === known) document.theirs.value = null;
   else if (file.text !== null && (!document.dirty.value || file.text === document.text)) take(document, file);
   else document.theirs.value = { text: file.text, version: file.version };

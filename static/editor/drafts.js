@@ -6,10 +6,13 @@ import { complain } from "../store.js";
 const PREFIX = "actr3d.draft.";
 const MOST = 20;
 const LARGEST = 2_000_000; // all drafts together [characters]; browsers keep about five million of a site
-const PATIENCE = 500; // how long it waits for the tab's own lock after a reload [ms]
+const PATIENCE = 20_000; // so long it waits for a tab that neither ends nor answers, as one that is held in a debugger [ms]
 
 /** The files of which this tab has a draft. */
 export const drafted = signal([]);
+
+const tabs = new BroadcastChannel("actr3d.tabs"); // on which a tab asks whether another one has its name
+addEventListener("pagehide", () => tabs.close()); // what is left then answers nobody
 
 let tab = "";
 
@@ -35,15 +38,23 @@ async function settle() {
   refresh();
 }
 
+/** Takes the lock of a name; tells whether this tab has it. It has not where another living tab says that the name is its own. The
+ * page that was here before a reload says nothing any more: its lock comes free, however long that takes. */
 function locked(name) {
+  const taken = new AbortController();
+  const hear = ({ data }) => data.has === name && taken.abort();
+  tabs.addEventListener("message", hear);
   return new Promise((resolve) => {
-    const signal = AbortSignal.timeout(PATIENCE);
     navigator.locks
-      .request(`actr3d.tab.${name}`, { signal }, () => {
+      .request(`actr3d.tab.${name}`, { signal: AbortSignal.any([taken.signal, AbortSignal.timeout(PATIENCE)]) }, () => {
+        tabs.addEventListener("message", ({ data }) => data.asks === name && tabs.postMessage({ has: name }));
+        tabs.postMessage({ has: name }); // to those that have asked before
         resolve(true);
         return new Promise(() => {}); // as long as the tab is there
       })
-      .catch(() => resolve(false));
+      .catch(() => resolve(false))
+      .finally(() => tabs.removeEventListener("message", hear));
+    tabs.postMessage({ asks: name });
   });
 }
 

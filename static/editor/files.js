@@ -4,24 +4,31 @@ import { listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
 import { call } from "../server.js";
 import { complain, session } from "../store.js";
-import { close, open, renamed, save } from "./documents.js";
+import { close, open, renamed, save, shown } from "./documents.js";
 import { TEMPLATES } from "./templates.js";
 
 /** Begins a new model file. It is opened here; it runs when it is told to. */
 export async function makeNew() {
+  const before = shown.peek();
   const choices = TEMPLATES.map(({ value, text }) => ({ value, text }));
   const file = await named("New model", "Name of the file", "my_model.py", "Create", { choices }, (path, choice) => {
     const { source } = TEMPLATES.find(({ value }) => value === choice);
     return call("PUT", "/api/model", { path, text: source, version: null });
   });
-  if (file) await open(file.path);
+  showNew(file, before);
+}
+
+/** Opens a new file, but not in place of another that the user has chosen since. */
+function showNew(file, before) {
+  if (file && shown.peek() === before) open(file.path);
 }
 
 /** Copies a model file, as it is saved. */
 export async function duplicate(path) {
+  const before = shown.peek();
   const to = path.replace(/\.py$/, "_copy.py");
   const file = await named(`Duplicate ${path}`, "Name of the copy", to, "Duplicate", {}, (name) => call("POST", "/api/model/duplicate", { path, to: name }));
-  if (file) await open(file.path);
+  showNew(file, before);
 }
 
 /** Gives a model file another name; a run of it goes on. */
@@ -67,7 +74,7 @@ async function named(title, label, name, action, more, work) {
     }
     try {
       const file = await work(name, choice);
-      await listModels();
+      listModels().catch((error) => complain(error.message));
       return file;
     } catch (error) {
       problem = error.message;

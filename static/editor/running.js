@@ -2,13 +2,16 @@
 
 import { computed, html } from "../vendor/preact.js";
 import { runModel } from "../bar/models.js";
+import { sinceNow } from "../server.js";
 import { complain, notices, session } from "../store.js";
 import { documents, save, shown } from "./documents.js";
 import { openTab } from "../tabs.js";
 
 /** Saves a text, where it is to be saved, and runs it from its start. */
 export async function saveAndRun(document) {
+  const wanted = sinceNow();
   if ((document.dirty.value || document.theirs.value) && !(await save(document))) return;
+  if (!wanted()) return; // while it was being saved the user has chosen what else is to be shown
   await runModel(document.path).catch((error) => complain(error.message));
 }
 

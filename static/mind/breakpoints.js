@@ -1,10 +1,16 @@
 // Breakpoints: productions after which the run pauses; all who watch share them.
 
 import { computed, html } from "../vendor/preact.js";
+import { settable } from "../parts/settable.js";
 import { order } from "../server.js";
 import { session, state } from "../store.js";
 
-export const breakpoints = computed(() => session.value?.breakpoints ?? []);
+const list = settable(
+  () => session.value?.breakpoints ?? [],
+  (productions) => ({ type: "breakpoints", productions }),
+);
+
+export const breakpoints = list.value;
 
 /** The production at whose breakpoint the run stands; null where it does not. */
 export const held = computed(() => {
@@ -15,7 +21,7 @@ export const held = computed(() => {
 /** Sets a breakpoint on a production, or takes it away. */
 export function toggleBreakpoint(name) {
   const now = breakpoints.value;
-  order({ type: "breakpoints", productions: now.includes(name) ? now.filter((one) => one !== name) : [...now, name] });
+  list.set(now.includes(name) ? now.filter((one) => one !== name) : [...now, name]);
 }
 
 /** Says that the run stands at a breakpoint. */

@@ -2,7 +2,7 @@
 
 import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
-import { running, state } from "../store.js";
+import { over, running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, production, shownReasons } from "./asked.js";
 import { pairs, timeText } from "./event_text.js";
@@ -27,7 +27,7 @@ function lastCycles(sifted, end, time) {
 function comesOf({ select, fire, changed, conflict }) {
   if (fire) return html`<b class="mono">${fire.production}</b> fired at ${timeText(fire.time)} s`;
   if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but matched no longer at ${timeText(changed.time)} s`;
-  if (select) return html`<b class="mono">${select.production}</b> is chosen, and about to fire`;
+  if (select) return html`<b class="mono">${select.production}</b> ${over.value && at.value === null ? "was chosen as the run ended" : "is chosen, and about to fire"}`;
   return conflict.threshold === undefined ? "nothing is chosen yet" : "none reaches the threshold";
 }
 

@@ -1,7 +1,7 @@
 // Going to the moment of an event.
 
-import { order } from "../server.js";
 import { complain, events, session } from "../store.js";
+import { travel } from "../timeline/seek.js";
 
 const runOf = (source) => (source.startsWith("top#") ? source.slice(4).split(".")[0] : "1");
 
@@ -26,5 +26,5 @@ export function goTo(number) {
   }
   const { kind, period } = session.peek();
   const tick = kind === "program" ? 1 : Math.round(period * 1e6);
-  order({ type: "seek", time: (Math.ceil(time / tick) * tick) / 1e6 });
+  travel((Math.ceil(time / tick) * tick) / 1e6);
 }

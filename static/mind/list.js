@@ -2,15 +2,16 @@
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { systemsOf } from "./agents.js";
-import { production } from "./asked.js";
+import { at, production } from "./asked.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
-import { state } from "../store.js";
+import { over, state } from "../store.js";
 
 /** How a production stands: [class, sign, in words]. */
 export function standing(reason) {
   if (!reason) return ["", "", ""];
   if (reason.matches === null) return ["unknown", "?", "cannot be told"];
-  if (reason.selected) return ["selected", "▸", reason.matches ? "matches, and is about to fire" : "was chosen, but matches no longer"];
+  const comes = over.value && at.value === null ? "was chosen as the run ended" : "is about to fire";
+  if (reason.selected) return ["selected", "▸", reason.matches ? `matches, and ${comes}` : "was chosen, but matches no longer"];
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }
 
@@ -66,7 +67,7 @@ export function ProductionList({ all, chosen }) {
     if (to !== undefined && ordered.length > 0) {
       const { system, name } = ordered[Math.max(0, Math.min(ordered.length - 1, to))];
       production.value = { system, name };
-      if (event.target.tagName !== "INPUT") requestAnimationFrame(() => box.current?.querySelector("[aria-current=true]")?.focus());
+      if (event.target.tagName !== "INPUT") box.current.querySelectorAll("button.name")[ordered.findIndex((one) => one.system === system && one.name === name)].focus();
     } else if (event.key === "b" && event.target.classList.contains("name") && chosen) toggleBreakpoint(chosen.name);
     else return;
     event.preventDefault();

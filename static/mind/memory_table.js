@@ -1,6 +1,6 @@
 // A memory as a table: chunks with their activations and the parts of these, sorted as the user likes.
 
-import { html, useEffect, useMemo, useState } from "../vendor/preact.js";
+import { html, useMemo, useState } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
@@ -39,10 +39,12 @@ function Chosen({ row, names, threshold }) {
 export function MemoryTable({ answer, words }) {
   const { rows, threshold, memory } = answer;
   const [sort, setSort] = useState({ by: "activation", down: true });
-  const [chosen, setChosen] = useState(null);
+  const key = `${memory} ${words}`;
+  const [choice, setChoice] = useState({ key, chunk: null });
+  const chosen = choice.key === key ? choice.chunk : null;
+  const setChosen = (chunk) => setChoice({ key, chunk });
   const names = useMemo(() => [...new Set(rows.flatMap(({ parts }) => Object.keys(parts)))], [rows]);
   const all = useMemo(() => sorted(rows, sort), [rows, sort]);
-  useEffect(() => setChosen(null), [memory, words]);
   const at = all.findIndex(({ chunk }) => chunk === chosen);
   const under = ({ activation }) => threshold !== null && activation !== null && activation < threshold;
   const mark = sort.by === "activation" ? all.findIndex((row, n) => n > 0 && under(row) !== under(all[n - 1]) && row.activation !== null && all[n - 1].activation !== null) : -1;

@@ -49,6 +49,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     return () => watcher.disconnect();
   }, []);
   useLayoutEffect(() => {
+    if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // of which nothing may have been told yet
     if (aim !== null && !away.current) {
       show(aim);
       set.current = box.current.scrollTop;

@@ -77,7 +77,10 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
 export function FiringTrace() {
   const parts = state.value?.parts;
   const [agent, setAgent] = useState("");
-  const [chosen, setChosen] = useState(null);
+  const run = `${session.value?.id} ${session.value?.run}`;
+  const [choice, setChoice] = useState({ run, number: null });
+  const chosen = choice.run === run ? choice.number : null;
+  const setChosen = (number) => setChoice({ run, number });
   const systems = systemsOf(parts);
   const wanted = systems.includes(agent) ? agent : "";
   const key = `${groups.value} ${wantedWords.value} ${wanted}`;
@@ -92,7 +95,6 @@ export function FiringTrace() {
   const several = systems.length > 1;
   const at = chosen === null ? -1 : sifted.below(chosen);
   const chosenRow = chosen < 0 ? (mixed.rowOfTouch(chosen) ?? null) : sifted.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
-  useEffect(() => setChosen(null), [session.value?.id, session.value?.run]);
 
   const row = (n) => {
     const number = mixed.numberAt(n);

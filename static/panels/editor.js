@@ -18,7 +18,7 @@ const AGAIN = 3000; // how often it looks whether the file has changed on disk [
 
 /** The text whose two versions are compared. */
 const comparing = signal(null);
-let followed = null;
+let followed = { of: null, id: null }; // the model that was opened here last because it is shown, and in which session
 
 async function saveShown() {
   const document = shownDocument();
@@ -44,7 +44,7 @@ async function choose(document, which) {
   const theirs = document.theirs.value;
   if (which === "mine" && !(await save(document, theirs.version)) && document.theirs.value) comparing.value = document;
   if (which === "theirs") take(document, theirs);
-  setTimeout(focusText); // once it is seen again
+  requestAnimationFrame(focusText); // once it is seen again
 }
 
 /** Looks again and again whether files have changed on disk, while the editor is seen. */
@@ -101,23 +101,24 @@ function Editor() {
   const { path, error } = shown.value;
   const document = shownDocument();
   const compares = document && comparing.value === document && document.theirs.value?.text != null;
-  const chosen = session.value?.model ?? model.value;
+  const { id = null, model: of = model.value } = session.value ?? {};
   useLooking();
   // At once, not after the next picture: by then the user may have chosen a file, which this would take away again.
   useLayoutEffect(() => {
-    if (!chosen || chosen === followed || wanted.value) return;
-    followed = chosen;
-    open(chosen);
-  }, [chosen]);
+    if (!of) return;
+    const other = of !== followed.of && (id === null || id !== followed.id); // not only another name of the same
+    followed = { of, id };
+    if (other && !wanted.value) open(of);
+  }, [of, id]);
   useLayoutEffect(() => {
     if (document && !compares) showText(place.current, document);
     return leaveText;
   }, [document, compares]);
-  useEffect(() => {
-    if (!document || wanted.value?.path !== document.path) return;
+  useLayoutEffect(() => {
+    if (!document || compares || wanted.value?.path !== document.path) return;
     goTo(wanted.value.line);
     wanted.value = null;
-  }, [document, wanted.value]);
+  }, [document, compares, wanted.value]);
   return html`<div class="editor">
     <${Files} path=${path} document=${document} />
     ${document ? html`<${Standing} document=${document} />` : null}
@@ -136,5 +137,5 @@ export const editor = {
   id: "editor",
   title: "Editor",
   View: Editor,
-  badge: () => (unsaved().length > 0 ? { text: "●", title: "unsaved" } : null),
+  badge: () => (unsaved().length > 0 ? { text: "", title: "unsaved" } : null),
 };

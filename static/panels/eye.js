@@ -67,6 +67,10 @@ function Edges({ view }) {
     ${rest > 0 ? html`<p class="empty">${rest} more; «Copy as JSON» has all.</p>` : null}`;
 }
 
+function Empty() {
+  return html`<p class="empty">Nothing is in view of this eye now.</p>`;
+}
+
 async function copy(view) {
   try {
     await navigator.clipboard.writeText(JSON.stringify(view));
@@ -93,7 +97,7 @@ function Eye() {
     </div>
     ${error ? html`<p class="empty">${error}</p>` : null}
     <${Retina} view=${answer} />
-    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer ? html`<${Table} view=${answer} />` : null}</div>
+    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer ? html`<${answer.extents.length ? Table : Empty} view=${answer} />` : null}</div>
   </div>`;
 }
 

@@ -2,7 +2,7 @@
 
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { boundsText, read, written } from "../parameters/values.js";
-import { call, order, say } from "../server.js";
+import { call, isLeft, order, say } from "../server.js";
 import { complain, noSession, session, state } from "../store.js";
 
 const listing = signal(null); // what the model's text says of itself
@@ -30,7 +30,9 @@ async function follow({ id, model, run, stale }) {
     const answer = await call("GET", `/api/model?path=${encodeURIComponent(model)}`);
     if (of === asked) listing.value = answer.listing;
   } catch (error) {
-    if (of === asked) complain(error.message);
+    if (of !== asked) return;
+    listing.value ??= { parameters: [] };
+    complain(error.message);
   }
 }
 
@@ -67,17 +69,27 @@ function waiting() {
 
 /** Takes what is written in a field; a live parameter acts at once. */
 async function write(parameter, text, whole) {
+  const { name } = parameter;
   const { value, problem } = read(parameter, text);
-  const { [parameter.name]: before, ...others } = drafts.value;
-  drafts.value = !problem && value === inForce(parameter) ? others : { ...drafts.value, [parameter.name]: text };
-  if (!parameter.live || problem || !whole || !session.value?.alive || value === inForce(parameter)) return;
+  const holds = !problem && value === inForce(parameter);
+  // While one is still writing, «1.» on the way to «1.5» stays as it is, though it is 1.
+  if (holds && whole) drop(name);
+  else drafts.value = { ...drafts.value, [name]: text };
+  if (!parameter.live || problem || !whole || holds || !session.value?.alive) return;
+  const run = of;
   try {
-    await say({ type: "set", name: parameter.name, value });
-    told.value = { ...told.value, [parameter.name]: value };
-    drafts.value = others;
+    await say({ type: "set", name, value });
+    if (run === of) told.value = { ...told.value, [name]: value };
+    if (run === of && drafts.value[name] === text) drop(name); // else more was written meanwhile
   } catch (error) {
-    complain(error.message);
+    if (!isLeft(error)) complain(error.message);
   }
+}
+
+/** Forgets what is written in a field. */
+function drop(name) {
+  const { [name]: gone, ...others } = drafts.value;
+  drafts.value = others;
 }
 
 function restart(event) {
@@ -116,7 +128,7 @@ function Field({ parameter }) {
   const draft = drafts.value[name];
   const text = draft ?? written(inForce(parameter));
   const problem = draft === undefined ? null : read(parameter, draft).problem;
-  const changed = draft !== undefined && !problem;
+  const changed = draft !== undefined && !problem && read(parameter, draft).value !== inForce(parameter);
   return html`<div class="parameter ${changed ? "waits" : ""}">
     <label for=${id}>${name}</label>
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
@@ -162,5 +174,5 @@ export const parameters = {
   id: "parameters",
   title: "Parameters",
   View: Parameters,
-  badge: () => (session.value?.stale || Object.keys(drafts.value).length ? { text: "", title: "not in force yet" } : null),
+  badge: () => (session.value?.stale || waiting().length ? { text: "", title: "not in force yet" } : null),
 };

@@ -1,6 +1,6 @@
 // The productions: the firing trace above, and below it why: conditions, the conflict set, retrievals.
 
-import { html, useEffect, useState } from "../vendor/preact.js";
+import { html, useLayoutEffect, useState } from "../vendor/preact.js";
 import { at, production, question, shownReasons } from "../mind/asked.js";
 import { HeldNote, held } from "../mind/breakpoints.js";
 import { ConflictSets } from "../mind/conflict.js";
@@ -13,14 +13,14 @@ import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { Splitter } from "../parts/splitter.js";
 import { remembered } from "../remembered.js";
-import { order } from "../server.js";
 import { running, state } from "../store.js";
+import { travel } from "../timeline/seek.js";
 
 const below = remembered("reasons height", 270);
 
 function Moment({ told }) {
   const [text, setText] = useState("");
-  useEffect(() => setText(at.value === null ? "" : String(Number(at.value.toFixed(6)))), [at.value]);
+  useLayoutEffect(() => setText(at.value === null ? "" : String(Number(at.value.toFixed(6)))), [at.value]);
   const wrong = text.trim() !== "" && !(Number(text) >= 0);
 
   function take(event) {
@@ -39,7 +39,7 @@ function Moment({ told }) {
 function Elsewhere() {
   const known = at.value <= (state.value?.furthest ?? 0) && at.value > (state.value?.time ?? 0);
   return html`<p class="elsewhere">
-    ${known ? html`<button onClick=${() => order({ type: "seek", time: at.value })}>Go to ${valueText(at.value)} s</button>` : null}
+    ${known ? html`<button onClick=${() => travel(at.value)}>Go to ${valueText(at.value)} s</button>` : null}
     <button onClick=${() => (at.value = null)}>Explain the present moment</button>
   </p>`;
 }
@@ -104,5 +104,5 @@ export const productions = {
   id: "productions",
   title: "Productions",
   View: Productions,
-  badge: () => (held.value === null ? null : { text: "●", level: "bad" }),
+  badge: () => (held.value === null ? null : { text: "", title: "paused at a breakpoint", level: "bad" }),
 };

@@ -3,27 +3,42 @@
 import { html, useEffect, useRef } from "../vendor/preact.js";
 import { RetinaInset } from "../eye/inset.js";
 import { Icon } from "../parts/icon.js";
+import { settable } from "../parts/settable.js";
 import { remembered } from "../remembered.js";
-import { order } from "../server.js";
 import { hurried, opening, session } from "../store.js";
 import { dark } from "../theme.js";
 
 const open = remembered("scene switches", true);
 const CAMERAS = { free: "free", follow: "follow", eye: "through the eye", top: "from above" };
 
+const camera = settable(
+  () => session.value?.camera,
+  (view) => ({ type: "camera", view }),
+);
+const overlays = new Map();
+
+/** The switch of an overlay. */
+function overlay(name) {
+  if (!overlays.has(name)) {
+    const told = () => Boolean(session.value?.overlays.find((one) => one.name === name)?.shown);
+    overlays.set(name, settable(told, (shown) => ({ type: "overlay", name, shown })));
+  }
+  return overlays.get(name);
+}
+
 /** The switches of what is drawn over the scene, and from where it is seen; the same for all who watch. */
 function Switches() {
-  const { overlays, camera, cameras } = session.value;
+  const { overlays, cameras } = session.value;
   if (!open.value) return html`<button class="switches-closed" title="What is drawn over the scene" onClick=${() => (open.value = true)}>Overlays</button>`;
   return html`<div class="switches" role="toolbar" aria-label="3D view">
     <label>Camera
-      <select value=${camera} onChange=${(event) => order({ type: "camera", view: event.currentTarget.value })}>
+      <select value=${camera.value.value} onChange=${(event) => camera.set(event.currentTarget.value)}>
         ${cameras.map((view) => html`<option key=${view} value=${view}>${CAMERAS[view] ?? view}</option>`)}
       </select>
     </label>
     ${overlays.map(
-      ({ name, title, shown }) => html`<label key=${name}>
-        <input type="checkbox" checked=${shown} onChange=${(event) => order({ type: "overlay", name, shown: event.currentTarget.checked })} />${title}
+      ({ name, title }) => html`<label key=${name}>
+        <input type="checkbox" checked=${overlay(name).value.value} onChange=${(event) => overlay(name).set(event.currentTarget.checked)} />${title}
       </label>`,
     )}
     <button class="bare" aria-label="Hide the switches" title="Hide" onClick=${() => (open.value = false)}><${Icon} name="close" /></button>

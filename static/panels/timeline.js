@@ -1,7 +1,7 @@
 // The timeline: one axis of time for mind and body, on which one goes back and forth.
 
 import { computed, html } from "../vendor/preact.js";
-import { noSession, session, state } from "../store.js";
+import { noSession, over, session, state } from "../store.js";
 import { curvesVersion, names } from "../timeline/curves.js";
 import { lanes, lanesVersion } from "../timeline/record.js";
 import { column } from "../timeline/rows.js";
@@ -14,7 +14,7 @@ const nothing = computed(() => {
   curvesVersion.value;
   if (lanes.lanes.size > 0 || names.value.length > 0) return "";
   if (!session.value) return noSession("Choose a model above: what its mind and body do is shown here over time.");
-  if (["ended", "failed"].includes(state.value?.status)) return "Nothing has happened in this run: no model made anything to show here.";
+  if (over.value) return "Nothing has happened in this run: no model made anything to show here.";
   return state.value ? "Nothing has happened yet. Press Run or step: what mind and body do is shown here over time." : "The run has not begun.";
 });
 

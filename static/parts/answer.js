@@ -2,10 +2,13 @@
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
 import { say } from "../server.js";
-import { alive, moment, running } from "../store.js";
+import { alive, moment, running, session } from "../store.js";
 
 /** How long it waits between two questions while the run goes on [ms]: to answer costs the run time. */
 const WHILE_RUNNING = 100;
+
+const NOTHING = { answer: null, error: null, waiting: false, of: null };
+const runKey = () => `${session.peek()?.id} ${session.peek()?.run}`;
 
 /**
  * Asks a question of `protocol.py` now and whenever the run stands at another moment; one question at a time.
@@ -13,10 +16,11 @@ const WHILE_RUNNING = 100;
  * @param question What is asked; null for nothing.
  * @param live Whether it is also asked while the run goes on.
  * @param once Whether it is asked once while the run goes on, as a question about a past moment.
- * @returns {answer, error, waiting}: the newest answer (kept until the next one is there), or why there is none.
+ * @returns {answer, error, waiting}: the newest answer (kept until the next one is there, but not for another session), or why
+ *   there is none.
  */
 export function useAnswer(question, { live = false, once = false } = {}) {
-  const [told, setTold] = useState({ answer: null, error: null, waiting: false });
+  const [told, setTold] = useState(NOTHING);
   const key = JSON.stringify(question);
   const newest = useRef(key);
   newest.current = key;
@@ -30,13 +34,15 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       if (busy || over || !alive.peek() || (running.peek() && !live && !(once && asked === "")) || asked === moment.peek()) return;
       asked = moment.peek();
       busy = true;
+      const run = runKey();
+      const of = session.peek().id;
       setTold((before) => ({ ...before, waiting: true }));
-      try {
-        const answer = await say(question);
-        if (!over && newest.current === key) setTold({ answer, error: null, waiting: false });
-      } catch (error) {
-        if (!over && newest.current === key) setTold({ answer: null, error: error.message, waiting: false });
-      }
+      const news = await say(question).then(
+        (answer) => ({ answer, error: null, of }),
+        (error) => ({ answer: null, error: error.message, of }),
+      );
+      if (over || newest.current !== key) return;
+      setTold((before) => ({ ...before, ...(run === runKey() ? news : {}), waiting: false })); // what another run says is no answer
       busy = false;
       timer = setTimeout(ask, running.peek() ? WHILE_RUNNING : 0);
     }
@@ -49,7 +55,8 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       over = true;
       clearTimeout(timer);
       end();
+      if (busy) setTold((before) => ({ ...before, waiting: false }));
     };
   }, [key, live, once]);
-  return told;
+  return told.of === null || told.of === session.value?.id ? told : NOTHING;
 }

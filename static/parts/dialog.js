@@ -1,6 +1,6 @@
 // Dialogs, as the browser makes them: they hold the focus, and Escape closes them.
 
-import { html, signal, useEffect, useRef } from "../vendor/preact.js";
+import { html, signal, useLayoutEffect, useRef } from "../vendor/preact.js";
 
 const open = signal(null);
 
@@ -8,6 +8,7 @@ const open = signal(null);
  * chosen; null where it is closed. With `ask` {label, value, problem?, choices?}
  * there is a line to write in, and what was written is returned; with choices [{value, text}] {text, choice}. */
 export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined }) {
+  open.peek()?.resolve(null); // one that comes late takes the place of what is asked now
   return new Promise((resolve) => (open.value = { title, body, actions, ask, resolve }));
 }
 
@@ -27,7 +28,8 @@ export function Dialogs() {
   const box = useRef(null);
   const line = useRef(null);
   const shown = open.value;
-  useEffect(() => {
+  // At once: what the user presses next is meant for it.
+  useLayoutEffect(() => {
     if (!shown) return;
     box.current.showModal();
     line.current?.select();

@@ -4,7 +4,7 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
 import { compareRuns } from "../compare/compare.js";
-import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./doing.js";
+import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays, takeHtml } from "./doing.js";
 import { present } from "./list.js";
 import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./words.js";
 
@@ -17,9 +17,11 @@ const FORMS = [
 
 function Downloads({ run }) {
   const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => form !== "replay.html" || run.kind === "simulation");
+  const address = (form) => `/api/recordings/${run.id}/file?form=${form}`;
+  const make = (event) => (event.preventDefault(), takeHtml(run, address("replay.html")));
   return html`<span class="downloads">
     <${Icon} name="download" />
-    ${forms.map(([form, text, title]) => html`<a key=${form} href="/api/recordings/${run.id}/file?form=${form}" download title=${title}>${text}</a>`)}
+    ${forms.map(([form, text, title]) => html`<a key=${form} href=${address(form)} download title=${title} onClick=${form === "replay.html" ? make : undefined}>${text}</a>`)}
   </span>`;
 }
 

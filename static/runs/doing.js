@@ -2,6 +2,7 @@
 
 import { signal } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
+import { saveFile } from "../parts/picture.js";
 import { call, show, wish } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
@@ -68,6 +69,20 @@ export async function replayRun(run) {
   cancels.delete(run.id);
 }
 
+/** Has the HTML replay of a recording made, which takes a while, and hands it to the user. */
+export async function takeHtml(run, address) {
+  if (busy.value) return;
+  busy.value = { text: "Making the HTML replay …" };
+  try {
+    const response = await fetch(address);
+    if (!response.ok) throw new Error((await response.json()).error);
+    saveFile(`${run.id}.replay.html`, await response.blob());
+  } catch (error) {
+    complain(`The HTML replay of ${run.model} cannot be made: ${error.message}`);
+  }
+  busy.value = null;
+}
+
 export function cancelReplay(id) {
   cancels.get(id)?.abort();
 }
@@ -91,7 +106,8 @@ export async function deleteRuns(all) {
     }
   }
   busy.value = null;
-  chosen.value = new Set();
+  const done = new Set(list.map(({ id }) => id));
+  chosen.value = new Set([...chosen.value].filter((id) => !done.has(id))); // others may have been chosen meanwhile
   if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
   await listRuns();
 }

@@ -2,7 +2,7 @@
 
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
-import { session, state } from "../store.js";
+import { over, session, state } from "../store.js";
 
 const PART = 250;
 const LATER = 700; // [ms]
@@ -70,5 +70,3 @@ export function follow() {
     untracked(() => void listRuns());
   });
 }
-
-const over = computed(() => ["ended", "failed"].includes(state.value?.status));

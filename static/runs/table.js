@@ -3,6 +3,7 @@
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
 import { alive, session, state } from "../store.js";
+import { present } from "./list.js";
 import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./words.js";
 
 const ROW = 44; // [px]; style.css has the same
@@ -60,9 +61,10 @@ function Length({ run }) {
 
 function Row({ run, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
+  const own = run.id === present.value;
   const different = differentText(run);
   return html`<tr
-    class="${isChosen ? "chosen" : ""} ${run.session ? "present" : ""}"
+    class="${isChosen ? "chosen" : ""} ${own ? "present" : ""}"
     aria-selected=${isChosen}
     aria-rowindex=${number + 2}
     data-run=${run.id}
@@ -75,7 +77,7 @@ function Row({ run, number, now, toggle, open }) {
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
     <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
       <span>${run.model || run.id}</span>
-      <small>${run.session ? html`<b class="present-mark">present</b> · ` : null}${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>

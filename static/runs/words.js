@@ -60,7 +60,7 @@ export function outcomeText(run) {
   const first = Object.entries(run.result ?? {})[0];
   if (first) return `${labelOf(first[0])} ${measureText(...first)}`;
   if (run.ended) return "ended";
-  return run.session ? "present run" : "not finished";
+  return run.session ? "not over" : "not finished";
 }
 
 /** Says the most telling number of a result. */

@@ -2,7 +2,7 @@
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
-import { say } from "../server.js";
+import { isLeft, say } from "../server.js";
 import { alive, complain, events, running, session } from "../store.js";
 import { rangeOf } from "../parts/curve.js";
 import { furthest } from "./seek.js";
@@ -113,8 +113,8 @@ async function ask() {
   try {
     again = (await askOnce()) || again;
   } catch (error) {
-    if (alive.peek()) complain(`the curves: ${error.message}`);
-    again = false;
+    if (alive.peek() && !isLeft(error)) complain(`the curves: ${error.message}`);
+    again = isLeft(error);
   }
   setTimeout(() => {
     busy = false;
@@ -122,13 +122,17 @@ async function ask() {
   }, running.peek() ? PAUSE : 0);
 }
 
+/** Tells runs, and ways that a run has gone, from others. */
+const whoseNow = () => `${session.peek()?.id} ${session.peek()?.run} ${cuts}`;
+
 /** Asks for what is not known yet, if there is anything; tells whether there may be more. */
 async function askOnce() {
-  const { id, run, world } = session.peek() ?? {};
-  const whose = `${id} ${run} ${cuts}`;
+  const { world } = session.peek() ?? {};
+  const whose = whoseNow();
   if (!asked.startsWith(`${whose} `)) {
     forget(`${whose} `);
     const told = world ? await say({ type: "curves", names: [] }) : { names: [] };
+    if (whose !== whoseNow()) return true;
     names.value = told.names;
   }
   const wanted = names.peek().filter(({ name, group }) => group === "contact" || chosen.peek().includes(name));
@@ -141,7 +145,7 @@ async function askOnce() {
   const most = running.peek() && last !== undefined ? AT_ONCE : MOST;
   const period = session.peek()?.period ?? 0.01;
   const told = await say({ type: "curves", names: list, first: last === undefined ? 0 : last + period / 2, most });
-  if (asked !== key || whose !== `${session.peek()?.id} ${session.peek()?.run} ${cuts}`) return true;
+  if (asked !== key || whose !== whoseNow()) return true;
   const count = Math.round((end - (last ?? -period)) / period);
   thinned ||= running.peek() && told.times.length < count;
   take(told);

@@ -1,10 +1,9 @@
 // What the pointer, the wheel and the keys do on the timeline.
 
-import { order } from "../server.js";
 import { running, session } from "../store.js";
 import { timeOf } from "./draw.js";
 import { AXIS, column } from "./rows.js";
-import { furthest, present, seek } from "./seek.js";
+import { furthest, orderThere, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
 const GRIP = 4; // so near the border of the column of names is taken hold of [px]
@@ -80,7 +79,7 @@ export function press(event) {
   const step = event.shiftKey ? FEW * tick : tick;
   const to = { ArrowLeft: present.peek() - step, ArrowRight: present.peek() + step, Home: 0, End: furthest.peek() }[event.key];
   if (to !== undefined) seek(Math.max(0, to));
-  else if (event.key === " ") order({ type: running.peek() ? "pause" : "run" });
+  else if (event.key === " ") orderThere({ type: running.peek() ? "pause" : "run" });
   else if (event.key === "ArrowDown" || event.key === "ArrowUp") event.currentTarget.parentElement.parentElement.scrollBy(0, event.key === "ArrowDown" ? 36 : -36);
   else return;
   event.preventDefault();

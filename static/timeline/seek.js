@@ -1,8 +1,8 @@
 // Going to another time of the run: one journey at a time, and the newest wish wins.
 
-import { computed, effect, signal } from "../vendor/preact.js";
-import { say } from "../server.js";
-import { alive, complain, session, state } from "../store.js";
+import { computed, signal } from "../vendor/preact.js";
+import { order } from "../server.js";
+import { alive, session, state } from "../store.js";
 
 /** Where the user is going to [s]; null when the run is there. */
 export const wanted = signal(null);
@@ -13,50 +13,39 @@ export const furthest = computed(() => Math.max(state.value?.furthest ?? 0, stat
 /** Whether there is a future to go on into that is known. */
 export const inThePast = computed(() => state.value !== null && state.value.time < furthest.value - 1e-7);
 
-const PATIENCE = 1000; // so long the playhead waits for the run [ms]
+const run = () => `${session.peek()?.id} ${session.peek()?.run}`;
 let going = false;
-
-/** Waits until the run is seen to be at a time. */
-function arrived(time) {
-  return new Promise((resolve) => {
-    let timer = 0;
-    let end = () => {};
-    const done = () => {
-      clearTimeout(timer);
-      queueMicrotask(() => end());
-      resolve();
-    };
-    timer = setTimeout(done, PATIENCE);
-    end = effect(() => {
-      if (Math.abs((state.value?.time ?? time) - time) < 1e-6) done();
-    });
-  });
-}
+let said = null; // the time that the run was last told to go to [s]
 
 /** Goes to a time [s]: the nearest tick that the run has been at. */
 export function seek(time) {
-  if (!alive.peek()) return;
   const period = session.peek()?.period || 0.01;
   // Ticks are whole microseconds; the end of a program need not be one.
-  const tick = Math.round((Math.round(time / period) * period) * 1e6) / 1e6;
-  wanted.value = time >= furthest.peek() ? furthest.peek() : Math.min(Math.max(0, tick), furthest.peek());
+  travel(Math.round((Math.round(time / period) * period) * 1e6) / 1e6, time);
+}
+
+/** Goes to a time at which the run has stood [s]; to the newest where `wish`, which the time is made of, is as late. */
+export function travel(time, wish = time) {
+  if (!alive.peek()) return;
+  wanted.value = wish >= furthest.peek() ? furthest.peek() : Math.min(Math.max(0, time), furthest.peek());
   if (!going) go();
 }
 
 async function go() {
   going = true;
-  const running = () => state.peek()?.status === "running";
-  let at = running() ? null : state.peek()?.time;
-  while (wanted.peek() !== null && wanted.peek() !== at) {
-    at = wanted.peek();
-    try {
-      await say({ type: "seek", time: at });
-      await arrived(at);
-    } catch (error) {
-      complain(error.message);
-      break;
-    }
+  const whose = run();
+  said = null;
+  while (wanted.peek() !== null && wanted.peek() !== said && whose === run()) {
+    said = wanted.peek();
+    await order({ type: "seek", time: said }); // then the run is seen to be there, too
   }
   going = false;
   wanted.value = null;
+}
+
+/** Does a command where the user has gone to, though the run may still be on its way there. */
+export function orderThere(what) {
+  if (wanted.peek() !== null && wanted.peek() !== said) order({ type: "seek", time: wanted.peek() });
+  wanted.value = null;
+  return order(what);
 }

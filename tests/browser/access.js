@@ -54,7 +54,7 @@
   }
 
   for (const element of document.body.querySelectorAll("*")) {
-    if (element.closest("iframe, .cm-editor") || !seen(element) || isOff(element)) continue;
+    if (element.closest("iframe, .cm-announced") || !seen(element) || isOff(element)) continue;
     const own = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
     if (own && !["SCRIPT", "STYLE", "OPTION", "OPTGROUP"].includes(element.tagName)) readable(element, getComputedStyle(element).color, "text");
     if (element.placeholder && !element.value) readable(element, getComputedStyle(element, "::placeholder").color, "placeholder");
@@ -69,7 +69,7 @@
   }
 
   for (const element of document.querySelectorAll(INTERACTIVE)) {
-    if (!seen(element) || isOff(element) || element.closest(".cm-editor")) continue;
+    if (!seen(element) || isOff(element)) continue;
     if (!nameOf(element)) found.push(`no name: ${say(element)} ${element.outerHTML.slice(0, 120)}`);
     const set = element.closest("[role=tablist], .production-names, .rows"); // the arrow keys go from one to the next
     const reached = element.tabIndex >= 0 || set?.tabIndex === 0 || set?.querySelector("[tabindex='0']");

@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.looking import open_tab, shows
+from tests.server.serving import Served
 
 LOOK = (Path(__file__).parent / "access.js").read_text(encoding="utf-8")
 
@@ -54,6 +55,57 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: An
         look(button)
         page.keyboard.press("Escape")
         expect(page.get_by_role("dialog")).to_have_count(0)
+    assert problems == []
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_what_asks_and_compares_can_be_read_named_and_reached(pages: Callable[..., Page], workbench: Served, theme: Any) -> None:
+    file = workbench.folder / f"asks_{theme}.py"
+    file.write_text("from actr3d.actr import *\n\n\nclass Agent(ACTR):\n    goal = Buffer()\n", encoding="utf-8")
+    page = pages("doorway.py", theme=theme)
+    problems: list[str] = []
+
+    def look(where: str) -> None:
+        calm(page)
+        problems.extend(f"{where}: {problem}" for problem in page.evaluate(LOOK))
+
+    for width in ("60", "80"):
+        shows(page, "#status", "at its start")
+        page.locator("#aperture").fill(width)
+        page.click("#run")
+        shows(page, "#status", "ended")
+        page.click("#restart")
+    shows(page, "#status", "at its start")
+    page.click("#until")
+    look("Run until")
+    page.keyboard.press("Escape")
+    open_tab(page, "Editor")
+    page.get_by_label("File", exact=True).select_option(file.name)
+    code = page.locator(".code .cm-content")
+    expect(code).to_contain_text("Agent")
+    code.focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text("x = (1\n# said\n@dec\ndef on(goal='a:?b'): return 2.5\n")
+    shows(page, ".problems", "1 error")
+    look("errors in the text")
+    page.keyboard.press("Control+f")
+    expect(page.locator(".cm-search [name=search]")).to_be_focused()
+    page.keyboard.insert_text("goal")
+    look("search in the text")
+    page.keyboard.press("Escape")
+    file.write_text("from actr3d.actr import *\n# theirs\n", encoding="utf-8")
+    page.keyboard.press("Control+s")
+    expect(page.get_by_role("group", name="Conflict")).to_be_visible()
+    look("conflict")
+    page.get_by_role("button", name="Keep editing").click()
+    look("strip")
+    open_tab(page, "Runs")
+    rows = page.locator(".runs-table tbody tr:not(.space)")
+    rows.nth(1).click()
+    rows.nth(2).click(modifiers=["Control"])
+    page.get_by_role("button", name="Compare", exact=True).click()
+    expect(page.locator("dialog.compare .plot")).to_have_count(3)
+    look("Compare")
     assert problems == []
 
 

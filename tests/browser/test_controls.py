@@ -75,6 +75,26 @@ def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     expect(page.locator(".retina output")).to_have_text(re.compile(rf"label {view['extents'][0][1]} · row {row} · .* m to .* m"))
 
 
+def test_an_eye_with_nothing_in_view_says_so_and_nothing_is_about_to_fire_in_a_run_that_is_over(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
+    assert '        goal.set("done")\n' in source  # without which the last production matches once more
+    (workbench.folder / "over.py").write_text(source.replace('        goal.set("done")\n', ""), encoding="utf-8")
+    page = pages("over.py")
+    shows(page, "#status", "at its start")
+    assert page.locator("#aperture").get_attribute("max") == "300"  # as its parameter says
+    page.locator("#aperture").fill("80")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    open_tab(page, "Eye")
+    expect(page.locator(".eye-table")).to_have_text("Nothing is in view of this eye now.")
+    open_tab(page, "Buffers")
+    expect(page.locator(".mind [data-path='walker'] .doing")).to_have_text(re.compile("stop_behind was chosen as the run ended"))
+    open_tab(page, "Productions")
+    expect(page.locator("#why-text")).to_contain_text("stop_behind: matches, and was chosen as the run ended")
+
+
 def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#time", "0.00 s")

@@ -102,6 +102,16 @@ def test_a_cycle_ends_when_a_production_fires(desk: Desk, tmp_path: Path) -> Non
     assert len(times) == 3
 
 
+def test_cycles_that_come_fast_add_up(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY)
+    talk.say("speed", factor=0.05)
+    for _ in range(3):
+        talk.say("cycle")
+    talk.say("speed", factor=None)
+    talk.until("paused", tick=talk.wait(lambda: talk.state["reason"].endswith(" fired"))["tick"])
+    assert [name for _, name in fires(talk.events)][2:] == [talk.state["reason"].removesuffix(" fired")]
+
+
 def test_a_breakpoint_holds_the_run_where_its_production_fires(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
     talk.say("breakpoints", productions=["turn"])
@@ -228,6 +238,7 @@ def test_why_and_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     assert parts["walker.eye"]["state"]["busy"] in (True, False)
     world = talk.facts["world"]
     assert (world["apertures"], world["bodies"]["walker"]["shoulders"]) == (["aperture"], 0.45)
+    assert world["widths"] == {"aperture": [1, 300]}
 
 
 def test_a_program_runs_steps_goes_back_and_is_explained(desk: Desk, tmp_path: Path) -> None:

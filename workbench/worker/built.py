@@ -37,6 +37,7 @@ from workbench.worker.surroundings import surroundings
 from workbench.worker.told_helpers import ToldHelpers
 from workbench.worker.trouble import notice_of, told_of
 from workbench.worker.watch import Touches
+from workbench.worker.widths import widths
 
 BLOCK = 0.008
 """For about so long [s] the run goes on before it looks whether a user has said something."""
@@ -98,19 +99,20 @@ class BuiltRun:
         if start.record is not None:
             facts: dict[str, Any] = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
             facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
-            facts.update(compiled=to_text(saved(simulation.world.mj_model)), world=surroundings(self._simulation.world))
+            facts.update(compiled=to_text(saved(simulation.world.mj_model)), world=surroundings(simulation.world))
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
         if start.commands:
             simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
 
     def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
+        world = surroundings(self._simulation.world)
         return Facts(
             kind="simulation",
             seed=limits.program_seed,
             period=self._simulation.period,
             parameters=to_json(parameters).encode(),
-            world=to_json(surroundings(self._simulation.world)).encode(),
+            world=to_json({**world, "widths": widths(world["apertures"], self._listing.parameters)}).encode(),
             mj_model=saved(self._simulation.world.mj_model),
         )
 

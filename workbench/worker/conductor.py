@@ -175,7 +175,11 @@ class Conductor:
                 begin = (self.watch.goal or 0) if under_way else self.run.clock
                 self._go(goal=(begin // self.run.period + said.ticks) * self.run.period, goal_reason="after a step")
             case say.Cycle():
-                self._go(cycle=True, system=said.system)
+                # As steps do, cycles that are asked for before one is over add up.
+                if self.status == "running" and self.watch.cycles > 0 and self.watch.system == said.system:
+                    self.watch.cycles += 1
+                else:
+                    self._go(cycles=1, system=said.system)
             case say.Until():
                 self._until(said)
             case say.Breakpoints():

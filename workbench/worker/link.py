@@ -44,7 +44,8 @@ MOST_TOLD = 1_000
 
 
 class Link:
-    """Carries messages to the server and commands from it. Only the newest state is sent; everything else in order.
+    """Carries messages to the server and commands from it. Only the newest state is sent; everything else in order. A reply comes
+    after the state that was there to be shown before it: who is told that something is done has seen what has come of it.
 
     Args:
         wire: The socket to the server.
@@ -131,6 +132,10 @@ class Link:
         with self._something:
             if isinstance(message, Notice) and len(self._messages) >= MOST_TOLD and message.level != "error":
                 return
+            if isinstance(message, Reply) and self._state is not None:
+                self._flush_events()
+                self._messages.append(self._state)
+                self._state = None
             self._messages.append(message)
             self._something.notify()
 
@@ -159,7 +164,7 @@ class Link:
     @property
     def idle(self) -> bool:
         """Whether the latest state has been sent, so that a new one is worth making."""
-        return self._state is None and not self._sending
+        return self._state is None and not self._messages and not self._sending
 
     def leave(self) -> None:
         """Lets go of the wire, in a copy of the process that the model has made."""

@@ -21,10 +21,10 @@ class Watch:
     goal: int | None = None
     """A time [us]."""
     goal_reason: str = ""
-    cycle: bool = False
-    """Whether the next production that fires ends it."""
+    cycles: int = 0
+    """The how manieth production that fires from now on ends it; 0 for none."""
     system: str | None = None
-    """Of which system that is to be; None for any."""
+    """Of which system these are to be; None for any."""
     production: str | None = None
     buffer: str | None = None
     pattern: str = ""
@@ -42,7 +42,7 @@ class Watch:
     @property
     def of_events(self) -> bool:
         """Whether events have to be looked at."""
-        return self.cycle or bool(self.breakpoints) or self.production is not None or self.buffer is not None
+        return self.cycles > 0 or bool(self.breakpoints) or self.production is not None or self.buffer is not None
 
     @property
     def fine(self) -> bool:
@@ -56,7 +56,9 @@ class Watch:
                 name = event.data["production"]
                 if name in self.breakpoints:
                     return f"breakpoint: {name} fired"
-                if name == self.production or (self.cycle and self.system in (None, event.source)):
+                cycle = self.cycles > 0 and self.system in (None, event.source)
+                self.cycles -= cycle
+                if name == self.production or (cycle and self.cycles == 0):
                     return f"{name} fired"
             elif event.kind == "buffer" and event.source == self.buffer and self._matches(event):
                 return f"{self.buffer} matches '{self.pattern}'"

@@ -1,0 +1,426 @@
+"""What comes late overrides nothing that the user has chosen meanwhile: answers, pictures and files are held back here until he has."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
+
+from tests.browser.looking import choose, drawn, open_tab, shows, until
+from tests.server.serving import Served
+
+CODE = ".code .cm-content"
+
+
+class Wire:
+    """The websocket of a page, on which what the server says can be held back."""
+
+    def __init__(self, page: Page) -> None:
+        self.held: list[str] | None = None
+        self._only_replies = False
+        page.route_web_socket(re.compile(r"/ws$"), self._join)
+        page.reload()
+
+    def _join(self, socket: WebSocketRoute) -> None:
+        self._page = socket
+        socket.connect_to_server().on_message(self._pass_on)
+
+    def _pass_on(self, message: str | bytes) -> None:
+        text = str(message)
+        if self.held is None:
+            self._page.send(text)
+        elif self._only_replies:
+            told = json.loads(text)
+            told.pop("replies", None)
+            self._page.send(json.dumps(told))
+        else:
+            self.held.append(text)
+
+    @contextmanager
+    def holding(self, *, only_replies: bool = False) -> Iterator[None]:
+        """Holds back all that the server says; or only its replies, which then are lost, as those of a session that is left are."""
+        self.held, self._only_replies = [], only_replies
+        yield
+        held, self.held = self.held, None
+        for text in [] if only_replies else held:
+            self._page.send(text)
+
+
+class Requests:
+    """Requests of a page, which are held back before the server has them, until they are let go."""
+
+    def __init__(self, page: Page, where: str | re.Pattern[str]) -> None:
+        self.held: list[Route] = []
+        self._on = True
+        page.route(where, self._take)
+
+    def _take(self, route: Route) -> None:
+        if self._on:
+            self.held.append(route)
+        else:
+            route.continue_()
+
+    def let_go(self) -> None:
+        self._on = False
+        for route in self.held:
+            route.continue_()
+
+
+@contextmanager
+def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Iterator[None]:
+    """Holds back what the server answers to such requests; it has done what they ask for."""
+    held: list[tuple[Route, Any]] = []
+
+    def hold(route: Route) -> None:
+        if wanted(route.request):
+            held.append((route, route.fetch()))
+        else:
+            route.continue_()
+
+    page.route(where, hold)
+    yield
+    until(page, lambda: bool(held))
+    for route, response in held:
+        route.fulfill(response=response)
+    page.unroute(where)
+
+
+def is_put(request: Request) -> bool:
+    return request.method == "PUT"
+
+
+def write(page: Page, text: str) -> None:
+    page.locator(CODE).focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text(text)
+
+
+def edit(page: Page, model: str) -> None:
+    open_tab(page, "Editor")
+    page.get_by_label("File", exact=True).select_option(model)
+    expect(page.locator(f"{CODE}[aria-label*='{model}']")).to_be_visible()
+
+
+# -- what the run says
+
+
+def test_what_is_set_twice_before_the_run_has_answered_counts_twice(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    open_tab(page, "Productions")
+    speed = page.get_by_label("Speed", exact=True)
+    dots = page.get_by_role("button", name="Breakpoint on")
+    expect(dots.nth(1)).to_be_visible()
+    with wire.holding():
+        page.locator("body").press("-")
+        page.locator("body").press("-")
+        dots.nth(0).click()
+        dots.nth(1).click()
+        expect(speed.locator("option:checked")).to_have_text("10 x")
+        expect(dots.nth(1)).to_have_attribute("aria-pressed", "true")
+    other = page.context.new_page()
+    other.goto(page.url)
+    open_tab(other, "Productions")
+    speed, dots = other.get_by_label("Speed", exact=True), other.get_by_role("button", name="Breakpoint on")
+    expect(speed.locator("option:checked")).to_have_text("10 x")
+    for n in range(2):
+        expect(dots.nth(n)).to_have_attribute("aria-pressed", "true")
+
+
+def test_a_step_is_made_where_the_user_has_gone_to_though_the_run_is_still_on_its_way(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    for _ in range(3):
+        page.click("#cycle")
+    shows(page, "#time", "0.25 s")
+    timeline = page.locator("#timeline")
+    timeline.focus()
+    expect(timeline).to_have_attribute("aria-valuemax", "0.25")
+    with wire.holding():
+        for _ in range(4):
+            timeline.press("ArrowLeft")
+        expect(timeline).to_have_attribute("aria-valuenow", "0.21")
+        page.click("#step")
+    shows(page, "#status", "after a step")
+    shows(page, "#time", "0.22 s")
+
+
+def test_a_question_to_a_run_that_is_shown_no_more_does_not_keep_others_waiting(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    with wire.holding(only_replies=True):
+        page.click("#step")
+        shows(page, "#time", "0.01 s")
+        choose(page, "counting.py")
+        expect(page.get_by_role("button", name="Curves …")).to_be_disabled()
+        choose(page, "doorway.py")
+        shows(page, "#time", "0.01 s")
+    expect(page.get_by_role("button", name="Curves …")).to_be_enabled()
+    page.keyboard.press("ArrowRight")
+    shows(page, "#time", "0.02 s")
+
+
+def test_keys_say_nothing_to_a_run_that_is_not_shown_any_more(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    requests = Requests(page, "**/api/sessions")
+    page.get_by_label("Model", exact=True).select_option("doorway.py")
+    shows(page, "#status", "loading|no run")
+    page.locator("body").press("ArrowRight")
+    page.locator("body").press("c")
+    requests.let_go()
+    shows(page, "#status", "at its start")
+    choose(page, "counting.py")
+    shows(page, "#status", "at its start")
+    shows(page, "#time", "0.00 s")
+
+
+def test_each_click_on_cycle_is_one(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.evaluate("for (let n = 0; n < 3; n += 1) document.getElementById('cycle').click()")
+    open_tab(page, "Productions")
+    expect(page.locator("#events tr.fire")).to_have_count(3)
+    shows(page, "#status", "fired")
+    expect(page.locator("#events tr.fire")).to_have_count(3)
+
+
+# -- what is written and chosen
+
+
+def test_a_row_chosen_before_the_next_picture_stays_chosen(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.evaluate(
+        """() => {
+            const observer = new MutationObserver(() => {  // is told before anything is drawn
+                const row = document.querySelector("#events tr.fire");
+                if (!row) return;
+                observer.disconnect();
+                row.click();
+            });
+            observer.observe(document.body, { childList: true, subtree: true });
+            [...document.querySelectorAll("[role=tab]")].find((tab) => tab.textContent.startsWith("Productions")).click();
+        }"""
+    )
+    expect(page.locator("#events tr.fire").first).to_have_attribute("aria-selected", "true")
+    drawn(page)
+    expect(page.locator("#events tr.fire").first).to_have_attribute("aria-selected", "true")
+
+
+def test_the_focus_is_where_an_arrow_key_has_taken_it_at_once(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    open_tab(page, "Productions")
+    name = page.locator(".production-list button.name[tabindex='0']")
+    expect(name).to_be_visible()
+    name.focus()
+    moved = page.evaluate(
+        """() => {
+            const before = document.activeElement;
+            before.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowDown", bubbles: true, cancelable: true }));
+            return before.matches(".name") && document.activeElement.matches(".name") && document.activeElement !== before;
+        }"""
+    )
+    assert moved
+
+
+def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    for _ in range(2):
+        shows(page, "#status", "at its start")
+        page.click("#run")
+        shows(page, "#status", "ended")
+        page.click("#restart")
+    shows(page, "#status", "at its start")
+    open_tab(page, "Runs")
+    finished = page.locator(".runs-table tbody tr:not(.space):not(.present)")
+    names = [finished.nth(n).get_attribute("data-run") for n in range(2)]
+    first, second = (page.locator(f"[data-run='{name}']") for name in names)
+    first.click()
+    with holding(page, "**/api/recordings/*/delete", lambda _: True):
+        page.get_by_role("toolbar", name="The chosen run").get_by_role("button", name="Delete").click()
+        page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+        second.click()
+        expect(second).to_have_attribute("aria-selected", "true")
+    expect(first).to_have_count(0)
+    drawn(page)
+    expect(second).to_have_attribute("aria-selected", "true")
+
+
+def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    open_tab(page, "Runs")
+    page.locator("tr.present").click()
+    asked: list[Route] = []
+    page.route(re.compile("form=replay.html"), lambda route: asked.append(route))
+    link, told = page.get_by_role("link", name="HTML replay"), page.get_by_text("Making the HTML replay")
+    link.click()
+    expect(told).to_be_visible()
+    link.click()  # one is enough
+    with page.expect_download() as taken:
+        asked[0].fulfill(body="<title>replay</title>")
+    assert taken.value.suggested_filename.startswith("doorway-")
+    assert taken.value.suggested_filename.endswith(".replay.html")
+    expect(told).to_have_count(0)
+    assert len(asked) == 1
+
+
+def test_what_is_written_in_fields_stays_as_it_is_written(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    open_tab(page, "Parameters")
+    width, speed = page.get_by_label("width", exact=True), page.get_by_label("speed", exact=True)
+    speed.fill("")
+    speed.press_sequentially("1.205")  # of which «1.20» is what holds already
+    expect(speed).to_have_value("1.205")
+    speed.fill("1.2")
+    expect(page.locator(".note")).to_have_count(0)
+    with wire.holding():
+        width.fill("0.9")
+        width.press("Tab")
+        speed.fill("1.3")
+    shows(page, "#width", "90 cm")
+    expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))
+    expect(speed).to_have_value("1.3")
+
+
+def test_a_dialog_takes_what_is_pressed_at_once(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    opened = page.evaluate(
+        """async () => {
+            dispatchEvent(new KeyboardEvent("keydown", { key: "?", bubbles: true, cancelable: true }));
+            for (let n = 0; n < 10; n += 1) await null;  // before anything is drawn
+            return document.querySelector("dialog")?.open;
+        }"""
+    )
+    assert opened
+
+
+# -- files
+
+
+def test_a_file_chosen_while_another_is_made_or_saved_stays_shown(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    edit(page, "counting.py")
+    file = page.get_by_label("File", exact=True)
+    with holding(page, "**/api/model", is_put):
+        page.get_by_role("button", name="New model", exact=True).click()
+        page.get_by_label("Name of the file").fill("slowly_made")
+        page.get_by_role("button", name="Create").click()
+        edit(page, "doorway.py")
+    expect(file.locator("option", has_text="slowly_made.py")).to_have_count(1)
+    expect(file).to_have_value("doorway.py")
+    edit(page, "slowly_made.py")
+    write(page, "# more\n")
+    with holding(page, "**/api/model", is_put):
+        page.keyboard.press("Control+Enter")
+        choose(page, "doorway.py")
+        shows(page, "#status", "at its start")
+    expect(page.locator(".side .tab-title.unsaved")).to_have_count(0)
+    expect(page.get_by_label("File", exact=True)).to_have_value("doorway.py")
+    until(page, lambda: (workbench.folder / "slowly_made.py").read_text(encoding="utf-8").endswith("# more\n"))
+    drawn(page)
+    expect(page.get_by_label("Model", exact=True)).to_have_value("doorway.py")
+    shows(page, "#status", "at its start")
+
+
+def test_a_text_that_is_being_saved_is_in_no_conflict_with_itself(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "saved.py").write_text("a = 1\n", encoding="utf-8")
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    edit(page, "saved.py")
+    write(page, "b = 2\n")
+    glances = Requests(page, re.compile("/api/model/version[?]path=saved.py"))
+    page.evaluate("dispatchEvent(new Event('focus'))")
+    until(page, lambda: bool(glances.held))
+    page.route(re.compile("/api/model/version[?]path=saved.py"), lambda route: route.continue_())  # that of the save
+    with holding(page, "**/api/model", is_put):
+        page.keyboard.press("Control+s")
+        until(page, lambda: (workbench.folder / "saved.py").read_text(encoding="utf-8").endswith("b = 2\n"))
+        write(page, "c = 3\n")
+        with page.expect_response(re.compile("/api/model[?]path=saved.py")):
+            glances.let_go()
+        drawn(page)
+        expect(page.locator(".strip")).to_have_count(0)
+    shows(page, ".standing .state", "unsaved")
+    expect(page.locator(".strip")).to_have_count(0)
+
+
+def test_what_a_file_is_called_now_is_nothing_to_be_opened(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "before.py").write_text((workbench.folder / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
+    page = pages("before.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    edit(page, "before.py")
+    with wire.holding():
+        page.get_by_role("button", name="Rename").click()
+        page.get_by_label("New name").fill("after.py")
+        page.keyboard.press("Enter")
+        expect(page.get_by_label("File", exact=True)).to_have_value("after.py")
+        edit(page, "doorway.py")
+    expect(page.get_by_label("Model", exact=True)).to_have_value("after.py")
+    drawn(page)
+    expect(page.get_by_label("File", exact=True)).to_have_value("doorway.py")
+
+
+def test_what_loading_says_of_a_text_is_not_taken_back_by_a_glance_at_it(pages: Callable[..., Page], workbench: Served) -> None:
+    source = "def build(parameters: None) -> Simulation: ...\nraise ValueError('at its top')\n"
+    (workbench.folder / "glanced.py").write_text(source, encoding="utf-8")
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    edit(page, "glanced.py")
+    shows(page, ".problems", "No problems|error")
+    with holding(page, "**/api/check", lambda request: '"load"' not in (request.post_data or "")):
+        with page.expect_request("**/api/check"):
+            write(page, "# more\n")
+        with page.expect_response("**/api/check"):
+            page.get_by_role("button", name=re.compile("^Load it")).click()
+        shows(page, ".problems", "ValueError|NameError")
+    drawn(page)
+    shows(page, ".problems", "ValueError|NameError")
+
+
+def test_a_tab_keeps_its_unsaved_work_however_slowly_the_page_before_goes(pages: Callable[..., Page], workbench: Served) -> None:
+    path: Path = workbench.folder / "kept.py"
+    path.write_text("a = 1\n", encoding="utf-8")
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    edit(page, "kept.py")
+    write(page, "b = 2\n")
+    until(page, lambda: page.evaluate("Object.keys(localStorage).some((key) => key.endsWith(' kept.py'))"))
+    tab = page.evaluate("sessionStorage.getItem('tab')")
+    # Another page of the browser stands for what is left of this one, and says nothing.
+    left = page.context.new_page()
+    left.goto(f"{workbench.url}/openapi.json")
+    left.evaluate("(name) => void navigator.locks.request(name, () => new Promise((done) => (window.go = done)))", f"actr3d.tab.{tab}")
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.reload()
+    shows(page, "#status", "at its start")
+    open_tab(page, "Editor")
+    page.get_by_label("File", exact=True).select_option("kept.py")
+    begun = page.evaluate("performance.now()")
+    until(page, lambda: page.evaluate("performance.now()") > begun + 1000)  # it is not impatient
+    assert page.evaluate("sessionStorage.getItem('tab')") == tab
+    left.evaluate("go()")
+    expect(page.locator(CODE)).to_have_text("a = 1b = 2")
+    with page.expect_popup() as opened:
+        page.evaluate("void window.open(location.href)")  # which has what this tab remembers, as one that is duplicated
+    twin = opened.value
+    until(twin, lambda: twin.evaluate("sessionStorage.getItem('tab')") != tab)
+    edit(twin, "kept.py")
+    expect(twin.locator(CODE)).to_have_text("a = 1")
+    twin.close()

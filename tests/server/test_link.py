@@ -1,0 +1,55 @@
+"""The worker's end of its wire: what is sent in which order."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+
+from workbench.worker.link import Link
+from workbench.worker.messages import News, Notice, Reply, Start, State, framed
+
+
+def state(tick: int) -> State:
+    return State(
+        status="paused",
+        reason="",
+        tick=tick,
+        time=0.01 * tick,
+        furthest=0.01 * tick,
+        wanted=None,
+        measured=None,
+        events=tick,
+        parts=b"{}",
+        apertures={},
+        result=b"null",
+        physics=None,
+    )
+
+
+def rests(_: Link) -> None:
+    """Is what a thread of the link does here."""
+
+
+@pytest.fixture
+def link(monkeypatch: pytest.MonkeyPatch) -> Link:
+    """A link that sends nothing yet, so that all waits in its order."""
+    monkeypatch.setattr(Link, "_read", rests)
+    monkeypatch.setattr(Link, "_write", rests)
+    server, worker = socket.socketpair()
+    server.sendall(framed(Start(path="model.py", source="", folder=".")))
+    with server, worker:
+        return Link(worker)
+
+
+def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Link) -> None:
+    link.show(state(1), 0, [b"1"])
+    link.show(state(2), 1, [b"2"])
+    assert not link.idle
+    link.post(Reply(id=7))
+    assert list(link._messages) == [News(first=0, events=[b"1", b"2"]), state(2), Reply(id=7)]
+    assert not link.idle
+    link.post(Reply(id=8))
+    link.show(state(3), 2, [])
+    link.post(Notice(level="info", text="said"))  # which a newer state need not wait for
+    assert list(link._messages)[2:] == [Reply(id=7), Reply(id=8), Notice(level="info", text="said")]

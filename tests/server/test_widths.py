@@ -1,0 +1,17 @@
+"""How wide a doorway can be set by the sliders of both panels: as its parameter says."""
+
+from __future__ import annotations
+
+from workbench.loader import Change, Parameter
+from workbench.worker.widths import widths
+
+OPENS = Change(word="aperture")
+
+
+def test_a_slider_has_the_bounds_of_the_parameter_that_sets_doorways() -> None:
+    other = Parameter(name="speed", takes="number", most=2.0, live=Change(word="parameter"))
+    open_ones = Parameter(name="width", takes="number", above=0.0, most=3.0, live=OPENS)
+    closed = Parameter(name="width", takes="number", least=0.25, below=1.2, live=OPENS)
+    assert widths(["door"], [other, open_ones]) == {"door": (1, 300)}
+    assert widths(["one", "two"], [closed]) == {"one": (25, 119), "two": (25, 119)}
+    assert widths(["door"], [other]) == {"door": (0, 300)}

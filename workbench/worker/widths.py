@@ -1,0 +1,22 @@
+"""How wide doorways can be set by a slider."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from workbench.loader import Parameter
+
+WIDEST = 300
+"""A doorway of which no parameter says how wide it can be is set up to this [cm]. Ours."""
+
+
+def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:
+    """Returns the least and the greatest width that each doorway can be set to [cm], as the parameter says that sets doorways."""
+    setting = [one for one in parameters if one.live is not None and one.live.word == "aperture"]
+    least = [math.ceil(100 * one.least) for one in setting if one.least is not None]
+    least += [math.floor(100 * one.above) + 1 for one in setting if one.above is not None]
+    most = [math.floor(100 * one.most) for one in setting if one.most is not None]
+    most += [math.ceil(100 * one.below) - 1 for one in setting if one.below is not None]
+    bounds = max(least, default=0), min(most, default=WIDEST)
+    return dict.fromkeys(apertures, bounds)
