@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -42,7 +42,7 @@ class Wire:
             self.held.append(text)
 
     @contextmanager
-    def holding(self, *, only_replies: bool = False) -> Iterator[None]:
+    def holding(self, *, only_replies: bool = False) -> Generator[None]:
         """Holds back all that the server says; or only its replies, which then are lost, as those of a session that is left are."""
         self.held, self._only_replies = [], only_replies
         yield
@@ -72,7 +72,7 @@ class Requests:
 
 
 @contextmanager
-def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Iterator[None]:
+def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Generator[None]:
     """Holds back what the server answers to such requests; it has done what they ask for."""
     held: list[tuple[Route, Any]] = []
 
@@ -161,8 +161,8 @@ def test_a_question_to_a_run_that_is_shown_no_more_does_not_keep_others_waiting(
         shows(page, "#time", "0.01 s")
         choose(page, "counting.py")
         expect(page.get_by_role("button", name="Curves …")).to_be_disabled()
-        choose(page, "doorway.py")
-        shows(page, "#time", "0.01 s")
+    choose(page, "doorway.py")
+    shows(page, "#time", "0.01 s")
     expect(page.get_by_role("button", name="Curves …")).to_be_enabled()
     page.keyboard.press("ArrowRight")
     shows(page, "#time", "0.02 s")
