@@ -72,7 +72,8 @@ import os, time
 from pathlib import Path
 mark = Path({mark!r})
 while mark.exists():
-    mark.write_text(str(os.getpid()))
+    if not mark.read_text():
+        mark.write_text(str(os.getpid()))
     time.sleep(0.01)
 """
 
