@@ -125,9 +125,10 @@ class Arrival(Wait):
         self.due = self.now() + metres / speed
         self.go(metres / speed)
 
-    def change(self, speed):
+    def change(self, speed, further=0):
+        """Takes another speed, and a way that is so much longer [m]."""
         if self.state == "on":
-            self.walk(max(0, self.due - self.now()) * self.speed, speed)
+            self.walk(max(0, max(0, self.due - self.now()) * self.speed + further), speed)
 
 
 class Pace(Model):
@@ -147,6 +148,15 @@ class Shoulders(Model):
         motor.rotate("head", "yaw", -angle * TORSO, rate)
         motor.rotate("left_shoulder", "yaw", angle * CLAVICLE, rate)
         motor.rotate("right_shoulder", "yaw", angle * CLAVICLE, rate)
+
+    def change(self, rate):
+        """Turns on at another rate, if they are being turned to the doorway."""
+        if self.parent.b_turn.chunk and self.parent.b_turn["watch"] == "no" and self.parent.b_turn["way"] == "unknown" and self.turning():
+            self.turn(1, rate)
+
+    def turning(self):
+        """Returns whether they are being turned."""
+        return self.parent.motor[f"{self.groups[0]}_busy"]
 
     def stop(self):
         for group in self.groups:
@@ -194,12 +204,11 @@ class Eyes(ACTR):
 
     def search_the_way(b_turn="watch:yes way:clear", scan="state:over", motor="width:?width"):
         scan.reset()
-        self.look_before(self.parent.radius, float(width))
+        self.look_before(self.parent.radius, self.parent.wanted(float(width)))
 
     def look_before(self, radius, width):
-        """Searches for what is right before it: the edges of an opening that is wide enough are beside it."""
-        aside = self.parent.wanted(width) / 2
-        self.parent.vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BESIDE, aside=aside)
+        """Searches for what is before somebody of a width: the edges of an opening that is wide enough are beside that."""
+        self.parent.vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BESIDE, aside=width / 2)
 
     def first_alert(b_turn="watch:yes way:unknown", b_context="way:open", b_visual="feature:obstacle distance:?far"):
         b_context.set("way:narrow")
@@ -230,7 +239,7 @@ class Eyes(ACTR):
 
     def doubt(b_turn="do:wait way:clear", vision="busy:False error:True", motor="width:?width"):
         """In a doorway, its edges are out of sight; else what was wide enough is so no longer."""
-        self.look_before(self.parent.radius, float(width))
+        self.look_before(self.parent.radius, self.parent.wanted(float(width)))
         b_turn.modify(do="doubt")
 
     def pass_by(b_turn="do:doubt", vision="watching:False", b_visual=None):
@@ -260,10 +269,21 @@ class EyesInPieces(Eyes):
         scan.go(0.05)
         b_turn.modify(do="scan")
 
-    def search_again(b_turn="do:scan", scan="state:over"):
+    def search_again(b_turn="do:scan", scan="state:over", near="state:!over"):
         scan.reset()
         vision.request("feature:obstacle", bottom_up=True, radius=self.parent.radius, bearing=BEARING)
         b_turn.modify(do="search")
+
+    def search_what_it_cannot_pass(b_turn="do:scan", scan="state:over", near="state:over"):
+        scan.reset()
+        self.look_before(self.parent.radius, self.parent.narrowest)
+        b_turn.modify(do="search_nearby")
+
+    def see_that_it_cannot_pass(b_turn="do:search_nearby", vision="watching:False", b_visual="feature:obstacle"):
+        self.stay()
+
+    def turn_on_nearby(b_turn="do:search_nearby", vision="watching:False", b_visual=None):
+        b_turn.modify(do="turn")
 
     def turn_on(b_turn="do:search", vision="watching:False", b_visual=None):
         b_turn.modify(do="turn")
@@ -283,7 +303,7 @@ class EyesAtOnce(Eyes):
         b_turn.modify(do="ask")
 
     def beware(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", near="state:over", motor="width:?width"):
-        self.look_before(self.parent.stopping, float(width))
+        self.look_before(self.parent.stopping, self.parent.wanted(float(width)))
         b_turn.modify(do="beware")
 
     def go_on_with_care(b_turn="do:beware", vision="watching:False", b_visual=None):
@@ -293,11 +313,22 @@ class EyesAtOnce(Eyes):
         b_visual.clear()
         b_turn.modify(do="ask", near=True)
 
-    def halt(b_turn="do:wait near:True way:unknown", vision="busy:False error:True"):
+    def halt(b_turn="do:wait near:True way:unknown", vision="busy:False error:True", motor="width:?width"):
         motor.stop("legs")
         way.reset()
         near.reset()
-        b_turn.modify(do="ask", near="halted")
+        self.look_before(self.parent.stopping, self.parent.wanted(float(width)))
+        b_turn.modify(do="halt", near="halted")
+
+    def turn_there(b_turn="do:halt", vision="watching:False", b_visual=None):
+        b_turn.modify(do="turn")
+
+    def turn_before(b_turn="do:halt", vision="watching:False", b_visual="feature:obstacle distance:?far aside:?aside"):
+        b_visual.clear()
+        if float(far) ** 2 - float(aside) ** 2 > (self.parent.shoulder_width / 2) ** 2:
+            b_turn.modify(do="turn")
+        else:
+            self.stay()  # a shoulder would touch the wall
 
     def look_once_more(b_turn="do:wait near:halted way:unknown", vision="busy:False error:True", motor="stance_busy:False"):
         b_turn.modify(do="ask", near="at_last")
@@ -338,7 +369,8 @@ class Walker(SGOMS):
         b_unit_task.modify(state="out")
         shoulders.turn(1, swing)
 
-    def swing_back(b_unit_task="unit_task:learn state:out", motor="busy:False"):
+    def swing_back(b_unit_task="unit_task:learn state:out", motor="busy:False width:?width"):
+        self.narrowest = float(width)
         b_unit_task.modify(state="back")
         shoulders.turn(0, swing)
 
@@ -389,9 +421,11 @@ class Walker(SGOMS):
 
     def change_pace(pace="wanted:?wanted kept:!?wanted"):
         pace.kept = pace.wanted
+        before = self.stopping
         self.go_at(pace.wanted or usual)
         way.change(self.speed)
-        near.change(self.speed)
+        near.change(self.speed, before - self.stopping)
+        shoulders.change(self.rate)
         if motor.walking:
             motor.walk(self.speed)
 
@@ -461,7 +495,8 @@ class Human(Walker):
     def go_at(self, speed):
         """Takes a speed for its own [m/s], with what depends on it."""
         super().go_at(speed)
-        self.stopping = self.shoulder_width / 2 + STOPPING * speed  # who is turned sideways reaches half its width ahead
+        # Who is turned sideways reaches half its width ahead.
+        self.stopping = max(ROOM * self.shoulder_width, self.shoulder_width / 2 + STOPPING * speed)
         self.radius = max(REACTION * speed, FAR)
         self.rate = TURNING * speed
 
@@ -487,6 +522,9 @@ turning sideways within `REACTION`. That it grows with the speed is ours, too: p
 ON = 0.055
 """By which part of the shoulders' width the room still grows after it is seen to be enough, since a person who turns does not stop
 at once. Ours."""
+ROOM = 0.9
+"""How many times its shoulders' width a person keeps away at least, until there is a way through. Ours: half of it is what turns, and
+the edges of a doorway are beside it."""
 STOPPING = 0.25
 """How long it takes a person to see that there is no way through, and to stop [s]. Ours: three answers of its vision at most."""
 RADIUS = 3.0

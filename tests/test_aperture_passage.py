@@ -183,20 +183,38 @@ def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> Pas
         (6.2, 0.42, {"speed": 3.0}),
         (6.0, 0.3, {"group": "large", "condition": "fast"}),
         (6.0, 0.25, {"speed": 0.5, "variant": "replication"}),
+        (3.0, 0.3, {"condition": "fast", "variant": "replication"}),
+        (3.3, 0.31, {"variant": "replication"}),
     ],
 )
-def test_who_notices_late_stops(model: Any, at: float, to: float, given: dict[str, Any]) -> None:
+def test_who_notices_late_touches_nothing(model: Any, at: float, to: float, given: dict[str, Any]) -> None:
     """The edges of a doorway are off the way ahead when they are near, and a fast walker goes some way until it stands."""
+    for seed in range(1, 5):
+        assert shrunk(model, at, to, seed, aperture=0.6, **given).contacts == 0
+
+
+@pytest.mark.parametrize(("at", "given"), [(6.45, {}), (6.6, {"speed": 0.5}), (6.0, {"variant": "replication"})])
+def test_who_notices_that_there_is_no_way_through_stops(model: Any, at: float, given: dict[str, Any]) -> None:
     for seed in (1, 2):
-        result = shrunk(model, at, to, seed, aperture=0.6, **given)
+        result = shrunk(model, at, 0.2, seed, aperture=0.6, **given)
         assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
 
 
-@pytest.mark.parametrize(("at", "speed"), [(6.0, None), (6.4, 0.5), (5.3, 3.0)])
-def test_who_notices_in_time_turns_halts_and_goes_on(model: Any, at: float, speed: float | None) -> None:
+@pytest.mark.parametrize(("at", "speed"), [(6.0, None), (6.3, None), (6.4, 0.5), (5.3, 3.0)])
+def test_who_notices_in_time_turns_where_it_stands_and_goes_on(model: Any, at: float, speed: float | None) -> None:
     result = shrunk(model, at, 0.38, 2, aperture=0.6, speed=speed)
     assert (result.outcome, result.contacts) == ("passed", 0)
     assert (result.wall_angle_deg or 0) > 54
+
+
+@pytest.mark.parametrize(("aperture", "first", "then"), [(0.3, 0.3, 2.0), (0.35, 0.3, None), (0.3, 0.5, 3.0)])
+def test_who_is_to_walk_faster_close_before_it_still_turns_in_time(model: Any, aperture: float, first: float, then: float | None) -> None:
+    """The turn that is under way gets faster, too, and it stands still earlier."""
+    simulation = built(model, aperture=aperture, speed=first)
+    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 5.3)
+    simulation.command("parameter", "walker.pace.wanted", then)
+    simulation.run()
+    assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
 
 
 def test_a_doorway_whose_edges_are_out_of_sight_is_not_doubted(model: Any) -> None:
