@@ -156,9 +156,11 @@ class Session(Telling):
         if attempt is None or attempt.over:
             return
         self._ending = "stopped" if asked else ending
+        where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
         if ending and not asked:
-            where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
             self.tell(Notice(level="error", text=f"{self._ending}{where}"))
+        elif asked and where:
+            self.tell(Notice(level="warning", text=f"stopped while it was busy{where}"))
         attempt.over = True
         if attempt is self._loading:
             self._loading = None

@@ -22,7 +22,9 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   const [view, setView] = useState({ top: 0, height: 400 });
   const last = useRef(chosen);
 
+  // A scrolled or observed box may be gone when that is told.
   function look() {
+    if (!box.current) return;
     const { scrollTop: top, clientHeight: height } = box.current;
     setView((before) => (before.top === top && before.height === height ? before : { top, height }));
   }
@@ -35,6 +37,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   }
 
   function scrolled() {
+    if (!box.current) return;
     const { scrollTop, clientHeight } = box.current;
     if (aim !== null && Math.abs(scrollTop - set.current) > 2) {
       const top = aim * ROW;

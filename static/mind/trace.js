@@ -120,7 +120,7 @@ export function FiringTrace() {
       label="Firing trace"
       count=${mixed.count}
       row=${row}
-      columns=${several ? ["68px", "22%", "auto", "42px"] : ["68px", "auto", "42px"]}
+      columns=${several ? ["74px", "22%", "auto", "42px"] : ["74px", "auto", "42px"]}
       head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th></th>`}
       aim=${present > 0 ? present - 1 : null}
       chosen=${chosenRow}

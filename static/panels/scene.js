@@ -9,7 +9,7 @@ import { hurried, opening, session } from "../store.js";
 import { dark } from "../theme.js";
 
 const open = remembered("scene switches", true);
-const CAMERAS = { free: "free", follow: "follow", eye: "through the eye", top: "from above" };
+const CAMERAS = { free: "free", follow: "with the body", eye: "through the eye", top: "from above" };
 
 const camera = settable(
   () => session.value?.camera,
@@ -55,7 +55,8 @@ function missing(told) {
   if (!told) return opening.value?.text ?? "";
   if (told.world) return "The 3D view is being made …";
   if (told.loading) return "The model is being loaded …";
-  return told.kind ? "This model has no world: there is nothing to see. Its buffers, productions and memory stand beside." : "";
+  if (!told.kind) return "There is no run: what is wrong with the model stands in Messages, with its line.";
+  return "This model has no world: there is nothing to see. Its buffers, productions and memory stand beside.";
 }
 
 export function Scene() {

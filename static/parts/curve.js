@@ -4,6 +4,7 @@ import { numberText, roundRange, stepFor, ticks, timeText } from "./ticks.js";
 import { cut, widthOf } from "./surface.js";
 
 export const COLOURS = 6;
+const LEAST_RANGE = 0.01; // what differs by less is drawn as a line, not as what numerical noise makes of it
 const EDGE = 6; // so far from the ends of an axis its first and last text keep [px]
 
 /** Returns the name of the colour of the nth curve. */
@@ -38,7 +39,8 @@ export function rangeOf(series) {
       if (value > most) most = value;
     }
   }
-  return roundRange(least, most);
+  const room = Math.max(0, LEAST_RANGE - (most - least)) / 2;
+  return roundRange(least - room, most + room);
 }
 
 /** Returns a curve as points of a box; where several values share a pixel, its least and its largest. */

@@ -29,8 +29,10 @@ export function titleOf(group) {
 const kept = remembered("timeline curves", { names: null });
 
 function usual(all) {
-  const turn = all.find(({ name, group }) => group === "joint" && /torso.*yaw/.test(name)) ?? all.find(({ group }) => group === "joint");
-  return all.filter((curve) => curve === turn || curve.group === "speed" || curve.group === "clearance").map(({ name }) => name);
+  const joints = all.filter(({ group }) => group === "joint");
+  const turns = joints.filter(({ name }) => /(stance|torso)_yaw$/.test(name)); // of people, hips and shoulders
+  const plotted = turns.length > 0 ? turns : joints.slice(0, 1);
+  return all.filter((curve) => plotted.includes(curve) || curve.group === "speed" || curve.group === "clearance").map(({ name }) => name);
 }
 
 /** The names of those that are plotted. */

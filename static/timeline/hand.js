@@ -1,12 +1,14 @@
 // What the pointer, the wheel and the keys do on the timeline.
 
 import { running, session } from "../store.js";
-import { timeOf } from "./draw.js";
+import { placeOf, timeOf } from "./draw.js";
 import { AXIS, column } from "./rows.js";
 import { furthest, orderThere, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
 const GRIP = 4; // so near the border of the column of names is taken hold of [px]
+const HANDLE = 7; // so near the playhead it is, in the axis [px]
+const STILL = 3; // a pointer that has moved by no more has clicked [px]
 const COLUMN = [70, 360]; // how wide that may be [px]
 const NOTCH = 0.0015; // how much a pixel of the wheel zooms
 const LINE = 16; // a line of the wheel [px]
@@ -39,10 +41,15 @@ export function begin(event) {
   if (event.button !== 0) return;
   const stage = event.currentTarget;
   let [x, y] = placeIn(event, stage);
-  const part = partAt(x, y);
-  if (part === "names") return;
+  const there = partAt(x, y);
+  if (there === "names") return;
+  const part = there === "axis" && Math.abs(x - placeOf(present.peek(), sceneOf(stage))) <= HANDLE ? "lanes" : there;
+  const began = x;
+  let still = true;
   const move = (moved) => {
     const [to] = placeIn(moved, stage);
+    still &&= Math.abs(to - began) <= STILL;
+    if (part === "axis" && still) return;
     if (part === "border") column.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
     else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), furthest.peek());
     else seek(Math.max(0, timeOf(to, sceneOf(stage))));
@@ -53,7 +60,8 @@ export function begin(event) {
   document.body.dataset.dragging = "";
   if (part === "lanes") move(event);
   stage.onpointermove = move;
-  stage.onpointerup = stage.onpointercancel = () => {
+  stage.onpointerup = stage.onpointercancel = ({ type }) => {
+    if (part === "axis" && still && type === "pointerup") seek(Math.max(0, timeOf(x, sceneOf(stage))));
     stage.onpointermove = stage.onpointerup = stage.onpointercancel = null;
     delete document.body.dataset.dragging;
   };

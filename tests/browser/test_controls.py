@@ -22,7 +22,7 @@ def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page.get_by_role("button", name="Run until").click()
     page.get_by_label("Time [s]").fill("0.01")
     page.get_by_role("button", name="Run until then").click()
-    expect(page.locator(".toast")).to_have_text(re.compile("seek goes back"))
+    expect(page.locator(".toast")).to_have_text(re.compile("a click on the timeline goes back"))
     page.get_by_role("button", name="Run until").click()
     page.get_by_label("Time [s]").fill("0.5")
     page.keyboard.press("Tab")

@@ -106,6 +106,8 @@ def test_an_endless_loop_is_stopped(page: Page, workbench: Served) -> None:
     shows(page, "#status", "busy at line [23]")
     page.click("#stop")
     shows(page, "#status", "stopped")
+    open_tab(page, "Messages")
+    shows(page, "#log", r"stopped while it was busy at loop\.py:[23]")
 
 
 def test_tabs_stay_where_they_are_whichever_is_open(page: Page) -> None:

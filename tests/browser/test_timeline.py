@@ -153,6 +153,13 @@ def test_zoom_and_choice_of_rows(ended: Page) -> None:
     drawn(page)
     assert abs(slider(page, "valuenow") - near) < 0.05  # the axis was drawn to the left by a quarter
     fit.click()
+    page.mouse.click(*at(page, 0.5, 8))  # of the axis
+    when(page, "4.00")
+    page.mouse.move(*at(page, 0.5, 8))
+    page.mouse.down()  # on the playhead
+    page.mouse.move(*at(page, 0.25, 8))
+    page.mouse.up()
+    when(page, "2.00")
     marks, curves = page.get_by_role("button", name="Marks"), page.get_by_role("button", name="Curves", exact=True)
     until(page, lambda: any("printed" in text for text in told(page, 6.8 / 8)))
     marks.click()

@@ -200,7 +200,7 @@ class Conductor:
             raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
         goal = None if said.time is None else round(said.time * MICROSECONDS)
         if goal is not None and goal <= self.run.clock:
-            raise Actr3dError(f"it is {seconds(self.run.clock):g} s already; seek goes back")
+            raise Actr3dError(f"it is {seconds(self.run.clock):g} s already; a click on the timeline goes back")
         touching = self.run.touches() if said.contact is not None else frozenset[tuple[str, str, str]]()
         self._go(
             goal=goal,
