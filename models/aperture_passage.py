@@ -269,28 +269,16 @@ class EyesInPieces(Eyes):
         scan.go(0.05)
         b_turn.modify(do="scan")
 
-    def search_again(b_turn="do:scan", scan="state:over", near="state:!over"):
+    def search_what_it_cannot_pass(b_turn="do:scan", scan="state:over"):
         scan.reset()
-        vision.request("feature:obstacle", bottom_up=True, radius=self.parent.radius, bearing=BEARING)
+        self.look_before(self.parent.radius, TIGHT * self.parent.narrowest)
         b_turn.modify(do="search")
 
-    def search_what_it_cannot_pass(b_turn="do:scan", scan="state:over", near="state:over"):
-        scan.reset()
-        self.look_before(self.parent.radius, self.parent.narrowest)
-        b_turn.modify(do="search_nearby")
-
-    def see_that_it_cannot_pass(b_turn="do:search_nearby", vision="watching:False", b_visual="feature:obstacle"):
+    def see_that_it_cannot_pass(b_turn="do:search", vision="watching:False", b_visual="feature:obstacle"):
         self.stay()
-
-    def turn_on_nearby(b_turn="do:search_nearby", vision="watching:False", b_visual=None):
-        b_turn.modify(do="turn")
 
     def turn_on(b_turn="do:search", vision="watching:False", b_visual=None):
         b_turn.modify(do="turn")
-
-    def turn_on_before(b_turn="do:search", vision="watching:False", b_visual="feature:obstacle distance:?far"):
-        b_turn.modify(do="turn", near=self.parent.nears(far))
-        b_visual.clear()
 
 
 class EyesAtOnce(Eyes):
