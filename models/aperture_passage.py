@@ -151,12 +151,8 @@ class Shoulders(Model):
 
     def change(self, rate):
         """Turns on at another rate, if they are being turned to the doorway."""
-        if self.parent.b_turn.chunk and self.parent.b_turn["watch"] == "no" and self.parent.b_turn["way"] == "unknown" and self.turning():
+        if self.parent.b_context["way"] == "narrow" and self.parent.motor[f"{self.groups[0]}_busy"]:
             self.turn(1, rate)
-
-    def turning(self):
-        """Returns whether they are being turned."""
-        return self.parent.motor[f"{self.groups[0]}_busy"]
 
     def stop(self):
         for group in self.groups:

@@ -217,6 +217,15 @@ def test_who_is_to_walk_faster_close_before_it_still_turns_in_time(model: Any, a
     assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
 
 
+@pytest.mark.parametrize("variant", ["human", "replication"])
+def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> None:
+    simulation = built(model, variant=variant, aperture=0.45)
+    simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 8.3)
+    simulation.command("parameter", "walker.pace.wanted", 0.8)
+    simulation.run()
+    assert simulation.result().outcome == "passed"
+
+
 def test_a_doorway_whose_edges_are_out_of_sight_is_not_doubted(model: Any) -> None:
     """Where little room is left, the eye is beside the middle, and looks again until the doorway's edges are beside it."""
     for seed in range(1, 7):
