@@ -86,6 +86,11 @@ export function noSession(otherwise) {
   return opening.value?.text ?? otherwise;
 }
 
+/** Tells the run that is shown from others. */
+export function whichRun() {
+  return `${session.peek()?.id} ${session.peek()?.run}`;
+}
+
 /** Forgets what is known of a session, for another one is shown. */
 export function forget() {
   batch(() => {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from actr3d.actr.limits import fresh_seed
 from actr3d.actr.reading import read_source
 from workbench.files import ModelFolder
 from workbench.texts import Texts
-from workbench.worker.messages import Start
+from workbench.worker.messages import Start, digest_of
 from workbench.worker.workers import Worker
 
 
@@ -58,7 +57,7 @@ def start_of(path: Path, wanted: Wanted, **more: Any) -> Start:
     if relived is None:
         more |= {"source": read_source(path), "version": ModelFolder.version(path)}
     else:
-        more |= {"source": relived.source, "version": hashlib.sha256(relived.source.encode()).hexdigest()}
+        more |= {"source": relived.source, "version": digest_of(relived.source)}
         more |= {"commands": relived.commands, "helpers": relived.helpers}
     seed = fresh_seed() if wanted.seed is None else wanted.seed
     return Start(path=str(path), folder=str(path.parent), settings=wanted.settings, seed=seed, run=wanted.run, **more)

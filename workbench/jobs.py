@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from collections import deque
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
 from workbench.attendant import Attendant
+from workbench.feed import MOST_NOTICES
 from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
 from workbench.worker.workers import Worker, Workers
-
-MOST_NOTICES = 500
-"""No more is kept of what a worker complains of."""
 
 
 class Job:
@@ -22,7 +21,7 @@ class Job:
         """How much is done, from 0 to 1."""
         self.result: bytes | None = None
         """What came of it, as JSON; None where nothing did, or not yet."""
-        self.notices: list[Notice] = []
+        self.notices: deque[Notice] = deque(maxlen=MOST_NOTICES)
         """What the worker complained of."""
         self.ending = ""
         """How the worker ended, where that was not in good order."""
@@ -51,7 +50,7 @@ class Job:
     def tell(self, notice: Notice) -> None:
         """Takes what the worker complains of."""
         if notice.level != "info":  # what is printed is of no interest
-            self.notices = [*self.notices[1 - MOST_NOTICES :], notice]
+            self.notices.append(notice)
 
     def busy(self, worker: Worker) -> bool:
         """Tells that nobody wants to know where the worker is."""

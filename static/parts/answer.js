@@ -2,13 +2,12 @@
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
 import { say } from "../server.js";
-import { alive, moment, running, session } from "../store.js";
+import { alive, moment, running, session, whichRun } from "../store.js";
 
 /** How long it waits between two questions while the run goes on [ms]: to answer costs the run time. */
 const WHILE_RUNNING = 100;
 
 const NOTHING = { answer: null, error: null, waiting: false, of: null };
-const runKey = () => `${session.peek()?.id} ${session.peek()?.run}`;
 
 /**
  * Asks a question of `protocol.py` now and whenever the run stands at another moment; one question at a time.
@@ -34,7 +33,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       if (busy || over || !alive.peek() || (running.peek() && !live && !(once && asked === "")) || asked === moment.peek()) return;
       asked = moment.peek();
       busy = true;
-      const run = runKey();
+      const run = whichRun();
       const of = session.peek().id;
       setTold((before) => ({ ...before, waiting: true }));
       const news = await say(question).then(
@@ -42,7 +41,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
         (error) => ({ answer: null, error: error.message, of }),
       );
       if (over || newest.current !== key) return;
-      setTold((before) => ({ ...before, ...(run === runKey() ? news : {}), waiting: false })); // what another run says is no answer
+      setTold((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // what another run says is no answer
       busy = false;
       timer = setTimeout(ask, running.peek() ? WHILE_RUNNING : 0);
     }

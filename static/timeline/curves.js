@@ -3,7 +3,7 @@
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
 import { isLeft, say } from "../server.js";
-import { alive, complain, events, running, session } from "../store.js";
+import { alive, complain, events, running, session, whichRun } from "../store.js";
 import { rangeOf } from "../parts/curve.js";
 import { furthest } from "./seek.js";
 
@@ -125,7 +125,7 @@ async function ask() {
 }
 
 /** Tells runs, and ways that a run has gone, from others. */
-const whoseNow = () => `${session.peek()?.id} ${session.peek()?.run} ${cuts}`;
+const whoseNow = () => `${whichRun()} ${cuts}`;
 
 /** Asks for what is not known yet, if there is anything; tells whether there may be more. */
 async function askOnce() {

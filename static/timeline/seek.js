@@ -2,7 +2,7 @@
 
 import { computed, signal } from "../vendor/preact.js";
 import { order } from "../server.js";
-import { alive, session, state } from "../store.js";
+import { alive, session, state, whichRun } from "../store.js";
 
 /** Where the user is going to [s]; null when the run is there. */
 export const wanted = signal(null);
@@ -13,7 +13,6 @@ export const furthest = computed(() => Math.max(state.value?.furthest ?? 0, stat
 /** Whether there is a future to go on into that is known. */
 export const inThePast = computed(() => state.value !== null && state.value.time < furthest.value - 1e-7);
 
-const run = () => `${session.peek()?.id} ${session.peek()?.run}`;
 let going = false;
 let said = null; // the time that the run was last told to go to [s]
 
@@ -33,9 +32,9 @@ export function travel(time, wish = time) {
 
 async function go() {
   going = true;
-  const whose = run();
+  const whose = whichRun();
   said = null;
-  while (wanted.peek() !== null && wanted.peek() !== said && whose === run()) {
+  while (wanted.peek() !== null && wanted.peek() !== said && whose === whichRun()) {
     said = wanted.peek();
     await order({ type: "seek", time: said }); // then the run is seen to be there, too
   }
