@@ -19,6 +19,8 @@ from actr3d.running.replay import replay
 from actr3d.simulation import Passage, PassageResult, Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
+pytestmark = pytest.mark.long
+
 FILE = Path(__file__).parent.parent / "models" / "aperture_passage.py"
 WALKING = 5.5
 """When it has learned and judged, and walks [s]."""

@@ -68,6 +68,7 @@ def trace(seed: int) -> bytes:
     return "\n".join(rest).encode()
 
 
+@pytest.mark.long
 def test_a_thousand_seeds_give_the_same_bytes_twice() -> None:
     once = [trace(seed) for seed in SEEDS]
     again = [trace(seed) for seed in SEEDS]

@@ -233,7 +233,9 @@ def test_the_description_names_every_command(server: Served) -> None:
 
 async def attached(server: Served, session: str, **known: int) -> Any:
     bearer = {"authorization": f"Bearer {server.token}"}
-    socket = await websockets.connect(f"ws://127.0.0.1:{server.port}/ws", additional_headers=bearer, max_size=5_000_000)
+    address = f"ws://127.0.0.1:{server.port}/ws"
+    # Without a bound to what waits unread, for one who does not read hears nothing of the end either.
+    socket = await websockets.connect(address, additional_headers=bearer, max_size=5_000_000, max_queue=None)
     await socket.send(json.dumps({"type": "attach", "session": session, **known}))
     return socket
 
