@@ -152,8 +152,8 @@ class BuiltRun:
         if conductor.watch.fine:
             return 1
         most = min(MOST_TICKS, int(BLOCK / self._tick_time)) if self._tick_time > 0 else 1
-        if conductor.factor is not None:
-            most = min(most, int(conductor.factor * BLOCK * MICROSECONDS / self.period))
+        if conductor.pacer.factor is not None:
+            most = min(most, int(conductor.pacer.factor * BLOCK * MICROSECONDS / self.period))
         if conductor.watch.goal is not None:
             most = min(most, -(-(conductor.watch.goal - self.clock) // self.period))
         return max(1, most)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from contextlib import suppress
 from time import perf_counter
 from typing import Any
@@ -20,6 +19,7 @@ from workbench.worker.bounds import bounded_json, event_json
 from workbench.worker.conducted import Conducted
 from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
+from workbench.worker.pacer import Pacer
 from workbench.worker.trouble import told_of
 from workbench.worker.watch import Watch
 
@@ -27,10 +27,6 @@ SHOWN = 1 / 30
 """How often a run that goes on is shown [s]; ours, as often as a page can be drawn with ease."""
 HURRIED = 1 / 15
 """The same of a run that is to go as fast as it can: what is shown takes time from it. Ours."""
-WINDOW = 1.0
-"""Over how long the speed is measured [s]."""
-LATE = 0.25
-"""Who is later than this [s] does not catch up."""
 
 
 class Leaving(EndOfRun):
@@ -50,7 +46,7 @@ class Conductor:
         self.status: Status = "running" if start.run else "paused"
         self.reason = "" if start.run else "at its start"
         self.watch = Watch(breakpoints=frozenset(start.breakpoints))
-        self.factor = start.factor
+        self.pacer = Pacer(start.factor)
         self.leaving = False
         """Whether the worker is to leave."""
         self.run: Conducted
@@ -66,8 +62,6 @@ class Conductor:
         self._shown = 0.0
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays that are shown where somebody looks."""
-        self._anchor: tuple[float, int] | None = None
-        self._marks: deque[tuple[float, int]] = deque()
 
     # -- what the run asks
 
@@ -91,22 +85,12 @@ class Conductor:
 
     def pace(self, clock: int) -> bool:
         """Waits until it is time for a moment of the run [us]; tells whether nothing has been said meanwhile."""
-        if self.factor is None:
-            return True
-        now = perf_counter()
-        if self._anchor is None:
-            self._anchor = now, self.run.clock
-        begin, at = self._anchor
-        early = begin + (clock - at) / MICROSECONDS / self.factor - now
-        if early < -LATE:
-            self._anchor = now, clock
-        while early > 0:
+        while (early := self.pacer.early(self.run.clock, clock)) > 0:
             self.show_if_due()
             message = self.link.receive(min(early, SHOWN))
             if message is not None:
                 self._hear(message)
                 return False
-            early = begin + (clock - at) / MICROSECONDS / self.factor - perf_counter()
         return True
 
     def passed(self) -> None:
@@ -185,7 +169,7 @@ class Conductor:
             case say.Breakpoints():
                 self.watch.breakpoints = frozenset(said.productions)
             case say.Speed():
-                self.factor, self._anchor = said.factor, None
+                self.pacer.set(said.factor)
                 self.show()
             case say.Explain() | say.Rows() | say.Look() | say.Body() | say.Events() | say.Curves():
                 return self.run.answer(said)
@@ -219,8 +203,7 @@ class Conductor:
         trace = self.run.trace
         self._seen = 0 if trace is None else len(trace)
         self.status, self.reason = "running", ""
-        self._anchor = None
-        self._marks.clear()
+        self.pacer.halt()
         if "goal" not in wanted:
             self.show()
 
@@ -238,14 +221,14 @@ class Conductor:
     def show_if_due(self) -> None:
         """Shows the run now and then while it goes on."""
         now = perf_counter()
-        due = HURRIED if self.factor is None else SHOWN
+        due = HURRIED if self.pacer.factor is None else SHOWN
         if now - self._shown >= due and self.status == "running" and self.link.idle:
             self.show()
 
     def show(self) -> None:
         """Shows the run as it is now, and all that has happened."""
-        run, now = self.run, perf_counter()
-        self._shown = now
+        run = self.run
+        self._shown = perf_counter()
         trace = run.trace
         count = 0 if trace is None else len(trace)
         physics, apertures = run.scene()
@@ -255,8 +238,8 @@ class Conductor:
             tick=run.clock // run.period,
             time=seconds(run.clock),
             furthest=seconds(max(run.clock, run.furthest)),
-            wanted=self.factor,
-            measured=self._measure(now),
+            wanted=self.pacer.factor,
+            measured=self.pacer.measure(run.clock) if self.status == "running" else None,
             events=count,
             parts=bounded_json(run.parts()),
             apertures=apertures,
@@ -289,17 +272,6 @@ class Conductor:
         self._sent, self._last = max(self._sent, count), state
 
     def _halt(self) -> None:
-        self._anchor = None
-        self._marks.clear()
+        self.pacer.halt()
         self.watch.begin()
         self.show()
-
-    def _measure(self, now: float) -> float | None:
-        """Returns how many times as fast as real time the run has gone lately."""
-        if self.status != "running":
-            return None
-        self._marks.append((now, self.run.clock))
-        while now - self._marks[0][0] > WINDOW:
-            self._marks.popleft()
-        begin, at = self._marks[0]
-        return (self.run.clock - at) / MICROSECONDS / (now - begin) if now - begin > SHOWN / 2 else None
