@@ -27,24 +27,14 @@
     history.replaceState(null, "", `?${asked}`);
   }
 
-  // While the page around it says that the run goes as fast as it can, it rests between pictures that take long.
+  // While the run goes as fast as it can, it draws when the page around it does, which gives it what both go by.
   const ask = requestAnimationFrame.bind(window);
   const forget = cancelAnimationFrame.bind(window);
   const waiting = new Map();
   let rest = null;
-  let hurried = false;
   let last = 0;
 
-  import("./rest.js").then(({ Rest }) => {
-    rest = new Rest(ask);
-    rest.hurried = hurried;
-  });
-
-  addEventListener("message", ({ origin, data }) => {
-    if (origin !== location.origin || typeof data?.hurried !== "boolean") return;
-    hurried = data.hurried;
-    if (rest) rest.hurried = hurried;
-  });
+  window.restWith = (given) => (rest = given);
 
   window.requestAnimationFrame = (draw) => {
     last += 1;

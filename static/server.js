@@ -1,6 +1,6 @@
 // Speaks to the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
-import { Rest } from "./rest.js";
+import { rest } from "./rest.js";
 import { complain, connected, events, forget, hurried, known, opening, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
@@ -12,7 +12,6 @@ let number = 0;
 let wishes = 0;
 const waiting = new Map();
 const held = []; // updates that wait until they are drawn
-const rest = new Rest();
 let timer = 0;
 
 /** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. An AbortSignal

@@ -1,11 +1,12 @@
 // The 3D view: viser's page in a frame that never moves, for moving it would load it again; and a strip of switches on its edge.
 
-import { html, useEffect, useRef } from "../vendor/preact.js";
+import { html, useRef } from "../vendor/preact.js";
 import { RetinaInset } from "../eye/inset.js";
 import { Icon } from "../parts/icon.js";
 import { settable } from "../parts/settable.js";
 import { remembered } from "../remembered.js";
-import { hurried, opening, session } from "../store.js";
+import { rest } from "../rest.js";
+import { opening, session } from "../store.js";
 import { dark } from "../theme.js";
 
 const open = remembered("scene switches", true);
@@ -63,12 +64,9 @@ export function Scene() {
   const told = session.value;
   const shown = Boolean(told?.world && told.scene);
   const address = useRef("about:blank");
-  const frame = useRef(null);
-  const tell = () => frame.current?.contentWindow?.postMessage({ hurried: hurried.peek() }, location.origin);
-  useEffect(tell, [hurried.value]);
   if (shown) address.current = `/viser/${told.id}/?panel=hidden${dark.value ? "&darkMode" : ""}`;
   return html`<section id="scene" class="scene" aria-label="3D view">
-    <iframe ref=${frame} onLoad=${tell} title="3D view" src=${address.current} hidden=${!shown}></iframe>
+    <iframe onLoad=${(event) => event.currentTarget.contentWindow?.restWith?.(rest)} title="3D view" src=${address.current} hidden=${!shown}></iframe>
     ${shown ? html`<${Switches} />` : html`<div class="empty" role="status"><p>${missing(told)}</p>${awaited(told) ? html`<progress aria-label="Loading" />` : null}</div>`}
     <${RetinaInset} />
   </section>`;

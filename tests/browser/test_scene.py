@@ -126,11 +126,13 @@ RESTING = """async () => {
     for (const [hurried, cost] of [[false, 150], [true, 10], [true, 150]]) {
         rest.hurried = hurried;
         rest.drawing();
-        const before = rest.left > 0;
+        const joins = rest.left === 0;
         now += cost;
         frame();
+        await new Promise((done) => setTimeout(done));
+        const waits = rest.left > 0;
         frame();
-        told.push([before, rest.left > cost]);
+        told.push([joins, waits, rest.left > cost]);
     }
     rest.hurried = false;
     told.push(rest.left);
@@ -140,7 +142,25 @@ RESTING = """async () => {
 
 
 def test_between_slow_pictures_of_a_hurried_run_it_rests(page: Page) -> None:
-    assert page.evaluate(RESTING) == [[False, False], [True, False], [True, True], 0]
+    assert page.evaluate(RESTING) == [[True, False, False], [True, True, False], [True, True, True], 0]
+
+
+def test_the_3d_view_draws_when_the_page_does_while_a_run_is_hurried(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = page.frame_locator("iframe[title='3D view']")
+    expect(frame.get_by_text("t = 0.00 s")).to_have_count(1, timeout=PATIENCE)
+    draws = """async (left) => {
+        const { rest } = await import("/static/rest.js");
+        Object.defineProperty(rest, "left", { get: () => left, configurable: true });
+        const view = document.querySelector("iframe[title='3D view']").contentWindow;
+        let drawn = false;
+        view.requestAnimationFrame(() => (drawn = true));
+        for (let frame = 0; frame < 5; frame++) await new Promise(requestAnimationFrame);
+        delete rest.left;
+        return drawn;
+    }"""
+    assert page.evaluate(draws, 100) is False
+    assert page.evaluate(draws, 0) is True
 
 
 def test_what_a_model_calls_its_things_is_text(workbench: Served, page: Page) -> None:
