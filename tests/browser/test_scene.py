@@ -96,7 +96,7 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
     expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
 
 
-def test_where_the_processor_draws_there_are_no_shadows(workbench: Served, page: Page, session: str) -> None:
+def test_where_the_processor_draws_there_are_no_shadows_and_edges_are_not_smoothed(workbench: Served, page: Page, session: str) -> None:
     lights: list[str] = []
 
     def hear(socket: WebSocket) -> None:
@@ -115,6 +115,8 @@ def test_where_the_processor_draws_there_are_no_shadows(workbench: Served, page:
         page.wait_for_timeout(50)
     assert lights
     assert lights[0].endswith("?shadows=off")
+    smooth = "document.querySelector('canvas').getContext('webgl2').getContextAttributes().antialias"
+    assert page.evaluate(smooth) is False
 
 
 RESTING = """async () => {
