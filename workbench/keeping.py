@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,18 +40,27 @@ def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
         files: All recordings.
         keeping: What is kept.
     """
-    known = sorted(((path, path.stat()) for path in files), key=lambda entry: entry[1].st_mtime, reverse=True)
+    newest = sorted(files, key=_written, reverse=True)
     number = size = 0
     found: list[Path] = []
-    for path, status in [entry for entry in known if not is_unnamed(entry[0])] + [entry for entry in known if is_unnamed(entry[0])]:
+    for path in [path for path in newest if not is_unnamed(path)] + [path for path in newest if is_unnamed(path)]:
+        own = size_of(path)
         number += 1
-        size += status.st_size
+        size += own
         much = (keeping.number and number > keeping.number) or (keeping.megabytes and size > keeping.megabytes * 1_000_000)
         if much and is_unnamed(path):
             found.append(path)
             number -= 1
-            size -= status.st_size
+            size -= own
     return found
+
+
+def _written(path: Path) -> float:
+    """Returns when a file was last written; 0 where it is gone meanwhile."""
+    try:
+        return path.stat().st_mtime
+    except OSError:
+        return 0.0
 
 
 def is_unnamed(path: Path) -> bool:
@@ -69,6 +79,15 @@ def never_begun(state: State | None, log: EventLog) -> bool:
         return False
     _, events = log.since(0)
     return not any(msgspec.json.decode(event)[2] in ("output", "command") for event in events)
+
+
+def size_of(path: Path) -> int:
+    """Returns how large a recording is with what lies beside it, as of one that is being written [bytes]; 0 where it is gone."""
+    size = 0
+    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
+        with suppress(OSError):
+            size += each.stat().st_size
+    return size
 
 
 def erase(path: Path) -> None:

@@ -7,9 +7,10 @@ import inspect
 import math
 import re
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 
 from actr3d.actr.reading import compile_source
 from actr3d.actr.sources import syntax_tree
@@ -115,7 +116,7 @@ def listing_of(source: str, filename: str = "model.py") -> Listing:
     """Reads a model's text; what is wrong with it stands in `problems`."""
     problems = tuple(problems_of(source, filename))
     tree = syntax_tree(source)
-    text = ast.get_docstring(tree) or ""
+    text = sendable(ast.get_docstring(tree) or "")
     builds = has_build(source)
     return Listing(
         title=text.split("\n", 1)[0],
@@ -135,9 +136,9 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
             compile_source(source, filename)
         except ModelFileError as error:
             named = re.match(rf"{re.escape(filename)}:(\d+): (.*)", str(error), re.DOTALL)
-            yield Problem(level="error", message=named[2] if named else str(error), line=int(named[1]) if named else None)
+            yield Problem(level="error", message=sendable(named[2] if named else str(error)), line=int(named[1]) if named else None)
     for warning in told:
-        yield Problem(level="warning", message=str(warning.message), line=warning.lineno)
+        yield Problem(level="warning", message=sendable(str(warning.message)), line=warning.lineno)
 
 
 # -- parameters
@@ -155,7 +156,7 @@ def _of_build(tree: ast.Module) -> Iterator[Parameter]:
     for node, below in zip(kind.body, [*kind.body[1:], ast.Pass()], strict=True) if kind is not None else ():
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             words = below.value.value if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) else ""
-            text = " ".join(inspect.cleandoc(words).split()) if isinstance(words, str) else ""
+            text = " ".join(sendable(inspect.cleandoc(words)).split()) if isinstance(words, str) else ""
             unit = _UNIT.search(text)
             declared = _declared(Parameter(name=node.target.id, takes=""), node.annotation, constants)
             default = _default(node.value, constants)
@@ -165,16 +166,21 @@ def _of_build(tree: ast.Module) -> Iterator[Parameter]:
 def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str, Any]) -> Parameter:
     """Returns a parameter with what its declared type says."""
     if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
-        return _declared(parameter, ast.parse(annotation.value, mode="eval").body, constants)
+        try:
+            return _declared(parameter, ast.parse(annotation.value, mode="eval").body, constants)
+        except (SyntaxError, ValueError):  # as of one that is being written just now
+            return replace(parameter, takes=sendable(annotation.value))
     if isinstance(annotation, ast.BinOp) and isinstance(annotation.op, ast.BitOr):
         sides = [side for side in (annotation.left, annotation.right) if ast.unparse(side) != "None"]
-        inner = _declared(parameter, sides[0], constants)
+        inner = _declared(parameter, (sides or [annotation.left])[0], constants)
         return (
             replace(inner, optional=inner.optional or len(sides) == 1) if len(sides) == 1 else replace(inner, takes=ast.unparse(annotation))
         )
     if isinstance(annotation, ast.Subscript):
         name = ast.unparse(annotation.value).rpartition(".")[2]
         inside = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
+        if not inside:
+            return replace(parameter, takes=ast.unparse(annotation))
         if name == "Annotated":
             for mark in inside[1:]:
                 parameter = _marked(parameter, mark, constants)
@@ -182,8 +188,8 @@ def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str
         if name == "Optional":
             return replace(_declared(parameter, inside[0], constants), optional=True)
         if name == "Literal":
-            choices = tuple(_value(choice, constants) for choice in inside)
-            return replace(parameter, takes="choice", choices=choices)
+            with suppress(ValueError):
+                return replace(parameter, takes="choice", choices=tuple(_value(choice, constants) for choice in inside))
     text = ast.unparse(annotation)
     return replace(parameter, takes=_TAKES.get(text, text))
 
@@ -250,9 +256,28 @@ def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
         value = ast.literal_eval(node)
     except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
         raise ValueError(ast.unparse(node)) from None
-    if isinstance(value, (bytes, complex, set)) or value is ...:
+    if not _can_be_told(value):
         raise ValueError(ast.unparse(node))
     return value
+
+
+def _can_be_told(value: Any) -> bool:
+    """Tells whether JSON has a value."""
+    if isinstance(value, float):
+        return math.isfinite(value)
+    if isinstance(value, str):
+        return value == sendable(value)
+    if isinstance(value, (list, tuple)):
+        return all(map(_can_be_told, cast("Sequence[Any]", value)))
+    if isinstance(value, dict):
+        entries = cast("dict[Any, Any]", value)
+        return all(isinstance(key, str) and _can_be_told(key) and _can_be_told(each) for key, each in entries.items())
+    return value is None or isinstance(value, int)
+
+
+def sendable(text: str) -> str:
+    """Returns a text that can be sent: half characters, which no encoding has, as escapes."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def _productions(tree: ast.Module) -> Iterator[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import asdict
-from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
@@ -16,6 +15,7 @@ from pydantic import Field
 from workbench import protocol as say
 from workbench.files import ModelFile
 from workbench.loader import listing_of
+from workbench.outlines import outline_of
 from workbench.sessions import Sessions
 
 router = APIRouter(prefix="/api")
@@ -87,16 +87,8 @@ def sessions_of(request: Request) -> Sessions:
 def models(request: Request) -> dict[str, Any]:
     """Lists the model files; none of them is run."""
     folder = sessions_of(request).folder
-    files = [{"path": path, **_listed(folder.root / path)} for path in folder.paths()]
+    files = [{"path": path, **vars(outline_of(folder.root / path))} for path in folder.paths()]
     return {"folder": str(folder.root), "models": files}
-
-
-def _listed(path: Path) -> dict[str, Any]:
-    try:
-        listing = listing_of(path.read_text(encoding="utf-8"), path.name)
-    except (OSError, ValueError):
-        return {"title": "", "kind": "program"}
-    return {"title": listing.title, "kind": listing.kind}
 
 
 @router.get("/model")

@@ -235,8 +235,12 @@ class Session(Telling):
                     self._tell_watchers(self.look)
                     self._changed(facts=True)
                 case _:
+                    before = self.breakpoints
                     self._note(said)
-                    return await self._ask(said)
+                    reply = await self._ask(said)
+                    if isinstance(said, say.Breakpoints) and reply.error is not None and self.breakpoints == said.productions:
+                        self._note(say.Breakpoints(productions=before))  # there is a name among them that the run does not know
+                    return reply
         except (Actr3dError, OSError) as error:
             return Reply(id=0, error=str(error))
         return Reply(id=0)

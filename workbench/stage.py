@@ -29,7 +29,8 @@ class Stage:
 
     def __init__(self, model: MjModel) -> None:
         moving = np.flatnonzero(model.body_dofnum > 0)
-        self._body = int(moving[0]) if moving.size else 0
+        self.body = int(moving[0]) if moving.size else 0
+        """The first body that moves, by its number."""
         data = MjData(model)
         mujoco.mj_kinematics(model, data)
         base = self.base(data)
@@ -38,17 +39,18 @@ class Stage:
         for low, high in _boxes(model, data):
             if np.linalg.norm((np.clip(base, low, high) - base)[:2]) <= NEAR:
                 boxes.append((np.maximum(low, base - NEAR), np.minimum(high, base + NEAR)))
-        self._corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
-        self._low, self._high = self._corners.min(axis=0), self._corners.max(axis=0)
+        self.corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
+        """Those of the boxes around all that stands there `(n, 3)` [m]."""
+        self._low, self._high = self.corners.min(axis=0), self.corners.max(axis=0)
         away = ((self._low + self._high) / 2 - base)[:2]
-        away = away if np.linalg.norm(away) > LEAST else data.xmat[self._body].reshape(3, 3)[:2, 0]
+        away = away if np.linalg.norm(away) > LEAST else data.xmat[self.body].reshape(3, 3)[:2, 0]
         size = np.linalg.norm(away)
         self.ahead = np.array((*(away / size), 0.0)) if size > 1e-6 else np.array((1.0, 0.0, 0.0))
         """Horizontally, from the body to the middle of what stands around it; where that is about the same place, where it faces."""
 
     def base(self, data: MjData) -> Any:
         """Returns where the first body that moves is."""
-        return np.array(data.xpos[self._body])
+        return np.array(data.xpos[self.body])
 
     def seen_from(self, direction: Any, data: MjData, fov: float, aspect: float) -> tuple[Any, Any]:
         """Returns where a camera is to be, and what it is to look at, so that all of the stage is in its view.
@@ -67,7 +69,7 @@ class Stage:
         right /= np.linalg.norm(right)
         upward = math.tan(fov / 2)
         sideward = upward * min(max(aspect, ASPECTS[0]), ASPECTS[1])
-        corners = self._corners - middle
+        corners = self.corners - middle
         # By height and by width: where the corners are, and how far off one of them is at the edge of the picture.
         places = [(axis, edge, corners @ axis) for axis, edge in ((np.cross(back, right), upward), (right, sideward))]
         near = corners @ back

@@ -16,6 +16,7 @@ import msgspec
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
+from workbench.keeping import size_of
 from workbench.loader import Parameter, listing_of
 
 UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, ValueError, KeyError, TypeError, AttributeError, IndexError)
@@ -49,7 +50,7 @@ class Summary:
     """How long it is [s of simulated time]."""
     events: int = 0
     size: int
-    """[bytes]"""
+    """With what is written beside it while a run goes on [bytes]."""
     made: float
     """When it began, as its name tells; else when it was last written [s since 1970]."""
     problem: str | None = None
@@ -107,10 +108,7 @@ def begun(path: Path) -> float:
 
 def summary_of(path: Path) -> Summary:
     """Returns what is known of a file."""
-    try:
-        size = path.stat().st_size
-    except OSError:
-        size = 0
+    size = size_of(path)
     try:
         with Recorded(path) as recorded:
             return _read(recorded, size)

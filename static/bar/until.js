@@ -3,8 +3,9 @@
 import { html, signal, useId } from "../vendor/preact.js";
 import { dialog } from "../parts/dialog.js";
 import { breakpoints, toggleBreakpoint } from "../mind/breakpoints.js";
-import { complain, session, state } from "../store.js";
-import { orderThere } from "../timeline/seek.js";
+import { isLeft } from "../server.js";
+import { session, state } from "../store.js";
+import { sayThere } from "../timeline/seek.js";
 
 const KINDS = [["time", "a time"], ["production", "a production fires"], ["buffer", "a buffer matches"], ["contact", "something is touched"]];
 const kind = signal("time");
@@ -13,6 +14,8 @@ const production = signal("");
 const buffer = signal("");
 const pattern = signal("");
 const body = signal("");
+/** Why it cannot be run until then; null where nothing is wrong. */
+const problem = signal(null);
 
 function partsThat(holds) {
   return Object.entries(state.value?.parts ?? {}).filter(([, part]) => holds(part));
@@ -21,6 +24,14 @@ function partsThat(holds) {
 /** Returns the productions of all agents by name. */
 export function productionNames() {
   return [...new Set(partsThat((part) => part.is === "system").flatMap(([, part]) => part.productions))].sort();
+}
+
+/** Says why what is written is no time, or misses a name; an empty text where the run can be asked. */
+function missing() {
+  const text = time.value.trim();
+  if (kind.value === "time" && (text === "" || !(Number(text) >= 0) || Number(text) >= 1e9)) return "a number of seconds is wanted, such as 1.5";
+  if (kind.value === "production" && !production.value) return "the name of a production is wanted";
+  return kind.value === "buffer" && !buffer.value ? "the path of a buffer is wanted" : "";
 }
 
 function wanted() {
@@ -36,53 +47,73 @@ function wanted() {
   }
 }
 
+/** Whether there is no production of this name any more, as after an edit; what a program that has not begun has is not known. */
+function isLost(name) {
+  const names = productionNames();
+  return names.length > 0 && !names.includes(name);
+}
+
 function bufferPaths() {
   return partsThat((part) => part.is === "buffer").map(([path]) => path);
 }
 
+function bodies() {
+  return Object.keys(session.value?.world?.bodies ?? {});
+}
+
 function Line({ id, text, children }) {
+  const choose = () => {
+    kind.value = id;
+    problem.value = null;
+  };
   return html`<div class="until ${kind.value === id ? "on" : ""}">
-    <label><input type="radio" name="until" checked=${kind.value === id} onChange=${() => (kind.value = id)} /> ${text}</label>
-    <span onInput=${() => (kind.value = id)}>${children}</span>
+    <label><input type="radio" name="until" checked=${kind.value === id} onChange=${choose} /> ${text}</label>
+    <span onInput=${choose}>${children}</span>
+    ${problem.value && kind.value === id ? html`<p class="bad" role="alert">${problem}</p>` : null}
   </div>`;
 }
 
 /** A name that can be written, too: of a program that has not begun none is known yet. */
-function Name({ of, among, label, otherwise }) {
+function Name({ of, among, label, otherwise, first }) {
   const id = useId();
-  return html`<input aria-label=${label} list=${id} class="mono" spellcheck="false" placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
+  return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck="false" placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
     <datalist id=${id}>${among.map((name) => html`<option key=${name} value=${name} />`)}</datalist>`;
 }
 
 function Body() {
   const texts = Object.fromEntries(KINDS);
   const stops = breakpoints.value;
-  const bodies = Object.keys(session.value?.world?.bodies ?? {});
   return html`
     <${Line} id="time" text=${texts.time}>
-      <input aria-label="Time [s]" inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
+      <input aria-label="Time [s]" autofocus=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
-    <${Line} id="production" text=${texts.production}><${Name} of=${production} among=${productionNames()} label="Production" otherwise="its name" /><//>
+    <${Line} id="production" text=${texts.production}><${Name} of=${production} among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
     <${Line} id="buffer" text=${texts.buffer}>
-      <${Name} of=${buffer} among=${bufferPaths()} label="Buffer" otherwise="its path" />
+      <${Name} of=${buffer} among=${bufferPaths()} label="Buffer" first=${kind.value === "buffer"} otherwise="its path" />
       <input aria-label="Pattern" class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
     <//>
-    ${bodies.length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} among=${bodies} label="Body" otherwise="by any body" /><//>` : null}
+    ${bodies().length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} among=${bodies()} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>
     ${stops.length
-      ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span><button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`
+      ? html`<ul class="stops">${stops.map((name) => html`<li key=${name}><span class="mono">${name}</span>${isLost(name) ? html`<span class="quiet">not in this run</span>` : null}<button class="bare" aria-label="Remove the breakpoint on ${name}" onClick=${() => toggleBreakpoint(name)}>✕</button></li>`)}</ul>`
       : html`<p class="quiet">None. In the tab Productions one is set beside each production.</p>`}
   `;
 }
 
-/** Asks until when, and runs until then. */
+/** Asks until when, and runs until then; asks again where that cannot be. */
 export async function runUntil() {
   const actions = [{ text: "Cancel", value: false }, { text: "Run until then", value: true, kind: "primary" }];
-  if (!(await dialog({ title: "Run until", body: html`<${Body} />`, actions }))) return;
-  const missing = { time: !(Number(time.value) > 0) && "a number of seconds", production: !production.value && "its name", buffer: !buffer.value && "its path" }[kind.value];
-  if (missing) {
-    complain(`Run until ${Object.fromEntries(KINDS)[kind.value]}: ${missing} is wanted`);
-    return;
+  problem.value = null;
+  if (kind.value === "contact" && !bodies().length) kind.value = "time";
+  while (await dialog({ title: "Run until", body: html`<${Body} />`, actions })) {
+    problem.value = missing() || null;
+    if (problem.value) continue;
+    try {
+      await sayThere(wanted());
+      return;
+    } catch (error) {
+      if (isLeft(error)) return;
+      problem.value = error.message;
+    }
   }
-  orderThere(wanted());
 }

@@ -48,9 +48,10 @@ export function Dialogs() {
   }
 
   function press(event) {
-    if (event.key !== "Enter" || event.target !== line.current) return;
+    const first = shown.actions.find(({ kind }) => kind === "primary");
+    if (event.key !== "Enter" || event.target.tagName !== "INPUT" || !first) return;
     event.preventDefault();
-    done(true);
+    done(first.value);
   }
 
   return html`<dialog ref=${box} aria-labelledby="dialog-title" onClose=${() => open.value === shown && done(null)} onKeyDown=${press}>

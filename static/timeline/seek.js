@@ -1,7 +1,7 @@
 // Going to another time of the run: one journey at a time, and the newest wish wins.
 
 import { computed, signal } from "../vendor/preact.js";
-import { order } from "../server.js";
+import { order, say } from "../server.js";
 import { alive, session, state, whichRun } from "../store.js";
 
 /** Where the user is going to [s]; null when the run is there. */
@@ -44,7 +44,17 @@ async function go() {
 
 /** Does a command where the user has gone to, though the run may still be on its way there. */
 export function orderThere(what) {
+  goThere();
+  return order(what);
+}
+
+/** The same, but who calls it is told what comes of it, as by `say`. */
+export function sayThere(what) {
+  goThere();
+  return say(what);
+}
+
+function goThere() {
   if (wanted.peek() !== null && wanted.peek() !== said) order({ type: "seek", time: wanted.peek() });
   wanted.value = null;
-  return order(what);
 }

@@ -13,22 +13,64 @@ from tests.server.serving import Served
 
 
 def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
-    page = pages("counting.py")
+    page = pages("doorway.py")
     shows(page, "#time", "0.00 s")
+    asked, problem = page.get_by_role("dialog"), page.get_by_role("alert")
+    page.click("#time")
     page.keyboard.press("u")
-    page.get_by_label("Production", exact=True).fill("count_on")
+    page.keyboard.type("soon")
+    page.keyboard.press("Enter")
+    expect(problem).to_have_text("a number of seconds is wanted, such as 1.5")
+    production = page.get_by_label("Production", exact=True)
+    production.fill("trun")
+    expect(problem).to_have_count(0)
+    production.press("Enter")
+    expect(problem).to_have_text("no production 'trun'; did you mean 'turn'?")
+    buffer = page.get_by_label("Buffer", exact=True)
+    buffer.fill("walker.goal")
+    page.get_by_label("Pattern").fill("task:")
     page.get_by_role("button", name="Run until then").click()
-    shows(page, "#status", "count_on fired")
+    expect(problem).to_have_text("no value for slot 'task' in pattern 'task:'")
+    offered = buffer.evaluate("(input) => [...input.list.options].map(({ value }) => value)")
+    assert offered == ["walker.felt", "walker.goal", "walker.seen"]
+    shows(page, "#time", "0.00 s")  # nothing has run
+    production.fill("look")
+    production.press("Enter")
+    expect(asked).to_have_count(0)
+    shows(page, "#status", "look fired")
     page.get_by_role("button", name="Run until").click()
+    expect(production).to_be_focused()
     page.get_by_label("Time [s]").fill("0.01")
     page.get_by_role("button", name="Run until then").click()
-    expect(page.locator(".toast")).to_have_text(re.compile("a click on the timeline goes back"))
-    page.get_by_role("button", name="Run until").click()
+    expect(problem).to_have_text(re.compile("a click on the timeline goes back"))
     page.get_by_label("Time [s]").fill("0.5")
     page.keyboard.press("Tab")
     page.get_by_role("button", name="Run until then").click()
     shows(page, "#status", "at 0.5 s")
     shows(page, "#time", "0.50 s")
+    page.locator("#aperture").fill("100")
+    page.get_by_role("button", name="Run until").click()
+    page.get_by_label("Body").fill("walker")
+    page.get_by_label("Body").press("Enter")
+    shows(page, "#status", "ended: a mind said stop; walker touched nothing more")
+
+
+def test_a_breakpoint_that_an_edit_has_lost_is_kept_and_said_to_be(pages: Callable[..., Page], workbench: Served) -> None:
+    source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
+    (workbench.folder / "edited.py").write_text(source, encoding="utf-8")
+    page = pages("edited.py")
+    shows(page, "#status", "at its start")
+    session = workbench.get("/api/sessions").json()["sessions"][0]["id"]
+    said = workbench.post(f"/api/sessions/{session}/say", {"say": {"type": "breakpoints", "productions": ["turn"]}})
+    assert said.json()["error"] is None
+    (workbench.folder / "edited.py").write_text(source.replace("def turn(", "def turn_now("), encoding="utf-8")
+    page.click("#restart")
+    open_tab(page, "Messages")
+    expect(page.get_by_text("the breakpoint on turn is kept, but there is no production 'turn'; did you mean 'turn_now'?")).to_be_visible()
+    page.get_by_role("button", name="Run until").click()
+    expect(page.locator(".stops li")).to_have_text(re.compile("turn.*not in this run"))
+    page.get_by_role("button", name="Remove the breakpoint on turn").click()
+    expect(page.locator(".stops")).to_have_count(0)
 
 
 def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..., Page]) -> None:

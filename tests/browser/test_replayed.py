@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import math
+import re
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import httpx
+import mujoco
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
 from tests.browser.looking import PATIENCE, drawn, until
 from tests.server.serving import served
+from tests.server.test_html_replay import ZOO
+from workbench.html_replay import make
+from workbench.html_replay.shapes import Shapes
 
 
 @pytest.fixture(scope="module")
@@ -50,14 +58,22 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         page.get_by_text("Parameters and result").click()
         canvas = page.locator("#canvas")
         drawn(page)
+        rows = page.locator(".event")
+        expect(rows.first).to_contain_text("walker.goal buffer approach")  # and nothing of how the run is set up
+        expect(rows.first).to_have_class("event now")
+        expect(rows.last).to_have_class(re.compile("ahead"))
+        assert page.evaluate(EXTENT, [0]) < 1  # all that stands there is in the picture
         first = canvas.screenshot()
         page.get_by_role("slider", name="Time").fill("3")
         expect(page.locator("#clock")).to_have_text("3.00 s")
         until(page, lambda: canvas.screenshot() != first)  # it has walked on
+        expect(page.locator(".event.now")).to_have_count(2)
+        page.get_by_role("slider", name="Time").fill("6.8")
+        assert page.evaluate("drawing.camera.off[0]") > 0  # it has left what was to be seen at first, and the view has gone with it
         page.get_by_role("slider", name="Time").fill("0")
         page.get_by_label("Show").fill("look fires")
-        expect(page.locator(".event").first).to_contain_text("look")
-        page.locator(".event").first.click()
+        expect(rows.first).to_contain_text("look")
+        rows.first.click()
         expect(page.locator("#clock")).to_have_text("0.05 s")
         expect(page.locator(".event.now")).to_contain_text("look")
         page.get_by_role("button", name="Play").click()
@@ -65,3 +81,58 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         expect(page.locator("#clock")).not_to_have_text("0.05 s")
     assert complaints == []
     assert asked == [replay.as_uri()]
+
+
+def test_the_triangles_of_each_kind_of_shape_are_where_it_is(browser: Browser) -> None:
+    model = mujoco.MjModel.from_xml_string(ZOO)
+    told = Shapes(model)
+    folder = Path(make.__file__).parent
+    scripts = "".join((folder / name).read_text(encoding="utf-8").replace('"use strict";', "") for name in ("space.js", "solids.js"))
+    with browser.new_page() as page:
+        page.add_script_tag(content=scripts)
+        for parts in told.parts[1]:
+            solid: dict[str, Any] = page.evaluate(JOINED, [[parts], told.meshes])
+            places, faces = np.array(solid["places"]).reshape(-1, 3), np.array(solid["faces"]).reshape(-1, 3)
+            corners = places[faces]
+            volume = abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
+            if parts["kind"] not in ("mesh", "box"):  # whose triangles need not all turn the same way
+                assert volume == pytest.approx(volume_of(parts["kind"], parts["size"]), rel=0.02)
+            turned = np.empty(9)
+            mujoco.mju_quat2Mat(turned, np.array(parts["turn"]))
+            own = (places - parts["place"]) @ turned.reshape(3, 3)  # as MuJoCo has it
+            if parts["kind"] != "mesh":
+                assert np.abs(own).max(axis=0) == pytest.approx(half_of(parts["kind"], parts["size"]), abs=1e-3)
+            facing = np.array(solid["facing"]).reshape(-1, 3)
+            if parts["kind"] in ("sphere", "capsule", "ellipsoid"):
+                assert ((facing * (places - parts["place"])).sum(axis=1) > 0).all()
+            assert solid["clear"] == (parts["colour"][3] < 255)
+
+
+JOINED = """([parts, meshes]) => {
+    const known = meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
+    const { places, faces, facing, clear } = joined(parts, known);
+    return { places: [...places], faces: [...faces], facing: [...facing], clear };
+}"""
+EXTENT = """([time]) => {
+    const { camera, scene, canvas } = drawing, { view } = camera.seen(drawing.pose(scene.stage.follow, time), canvas.width / canvas.height);
+    return Math.max(...scene.stage.corners.flatMap((corner) => {
+        const at = (row) => view[row] * corner[0] + view[4 + row] * corner[1] + view[8 + row] * corner[2] + view[12 + row];
+        return [Math.abs(at(0) / at(3)), Math.abs(at(1) / at(3))];
+    }));
+}"""
+"""How far from the middle of the picture the corners of the stage are; 1 is its edge."""
+
+
+def volume_of(kind: str, size: Sequence[float]) -> float:
+    """Returns the volume of a solid."""
+    if kind == "ellipsoid":
+        return 4 / 3 * math.pi * math.prod(size)
+    ball, round = 4 / 3 * math.pi * size[0] ** 3, math.pi * size[0] ** 2
+    return {"sphere": ball, "capsule": ball + round * 2 * size[-1], "cylinder": round * 2 * size[-1]}[kind]
+
+
+def half_of(kind: str, size: Sequence[float]) -> Sequence[float]:
+    """Returns how far a solid reaches from its middle along each of its axes."""
+    if len(size) == 3:
+        return size
+    return (size[0], size[0], size[-1] + (size[0] if kind == "capsule" else 0))

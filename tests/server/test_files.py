@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from actr3d.actr.reading import read_source
+from workbench import outlines
 from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
+from workbench.outlines import Outline, outline_of
 from workbench.shipped import models_folder, shipped
 
 
@@ -180,3 +183,33 @@ def test_a_file_keeps_its_encoding_and_its_line_ends(folder: ModelFolder) -> Non
         folder.save("new.py", "# coding: latin-1\nprice = '€'\n", None)
     with pytest.raises(FileError, match="cannot be used"):
         folder.save("new.py", "# coding: klingon\n", None)
+
+
+def test_what_a_list_tells_of_a_file_is_read_when_it_has_changed_and_not_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[Path] = []
+
+    def reading(path: Path) -> str:
+        read.append(path)
+        return read_source(path)
+
+    monkeypatch.setattr(outlines, "read_source", reading)
+    file = tmp_path / "model.py"
+    for text, outline in (
+        ("'''Counts.'''", Outline("Counts.", "program")),
+        ("'''Walks.'''\ndef build(p) -> Simulation: ...", Outline("Walks.", "simulation")),
+        ("# -*- coding: latin-1 -*-\n'''\xfcben'''", Outline("üben", "program")),
+    ):
+        file.write_bytes(text.encode("latin-1"))
+        assert [outline_of(file) for _ in range(3)] == [outline] * 3
+    assert len(read) == 3
+    other = tmp_path / "other"  # put in its place, as editors do
+    other.write_text("'''Reads.'''".ljust(file.stat().st_size), encoding="utf-8")
+    written = file.stat().st_mtime_ns
+    os.utime(other, ns=(written, written))
+    other.replace(file)
+    assert outline_of(file).title == "Reads."
+    for data in (b"\xff", b"x" * (LARGEST + 1), b"# coding: none\n", b"\0"):
+        file.write_bytes(data)
+        assert outline_of(file) == Outline()
+    file.unlink()
+    assert outline_of(file) == outline_of(tmp_path) == Outline()

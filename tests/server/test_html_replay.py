@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -55,9 +56,58 @@ def test_scene_and_trace_are_those_of_the_recording(walked: Path, tmp_path: Path
     assert (times[0], times[-1]) == (0, 1)
     assert 25 <= len(times) <= 40
     assert len(poses) == len(times)
-    root = poses[:, scene["follow"], :2]
+    root = poses[:, scene["stage"]["follow"], :2]
     assert root[-1, 0] - root[0, 0] == pytest.approx(0.5 * 0.95, abs=0.03)
     assert scene["grounds"] == [0]
+    corners = np.array(scene["stage"]["corners"])
+    assert corners.min(axis=0) == pytest.approx(scene["stage"]["low"], abs=1e-3)
+    assert corners.max(axis=0) == pytest.approx(scene["stage"]["high"], abs=1e-3)
+    assert len(json.dumps(scene["shapes"])) < 10_000  # the page makes the triangles
+    told_of = {row[3] for row in told["events"]["rows"] if row[2] == "buffer"}
+    assert "empty" in told_of
+    assert not any("{" in text for text in told_of)  # chunks stand there as modellers write them
+
+
+ZOO = """
+<mujoco>
+  <asset>
+    <texture name="checks" type="2d" builtin="checker" rgb1="1 0 0" rgb2="0 0 1" width="8" height="8"/>
+    <material name="checked" texture="checks"/>
+    <mesh name="wedge" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
+    <hfield name="hill" nrow="3" ncol="4" size="1 2 0.5 0.1" elevation="0 0 0 0  0 1 1 0  0 0 0 0"/>
+  </asset>
+  <worldbody>
+    <geom type="plane" size="5 5 0.1"/>
+    <geom type="hfield" hfield="hill"/>
+    <body pos="0 0 1">
+      <freejoint/>
+      <geom type="sphere" size="0.3" pos="0.1 0.2 0.3"/>
+      <geom type="capsule" size="0.1 0.5" euler="30 40 50"/>
+      <geom type="ellipsoid" size="0.1 0.2 0.4" pos="1 0 0" euler="10 20 30"/>
+      <geom type="cylinder" size="0.2 0.4" pos="0 1 0" euler="70 0 0"/>
+      <geom type="box" size="0.1 0.2 0.3" pos="-1 0 0" euler="0 0 45" material="checked"/>
+      <geom type="mesh" mesh="wedge" pos="0 0 1" rgba="1 1 0 0.5"/>
+      <geom type="mesh" mesh="wedge" rgba="1 1 0 0"/>
+    </body>
+    <body><geom type="mesh" mesh="wedge"/></body>
+  </worldbody>
+</mujoco>
+"""
+"""One of each kind of shape; the browser's tests draw it, too."""
+
+
+def test_each_kind_of_shape_is_told_and_a_mesh_once() -> None:
+    told = shapes.Shapes(mujoco.MjModel.from_xml_string(ZOO))
+    assert told.bodies == [0, 1, 2]
+    kinds = [[part["kind"] for part in parts] for parts in told.parts]
+    assert kinds == [["mesh"], ["sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh"], ["mesh"]]
+    assert [parts[-1]["mesh"] for parts in told.parts] == [0, 1, 1]
+    assert len(told.meshes) == 2
+    hill = numbers(told.meshes[0]["places"]).reshape(-1, 3)
+    assert (hill.min(axis=0).tolist(), hill.max(axis=0).tolist()) == ([-1, -2, 0], [1, 2, 0.5])
+    assert [part["size"] for part in told.parts[1][:5]] == [[0.3], [0.1, 0.5], [0.1, 0.2, 0.4], [0.2, 0.4], [0.1, 0.2, 0.3]]
+    assert told.parts[1][4]["colour"] == [127, 0, 127, 255]  # of a texture the mean
+    assert told.parts[1][5]["colour"] == [255, 255, 0, 127]
 
 
 def test_nothing_is_loaded_and_nothing_a_model_says_is_run(desk: Desk, tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -146,6 +148,35 @@ def test_good_values_pass() -> None:
         listing.parameter(name).check(value)
     with pytest.raises(ConfigurationError, match="did you mean 'width'"):
         listing.parameter("widht")
+
+
+@pytest.mark.parametrize(
+    "field",
+    [
+        "x: Annotated[()] = 1",
+        "x: Optional[()] = 1",
+        "x: None | None = 1",
+        "x: 'float | (' = 1",
+        "x: Annotated['float | (', Gt(0)] = 1",
+        "x: '' = 1",
+        "x: Literal[None, unknown] = 1",
+        "x: float = 1e999",
+        "x: Annotated[float, Le(1e999)] = 1",
+        "x: tuple = (1, [2j])",
+        "x: tuple = [...]",
+        "x: dict = {(1, 2): 3}",
+        "x: str = '\\ud800'",
+        "x: List['\\ud800'] = 1",
+        "x: int = 1\n    '\\ud800'",
+    ],
+)
+def test_what_is_being_written_can_be_told_whatever_it_is(field: str) -> None:
+    text = f"'\\ud800'\nLIMIT = 1e999\nclass P:\n    {field}\ndef build(p: P) -> Simulation: ...\n"
+    for source in (text, text.partition("class")[0]):
+        told = listing_of(source)
+        json.dumps(asdict(told), allow_nan=False, ensure_ascii=False).encode()
+        assert told.title == r"\ud800"
+    assert [one.name for one in listing_of(text).parameters] == ["x"]
 
 
 @pytest.mark.parametrize("name", ["doorway.py", "aperture_passage.py"])

@@ -111,6 +111,9 @@ def test_a_summary_is_read_again_when_its_file_has_changed(tmp_path: Path) -> No
         while recordings.summary("m").events == 0 and time.monotonic() < end:
             time.sleep(0.05)
         assert recordings.summary("m").events == 1
+        beside = path.with_name("m.sqlite-wal").stat().st_size
+        assert beside > 0
+        assert recordings.summary("m").size >= path.stat().st_size + beside  # what is new lies there until the run has ended
         assert recordings.summary("m") is recordings.summary("m")
 
 

@@ -2,12 +2,12 @@
 // Draws the scene: shapes lit from above, and the ground as a grid.
 
 const SHAPE_VERTEX = `#version 300 es
-in vec3 place; in vec4 colour; uniform mat4 pose, view; out vec4 tint; out vec3 at;
-void main() { vec4 world = pose * vec4(place, 1.0); at = world.xyz; tint = colour; gl_Position = view * world; }`;
+in vec3 place, facing; in vec4 colour; uniform mat4 pose, view; out vec4 tint; out vec3 at, faces;
+void main() { vec4 world = pose * vec4(place, 1.0); at = world.xyz; tint = colour; faces = mat3(pose) * facing; gl_Position = view * world; }`;
 const SHAPE_FRAGMENT = `#version 300 es
-precision highp float; in vec4 tint; in vec3 at; uniform vec3 eye; out vec4 seen;
+precision highp float; in vec4 tint; in vec3 at, faces; uniform vec3 eye; out vec4 seen;
 void main() {
-  vec3 normal = normalize(cross(dFdx(at), dFdy(at)));
+  vec3 normal = normalize(dot(faces, faces) > 0.0 ? faces : cross(dFdx(at), dFdy(at)));
   if (dot(normal, eye - at) < 0.0) normal = -normal;
   float light = 0.45 + 0.4 * max(dot(normal, normalize(vec3(-0.4, -0.6, 1.0))), 0.0) + 0.2 * max(dot(normal, normalize(eye - at)), 0.0);
   seen = vec4(tint.rgb * light, tint.a);
@@ -35,13 +35,10 @@ class Drawing {
     this.poses = unpacked(scene.poses, Float32Array);
     this.shaded = this.program(SHAPE_VERTEX, SHAPE_FRAGMENT);
     this.grounded = this.program(GROUND_VERTEX, GROUND_FRAGMENT);
-    this.shapes = scene.shapes.map((shape) => this.shape(shape));
+    const meshes = scene.meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
+    this.shapes = scene.shapes.map((parts) => this.shape(joined(parts, meshes)));
     this.square = this.array(this.grounded, { place: [new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), 2, this.gl.FLOAT, false] });
-    this.turn = -2.3;
-    this.tilt = 0.5;
-    this.distance = 5.5;
-    this.target = [0, 0, 1];
-    this.following = true;
+    this.camera = new Camera(scene.stage);
     this.now = 0;
     this.dark = matchMedia("(prefers-color-scheme: dark)");
     this.listen();
@@ -74,14 +71,15 @@ class Drawing {
   }
 
   shape(shape) {
-    const gl = this.gl, faces = unpacked(shape.faces, Uint32Array);
+    const gl = this.gl, { places, colours, facing, faces, clear } = shape;
     const array = this.array(this.shaded, {
-      place: [unpacked(shape.places, Float32Array), 3, gl.FLOAT, false],
-      colour: [unpacked(shape.colours, Uint8Array), 4, gl.UNSIGNED_BYTE, true],
+      place: [places, 3, gl.FLOAT, false],
+      facing: [facing, 3, gl.FLOAT, false],
+      colour: [colours, 4, gl.UNSIGNED_BYTE, true],
     });
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
-    return { array, count: faces.length, clear: shape.clear };
+    return { array, count: faces.length, clear };
   }
 
   // How a shape stands at a time.
@@ -111,13 +109,8 @@ class Drawing {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     if (!this.shapes.length) return;
-    if (this.following) {
-      const [x, y] = this.pose(this.scene.follow, time);
-      this.target = [x, y, 1];
-    }
-    const flat = Math.cos(this.tilt) * this.distance;
-    const eye = [this.target[0] + flat * Math.cos(this.turn), this.target[1] + flat * Math.sin(this.turn), this.target[2] + Math.sin(this.tilt) * this.distance];
-    const view = times(perspective(0.9, wide / high, 0.05, 200), lookAt(eye, this.target));
+    const { eye, target, view } = this.camera.seen(this.pose(this.scene.stage.follow, time), wide / high);
+    this.target = target;
     this.drawGround(view, dark);
     gl.useProgram(this.shaded);
     const place = (name) => gl.getUniformLocation(this.shaded, name);
@@ -147,32 +140,21 @@ class Drawing {
   }
 
   listen() {
-    const canvas = this.canvas;
+    const canvas = this.canvas, camera = this.camera;
     canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
     canvas.addEventListener("pointermove", (event) => {
       if (!event.buttons) return;
-      if (event.shiftKey || event.buttons > 1) this.shift(event.movementX, event.movementY);
-      else {
-        this.turn -= event.movementX * 0.008;
-        this.tilt = Math.min(1.5, Math.max(-0.2, this.tilt + event.movementY * 0.006));
-      }
+      if (event.shiftKey || event.buttons > 1) camera.shift(event.movementX / canvas.clientHeight, event.movementY / canvas.clientHeight);
+      else camera.swing(event.movementX, event.movementY);
       this.draw(this.now);
     });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      this.distance = Math.min(80, Math.max(0.5, this.distance * Math.exp(event.deltaY * 0.001)));
+      camera.near(event.deltaY);
       this.draw(this.now);
     }, { passive: false });
     new ResizeObserver(() => this.draw(this.now)).observe(canvas);
     this.dark.addEventListener("change", () => this.draw(this.now));
-  }
-
-  // Moves what is looked at, which is then no longer followed.
-  shift(x, y) {
-    const size = (this.distance * 0.9) / this.canvas.clientHeight, s = Math.sin(this.turn), c = Math.cos(this.turn);
-    this.following = false;
-    document.getElementById("follow").checked = false;
-    this.target = [this.target[0] + size * (x * s - y * c), this.target[1] - size * (x * c + y * s), this.target[2]];
   }
 }

@@ -3,7 +3,9 @@
 
 const ROW = 22;
 const KINDS = { fire: "fires", output: "prints" };
-const DETAILS = new Set(["answer", "conflict", "select", "state"]); // many a tick; shown where they are asked for
+// Many a tick, or how a run is set up; shown where they are asked for.
+const DETAILS = new Set(["answer", "conflict", "select", "state", "start", "productions", "initialize", "observe", "run", "added"]);
+const isDetail = ([time, , kind, told]) => DETAILS.has(kind) || (time === 0 && (kind === "add" || (kind === "buffer" && told === "empty")));
 
 class Events {
   constructor(told, seek) {
@@ -26,7 +28,7 @@ class Events {
     const words = document.getElementById("filter").value.toLowerCase().split(/\s+/).filter(Boolean);
     const details = document.getElementById("details").checked;
     const fits = ([, source, kind, told]) => words.every((word) => `${source} ${kind} ${KINDS[kind] || ""} ${told}`.toLowerCase().includes(word));
-    this.shown = this.rows.filter((row) => (details || !DETAILS.has(row[2])) && fits(row));
+    this.shown = this.rows.filter((row) => (details || !isDetail(row)) && fits(row));
     document.getElementById("height").style.height = `${this.shown.length * ROW}px`;
     this.tell();
     this.show();
@@ -48,6 +50,7 @@ class Events {
     }
     if (low - 1 === this.now && !anyway) return;
     this.now = low - 1;
+    this.present = this.shown[this.now]?.[0];
     const at = this.now * ROW, list = this.list;
     if (at < list.scrollTop || at > list.scrollTop + list.clientHeight - 2 * ROW) list.scrollTop = Math.max(0, at - list.clientHeight / 2);
     this.show();
@@ -65,12 +68,13 @@ class Events {
     const [time, source, kind, told] = this.shown[number];
     const row = document.createElement("button");
     row.type = "button";
-    row.className = `event${number < this.now ? " past" : number === this.now ? " now" : ""}`;
+    row.className = `event${kind === "fire" ? " fire" : ""}${number > this.now ? " ahead" : time === this.present ? " now" : ""}`;
     row.style.top = `${number * ROW}px`;
-    const when = document.createElement("time"), what = document.createElement("b");
+    const when = document.createElement("time"), who = document.createElement("span"), what = document.createElement("b");
     when.textContent = time.toFixed(3);
+    who.textContent = `${source} ${KINDS[kind] || kind} `;
     what.textContent = told;
-    row.append(when, `${source} ${KINDS[kind] || kind} `, what);
+    row.append(when, who, what);
     row.title = `${source} ${kind}: ${told}`;
     row.addEventListener("click", () => this.seek(time));
     return row;

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import html
+import itertools
 from collections.abc import Iterator, Mapping
-from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import msgspec
+import numpy as np
+from mujoco import MjModel
 
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
@@ -16,7 +18,8 @@ from actr3d.trace import TraceEvent
 from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import stride
-from workbench.html_replay.shapes import grounds_of, packed, poses_of, shapes_of
+from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
+from workbench.stage import Stage
 
 RATE = 30
 """About so many moments of each second of simulated time are shown; between them everything moves evenly."""
@@ -25,6 +28,8 @@ MOST_NUMBERS = 7_000_000
 """Of longer runs, or those with more bodies, fewer moments are shown: no more numbers than these, 4 bytes each."""
 MOST_EVENTS = 50_000
 """So many events are told; of more, the first."""
+MOST_STAGED = 2_000
+"""Of more corners of what is to be seen at first, those of the box around all are told."""
 LONGEST = 400
 """No more of what an event tells is shown [characters]."""
 
@@ -53,7 +58,7 @@ def _read(folder: Path, name: str) -> str:
 
 
 def _scripts(folder: Path) -> str:
-    return "\n".join(_read(folder, name) for name in ("space.js", "drawing.js", "events.js", "player.js"))
+    return "\n".join(_read(folder, name) for name in ("space.js", "solids.js", "camera.js", "drawing.js", "events.js", "player.js"))
 
 
 def _facts(recorded: Recorded) -> dict[str, Any]:
@@ -65,18 +70,18 @@ def _facts(recorded: Recorded) -> dict[str, Any]:
         "title": f"{model or 'a run'} · seed {seed}",
         "model": model,
         "seed": str(seed),
-        "parameters": {
-            str(name): value if isinstance(value, str) else to_json(value) for name, value in facts.get("parameters", {}).items()
-        },
+        "parameters": _plain(facts.get("parameters", {})),
         "ended": None if ended is None else str(ended.get("by")),
     }
 
 
 def _events(recorded: Recorded) -> dict[str, Any]:
     """Returns the events as lists of columns, the result apart, and how many are left out."""
-    rows = [(event.time, event.source, event.kind, _text(event)) for event in islice(recorded.events(), MOST_EVENTS)]
+    rows: list[tuple[float, str, str, str]] = []
     result: dict[str, Any] | None = None
     for event in recorded.events():
+        if len(rows) < MOST_EVENTS:
+            rows.append((event.time, event.source, event.kind, _text(event)))
         if event.kind == "result":
             result = dict(event.data)
     return {"rows": rows, "more": recorded.event_count - len(rows), "result": None if result is None else _plain(result)}
@@ -84,7 +89,7 @@ def _events(recorded: Recorded) -> dict[str, Any]:
 
 def _plain(values: Mapping[str, Any]) -> dict[str, str]:
     """Returns names and values as texts."""
-    return {str(name): value if isinstance(value, str) else to_json(value) for name, value in values.items()}
+    return {str(name): _word(value) for name, value in values.items()}
 
 
 def _text(event: TraceEvent) -> str:
@@ -94,9 +99,23 @@ def _text(event: TraceEvent) -> str:
         text = str(data.get("production"))
     elif event.kind == "output":
         text = str(data.get("text"))
+    elif event.kind in ("buffer", "add"):
+        text = _chunk(data.get("chunk"))
     else:
-        text = ", ".join(f"{name}: {value if isinstance(value, str) else to_json(value)}" for name, value in data.items())
+        text = ", ".join(f"{name}: {_word(value)}" for name, value in data.items())
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+
+
+def _chunk(slots: Any) -> str:
+    """Returns a chunk as a modeller writes one."""
+    if not isinstance(slots, Mapping):
+        return "empty" if slots is None else str(slots)
+    named = cast("Mapping[str, Any]", slots)
+    return " ".join(_word(value) if name.isdecimal() else f"{name}:{_word(value)}" for name, value in named.items())
+
+
+def _word(value: Any) -> str:
+    return value if isinstance(value, str) else to_json(value)
 
 
 def _scene(recorded: Recorded) -> dict[str, Any] | None:
@@ -105,8 +124,8 @@ def _scene(recorded: Recorded) -> dict[str, Any] | None:
     if "compiled" not in facts:
         return None
     model, period = loaded(from_text(facts["compiled"])), facts["period_us"]
-    shapes = shapes_of(model)
-    bodies = [shape["body"] for shape in shapes]
+    shapes = Shapes(model)
+    bodies = shapes.bodies
     ticks = recorded.ticks
     most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (7 * max(1, len(bodies)))))
     every = max(1, round(MICROSECONDS / RATE / period), stride(ticks + 1, most - 1))
@@ -120,15 +139,25 @@ def _scene(recorded: Recorded) -> dict[str, Any] | None:
 
     poses = poses_of(model, bodies, states())
     return {
-        "shapes": shapes,
+        "shapes": shapes.parts,
+        "meshes": shapes.meshes,
         "grounds": grounds_of(model),
         "times": packed(times, "<f4"),
         "poses": packed(poses, "<f4"),
-        "follow": _followed(facts["world"], bodies),
+        "stage": _stage(model, bodies),
     }
 
 
-def _followed(world: dict[str, Any], bodies: list[int]) -> int:
-    """Returns which of the shapes is looked at: the first body's root, or what comes next of it."""
-    roots = [body["root"] for body in world["bodies"].values()]
-    return next((number for number, body in enumerate(bodies) if roots and body >= roots[0]), 0)
+def _stage(model: MjModel, bodies: list[int]) -> dict[str, Any]:
+    """Returns what is to be seen at first, and which of the shapes the view goes along with: the body that moves, or what is next of it."""
+    stage = Stage(model)
+    low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
+    corners = stage.corners if len(stage.corners) <= MOST_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
+    follow = next((number for number, body in enumerate(bodies) if body >= stage.body), 0)
+    return {
+        "corners": corners.round(3).tolist(),
+        "low": low.tolist(),
+        "high": high.tolist(),
+        "ahead": stage.ahead.tolist(),
+        "follow": follow,
+    }

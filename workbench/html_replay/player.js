@@ -70,7 +70,7 @@ function frame(at) {
 get("play").addEventListener("click", () => play(!playing));
 get("time").addEventListener("input", (event) => goTo(Number(event.target.value)));
 get("follow").addEventListener("change", (event) => {
-  if (drawing) drawing.following = event.target.checked;
+  if (drawing) drawing.camera.following = event.target.checked;
   goTo(now);
 });
 document.addEventListener("keydown", (event) => {

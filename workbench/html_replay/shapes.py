@@ -1,4 +1,4 @@
-"""The shapes of a compiled scene and how they move, as numbers that a page can draw."""
+"""The shapes of a compiled scene and how they move, as numbers that a page can draw: `solids.js` makes triangles of them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,25 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from mujoco import MjData, MjModel
+from mujoco import MjData, MjModel, mjtGeom
 
 from actr3d.errors import RecordingError
 from workbench.curves import INTEGRATION
 
 MOST_CORNERS = 1_500_000
-"""A scene may have no more corners of triangles than these; three 4-byte numbers each, and a colour."""
+"""A scene may have no more corners and triangles than these; three 4-byte numbers each."""
+CORNERS = {"box": 20, "sphere": 1_500, "ellipsoid": 1_500, "capsule": 1_600, "cylinder": 260}
+"""So many corners and triangles a page makes of a shape that has a name."""
+KINDS = {
+    int(mjtGeom.mjGEOM_SPHERE): ("sphere", 1),
+    int(mjtGeom.mjGEOM_CAPSULE): ("capsule", 2),
+    int(mjtGeom.mjGEOM_ELLIPSOID): ("ellipsoid", 3),
+    int(mjtGeom.mjGEOM_CYLINDER): ("cylinder", 2),
+    int(mjtGeom.mjGEOM_BOX): ("box", 3),
+}
+"""What MuJoCo's shapes are called, and how many numbers tell their size [m]: radius, half length; half axes; half edges."""
+MESHES = (int(mjtGeom.mjGEOM_MESH), int(mjtGeom.mjGEOM_SDF))
+_COLOURS = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
 
 
 def packed(numbers: Any, kind: str) -> str:
@@ -22,52 +34,102 @@ def packed(numbers: Any, kind: str) -> str:
     return base64.b64encode(np.ascontiguousarray(numbers, dtype=kind).tobytes()).decode("ascii")
 
 
-def shapes_of(model: MjModel) -> list[dict[str, Any]]:
-    """Returns what is drawn, one shape a MuJoCo body: its number, corners [m] in its frame, colours, triangles; planes are left out.
+class Shapes:
+    """What is drawn of a scene, one shape a MuJoCo body; level planes are left out.
+
+    Args:
+        model: The compiled scene.
 
     Raises:
         RecordingError: If there is too much.
     """
-    from mjviser.conversions import merge_geoms
 
-    shapes: list[dict[str, Any]] = []
-    plane = int(mujoco.mjtGeom.mjGEOM_PLANE)
-    corners = 0
-    for body in range(model.nbody):
-        own = (model.geom_bodyid == body) & (model.geom_type != plane) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)
-        geoms = np.flatnonzero(own).tolist()
-        if not geoms:
-            continue
-        mesh = merge_geoms(model, geoms)
-        corners += len(mesh.vertices) + len(mesh.faces)
-        if corners > MOST_CORNERS:
+    def __init__(self, model: MjModel) -> None:
+        self._model = model
+        self._corners = 0
+        self._numbers: dict[tuple[int, int], int] = {}
+        self.meshes: list[dict[str, str]] = []
+        """Corners [m] and triangles of whatever has no name; each once, though many shapes may have it."""
+        self.bodies: list[int] = []
+        """The MuJoCo body of each shape."""
+        self.parts: list[list[dict[str, Any]]] = []
+        """What each shape is made of, in the frame of its body."""
+        seen = (model.geom_type != mjtGeom.mjGEOM_PLANE) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)
+        for body in range(model.nbody):
+            own = np.flatnonzero(seen & (model.geom_bodyid == body)).tolist()
+            parts = [part for part in map(self._part, own) if part is not None]
+            if parts:
+                self.bodies.append(body)
+                self.parts.append(parts)
+
+    def _part(self, geom: int) -> dict[str, Any] | None:
+        """Returns what a page needs to draw a geom; None for a kind that is never drawn."""
+        model, kind = self._model, int(self._model.geom_type[geom])
+        if kind in KINDS:
+            name, numbers = KINDS[kind]
+            shape = {"kind": name, "size": _rounded(model.geom_size[geom, :numbers])}
+            self._count(CORNERS[name])
+        elif kind in MESHES or kind == mjtGeom.mjGEOM_HFIELD:
+            shape = {"kind": "mesh", "mesh": self._mesh(kind, int(model.geom_dataid[geom]))}
+        else:
+            return None
+        place, turn = _rounded(model.geom_pos[geom]), _rounded(model.geom_quat[geom])
+        return {**shape, "place": place, "turn": turn, "colour": _colour(model, geom)}
+
+    def _mesh(self, kind: int, number: int) -> int:
+        """Returns the number of a mesh or a height field among those that the page is given."""
+        known = self._numbers.get((kind, number))
+        if known is None:
+            places, faces = _height_field(self._model, number) if kind == mjtGeom.mjGEOM_HFIELD else _triangles(self._model, number)
+            self._count(len(places) + len(faces))
+            known = self._numbers[kind, number] = len(self.meshes)
+            self.meshes.append({"places": packed(places, "<f4"), "faces": packed(faces, "<u4")})
+        return known
+
+    def _count(self, corners: int) -> None:
+        self._corners += corners
+        if self._corners > MOST_CORNERS:
             raise RecordingError("the scene has too many triangles for a replay in one file")
-        colours = _colours(mesh, model.geom_rgba[geoms[0]])
-        shapes.append(
-            {
-                "body": body,
-                "places": packed(mesh.vertices, "<f4"),
-                "colours": packed(colours, "u1"),
-                "faces": packed(mesh.faces, "<u4"),
-                "clear": bool((colours[:, 3] < 250).any()),
-            }
-        )
-    return shapes
 
 
-def _colours(mesh: Any, usual: Any) -> Any:
-    """Returns a colour for each corner (n, 4), 0 to 255; of textures, that of the geom."""
-    kind = getattr(mesh.visual, "kind", None)
-    if kind in ("vertex", "face"):
-        colours = np.asarray(mesh.visual.vertex_colors)
-        if colours.shape == (len(mesh.vertices), 4):
-            return colours
-    return np.tile(np.clip(np.asarray(usual) * 255, 0, 255).astype(np.uint8), (len(mesh.vertices), 1))
+def _rounded(numbers: Any) -> list[float]:
+    return [round(float(number), 6) for number in numbers]
+
+
+def _triangles(model: MjModel, mesh: int) -> tuple[Any, Any]:
+    """Returns the corners and triangles of a mesh."""
+    corner, face = model.mesh_vertadr[mesh], model.mesh_faceadr[mesh]
+    return model.mesh_vert[corner : corner + model.mesh_vertnum[mesh]], model.mesh_face[face : face + model.mesh_facenum[mesh]]
+
+
+def _height_field(model: MjModel, field: int) -> tuple[Any, Any]:
+    """Returns the corners and triangles of a height field, without its base."""
+    rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
+    first = model.hfield_adr[field]
+    heights = model.hfield_data[first : first + rows * columns] * model.hfield_size[field, 2]
+    wide, deep = float(model.hfield_size[field, 0]), float(model.hfield_size[field, 1])
+    x, y = np.linspace(-wide, wide, columns), np.linspace(-deep, deep, rows)
+    places: Any = np.column_stack((np.tile(x, rows), np.repeat(y, columns), heights))
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    right, above, across = corner + 1, corner + columns, corner + columns + 1
+    return places, np.concatenate((np.column_stack((corner, right, across)), np.column_stack((corner, across, above))))
+
+
+def _colour(model: MjModel, geom: int) -> list[int]:
+    """Returns the colour of a geom, 0 to 255; of a texture, its mean."""
+    material = int(model.geom_matid[geom])
+    colour = np.array(model.geom_rgba[geom] if material < 0 else model.mat_rgba[material])
+    texture = -1 if material < 0 else int(model.mat_texid[material, _COLOURS])
+    if texture >= 0 and model.tex_nchannel[texture] >= 3:
+        channels, first = int(model.tex_nchannel[texture]), int(model.tex_adr[texture])
+        count = int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
+        colour[:3] *= model.tex_data[first : first + count].reshape(-1, channels)[:, :3].mean(axis=0) / 255
+    return (np.clip(colour, 0, 1) * 255).astype(int).tolist()
 
 
 def grounds_of(model: MjModel) -> list[float]:
     """Returns how high the level planes of a scene lie [m]."""
-    plane = int(mujoco.mjtGeom.mjGEOM_PLANE)
+    plane = int(mjtGeom.mjGEOM_PLANE)
     return sorted(
         {float(model.geom_pos[geom, 2]) for geom in np.flatnonzero(model.geom_type == plane).tolist() if not model.geom_bodyid[geom]}
     )

@@ -32,6 +32,7 @@ from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor
 from workbench.worker.drawings import Drawings
 from workbench.worker.messages import Facts
+from workbench.worker.names import Names, names_of
 from workbench.worker.past import Past
 from workbench.worker.surroundings import surroundings
 from workbench.worker.told_helpers import ToldHelpers
@@ -81,8 +82,8 @@ class BuiltRun:
             self._simulation = simulation
             self._prepare(limits, parameters, helpers)
             try:
-                self._conductor.run = self
                 self._conductor.link.post(self._facts(limits, parameters))
+                self._conductor.conduct(self)
                 self._conductor.show()
                 self._conductor.link.flush()  # whatever the model does next, that it was built is known
                 while True:
@@ -285,6 +286,10 @@ class BuiltRun:
         for mind in self._simulation.minds.values():
             told |= picture_of(mind)
         return told
+
+    def names(self) -> Names:
+        """Returns at what it can be stopped."""
+        return names_of(self._simulation.minds.values(), self._simulation.world.bodies)
 
     def touches(self) -> Touches:
         """Returns what touches a body now, the ground left out."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 from actr3d.trace import Trace
+from workbench.worker.names import Names
 from workbench.worker.watch import Touches
 
 
@@ -61,6 +62,10 @@ class Conducted(Protocol):
 
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts are like."""
+        ...
+
+    def names(self) -> Names:
+        """Returns at what it can be stopped."""
         ...
 
     def touches(self) -> Touches:

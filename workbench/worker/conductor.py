@@ -19,6 +19,7 @@ from workbench.worker.bounds import bounded_json, event_json
 from workbench.worker.conducted import Conducted
 from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
+from workbench.worker.names import check_until, lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.trouble import told_of
 from workbench.worker.watch import Watch
@@ -62,6 +63,12 @@ class Conductor:
         self._shown = 0.0
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays that are shown where somebody looks."""
+
+    def conduct(self, run: Conducted) -> None:
+        """Takes the run that is to be conducted; its names are known by now."""
+        self.run = run
+        for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
+            self.link.post(lost)
 
     # -- what the run asks
 
@@ -108,8 +115,9 @@ class Conductor:
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
-        """Takes note that the run is over."""
-        self.status, self.reason = status, reason
+        """Takes note that the run is over, and tells what it was to go on for and has not come."""
+        missed = self.watch.missed if status == "ended" else ""
+        self.status, self.reason = status, whole(f"{reason}; {missed}" if missed else reason)
         self._halt()
 
     def went_back(self) -> None:
@@ -167,6 +175,7 @@ class Conductor:
             case say.Until():
                 self._until(said)
             case say.Breakpoints():
+                self.run.names().check_new(said.productions, self.watch.breakpoints)
                 self.watch.breakpoints = frozenset(said.productions)
             case say.Speed():
                 self.pacer.set(said.factor)
@@ -182,6 +191,7 @@ class Conductor:
         wanted = said.model_dump(exclude={"type"}, exclude_none=True)
         if not wanted.keys() - {"pattern"}:
             raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
+        check_until(said, self.run.names())
         goal = None if said.time is None else round(said.time * MICROSECONDS)
         if goal is not None and goal <= self.run.clock:
             raise Actr3dError(f"it is {seconds(self.run.clock):g} s already; a click on the timeline goes back")

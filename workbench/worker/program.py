@@ -23,6 +23,7 @@ from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor, Leaving
 from workbench.worker.messages import Facts
+from workbench.worker.names import Names, names_of_program
 from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.told_helpers import ToldHelpers
 from workbench.worker.trouble import notice_of, told_of
@@ -65,11 +66,11 @@ class ProgramRun:
     def play(self) -> None:
         """Runs it, and again where a user goes back, until the worker is to leave."""
         start, conductor = self._conductor.link.start, self._conductor
-        conductor.run = self
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
         parameters = to_json({**known, **start.settings}).encode()
         facts = Facts(kind="program", seed=self._seed, period=seconds(PERIOD), parameters=parameters, world=b"null", mj_model=None)
         conductor.link.post(facts)
+        conductor.conduct(self)
         try:
             if start.record is not None:
                 told = {"kind": "program", "file": start.path, "sources": {start.path: self._source}}
@@ -242,6 +243,10 @@ class ProgramRun:
         for model in list(self._models())[-MOST_RUNS:]:
             told |= picture_of(model)
         return told
+
+    def names(self) -> Names:
+        """Returns at what it can be stopped."""
+        return names_of_program(self._models(), self._listing, self._source, Path(self._conductor.link.start.folder))
 
     def touches(self) -> Touches:
         """Returns nothing: there are no bodies."""

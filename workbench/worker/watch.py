@@ -49,6 +49,17 @@ class Watch:
         """Whether each single tick has to be looked at."""
         return self.of_events or self.contact is not None
 
+    @property
+    def missed(self) -> str:
+        """What has not come of what is watched for, for a run that is over; an empty text where there is nothing to say."""
+        missed = [f"{self.production} did not fire"] if self.production is not None else []
+        if self.buffer is not None:
+            came = f"come to match '{self.pattern}'" if self.pattern.strip() else "change"
+            missed.append(f"{self.buffer} did not {came}")
+        if self.contact is not None:
+            missed.append(f"{self.contact or 'no body'} touched {'nothing' if self.contact else 'anything'} more")
+        return "; ".join(missed)
+
     def found(self, events: Iterable[TraceEvent]) -> str | None:
         """Returns why the run is to stop because of events; None where it is not."""
         for event in events:
@@ -61,7 +72,7 @@ class Watch:
                 if name == self.production or (cycle and self.cycles == 0):
                     return f"{name} fired"
             elif event.kind == "buffer" and event.source == self.buffer and self._matches(event):
-                return f"{self.buffer} matches '{self.pattern}'"
+                return f"{self.buffer} matches '{self.pattern}'" if self.pattern.strip() else f"{self.buffer} has changed"
         return None
 
     def touched(self, touches: Touches) -> str | None:

@@ -1,0 +1,103 @@
+"""«Run until» and breakpoints by name: what there is not is refused before anything runs, and what does not come is told at the end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.desk import Desk, RefusedError
+from tests.server.serving import MODELS
+
+DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
+COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("wanted", "told"),
+    [
+        ({"production": "trun"}, "no production 'trun'; did you mean 'turn'?"),
+        ({"production": "zzz"}, "no production 'zzz'; there are: feel, judge, look, stop_behind, turn, walk_on"),
+        ({"production": "turn-trun-1"}, "no production 'turn-trun-1'"),
+        ({"buffer": "walker.gaol", "pattern": "pass"}, "no buffer 'walker.gaol'; did you mean 'walker.goal'?"),
+        ({"buffer": "walker.goal", "pattern": "a:b c"}, "'c' without a slot's name after the named slot 'a' in pattern 'a:b c'"),
+        ({"buffer": "walker.goal", "pattern": "a:"}, "no value for slot 'a' in pattern 'a:'"),
+        ({"contact": "waker"}, "no body 'waker'; did you mean 'walker'?"),
+    ],
+)
+def test_what_there_is_not_is_refused_before_anything_runs(desk: Desk, tmp_path: Path, wanted: dict[str, Any], told: str) -> None:
+    talk = desk.begin(tmp_path, DOORWAY)
+    with pytest.raises(RefusedError) as error:
+        talk.say("until", **wanted)
+    assert told in str(error.value)
+    assert (talk.state["status"], talk.state["time"]) == ("paused", 0.0)
+    talk.say("until", time=0.02)  # and it goes on
+    talk.until("paused", tick=2)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "told"),
+    [
+        ({"production": "turn"}, "turn did not fire"),
+        ({"buffer": "walker.goal", "pattern": "never"}, "walker.goal did not come to match 'never'"),
+        ({"contact": ""}, "no body touched anything more"),
+        ({"contact": "walker"}, "walker touched nothing more"),
+    ],
+)
+def test_what_has_not_come_is_told_at_the_end(desk: Desk, tmp_path: Path, wanted: dict[str, Any], told: str) -> None:
+    talk = desk.begin(tmp_path, DOORWAY, settings={"width": 0.9})
+    talk.say("until", **wanted)
+    assert talk.until("ended")["reason"] == f"a mind said stop; {told}"
+    talk.say("seek", time=1.0)
+    talk.until("paused", time=1.0)
+    talk.say("run")
+    assert talk.until("ended")["reason"] == "a mind said stop"
+
+
+def test_a_program_that_has_not_begun_knows_what_its_text_tells(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING)
+    with pytest.raises(RefusedError, match="no production 'count_no'; did you mean 'count_on'"):
+        talk.say("until", production="count_no")
+    with pytest.raises(RefusedError, match="no body in this run"):
+        talk.say("until", contact="")
+    talk.say("until", production="count_on")
+    talk.wait(lambda: talk.state["reason"] == "count_on fired")
+    with pytest.raises(RefusedError, match="no buffer 'gaol'; did you mean 'goal'"):
+        talk.say("until", buffer="gaol", pattern="x")
+    talk.say("until", buffer="goal", pattern="task:count number:4")
+    talk.wait(lambda: talk.state["reason"] == "goal matches 'task:count number:4'")
+    talk.say("until", buffer="goal#2", pattern="x")  # of a model that may come
+    assert talk.until("ended")["reason"] == "the program is over; goal#2 did not come to match 'x'"
+
+
+def test_models_of_helper_modules_may_come_later(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "agents.py").write_text(COUNTING.partition("if __name__")[0], encoding="utf-8")
+    talk = desk.begin(tmp_path, "from agents import Counting\n\nCounting().run(5)\n")
+    talk.say("until", production="count_on")
+    talk.wait(lambda: talk.state["reason"] == "count_on fired")
+
+
+@pytest.mark.parametrize("name", ["start_counting-count_on-1", "count_on"])
+def test_what_is_learned_has_a_name_before_it_is_there(desk: Desk, tmp_path: Path, name: str) -> None:
+    talk = desk.begin(tmp_path, COUNTING)
+    talk.say("breakpoints", productions=[name])
+    assert talk.facts["breakpoints"] == [name]
+
+
+def test_a_breakpoint_on_what_there_is_not_is_refused_and_one_that_an_edit_has_lost_is_kept(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY)
+    with pytest.raises(RefusedError, match="no production 'trun'; did you mean 'turn'"):
+        talk.say("breakpoints", productions=["look", "trun"])
+    assert talk.facts["breakpoints"] == []
+    talk.say("breakpoints", productions=["turn"])
+    (tmp_path / "model.py").write_text(DOORWAY.replace("def turn(", "def turn_now("), encoding="utf-8")
+    talk.say("restart")
+    told = talk.wait_for_notice("the breakpoint on turn is kept")
+    assert "no production 'turn'; did you mean 'turn_now'?" in told["text"]
+    assert told["level"] == "warning"
+    talk.wait(lambda: talk.facts["run"] == 2)
+    talk.say("breakpoints", productions=["turn", "turn_now"])  # the lost one is no hindrance
+    assert talk.facts["breakpoints"] == ["turn", "turn_now"]
+    talk.say("run")
+    talk.wait(lambda: talk.state["reason"] == "breakpoint: turn_now fired")

@@ -1,0 +1,73 @@
+"use strict";
+// From where the scene is seen: at first, as in the workbench, all that stands around the body, from behind it.
+
+const FOV = (50 * Math.PI) / 180; // the vertical field of view
+const ASIDE = (10 * Math.PI) / 180; // so far from the side it is seen at first
+const RAISED = (25 * Math.PI) / 180; // and from so far above
+const ROOM = 1.06; // so many times as far off as need be
+
+class Camera {
+  constructor(stage) {
+    this.stage = stage;
+    const [x, y] = stage.ahead, c = Math.cos(ASIDE), s = Math.sin(ASIDE);
+    this.turn = Math.atan2(-(c * y + s * x), -(c * x - s * y));
+    this.tilt = RAISED;
+    this.shifted = [0, 0, 0];
+    this.nearer = 1;
+    this.following = true;
+    this.off = [0, 0, 0];
+    this.from = this.back(); // at first, for which the stage is fitted into the picture
+    this.fitted = {};
+  }
+
+  back() {
+    const flat = Math.cos(this.tilt);
+    return [flat * Math.cos(this.turn), flat * Math.sin(this.turn), Math.sin(this.tilt)];
+  }
+
+  // What is looked at, and from how far off, so that the whole stage is in view; reckoned for the direction of the start.
+  fit(aspect) {
+    const { low, high, corners } = this.stage, middle = low.map((value, axis) => (value + high[axis]) / 2);
+    const back = this.from, right = unit(cross([0, 0, 1], back)), upward = Math.tan(FOV / 2);
+    const sideward = upward * Math.min(Math.max(aspect, 0.7), 2.5);
+    let target = middle, distance = 0;
+    // What is between two rays through the outermost corners is in the middle of the picture.
+    for (const [axis, edge] of [[cross(back, right), upward], [right, sideward]]) {
+      let above = -Infinity, below = Infinity;
+      for (const corner of corners) {
+        const from = minus(corner, middle), place = dot(from, axis), near = edge * dot(from, back);
+        above = Math.max(above, place + near);
+        below = Math.min(below, place - near);
+      }
+      target = plus(target, axis, (above + below) / 2);
+      distance = Math.max(distance, (above - below) / 2 / edge);
+    }
+    return { target, distance: distance * ROOM };
+  }
+
+  // The eye, what it looks at, and the matrix of both: a body that leaves the stage is gone along with.
+  seen(body, aspect) {
+    const { low, high } = this.stage;
+    if (this.following) this.off = [0, 1].map((axis) => body[axis] - Math.min(Math.max(body[axis], low[axis]), high[axis])).concat(0);
+    if (this.fitted.aspect !== aspect) this.fitted = { aspect, ...this.fit(aspect) };
+    const { target: middle, distance } = this.fitted;
+    this.distance = distance * this.nearer;
+    const target = plus(plus(middle, this.off, 1), this.shifted, 1), eye = plus(target, this.back(), this.distance);
+    return { eye, target, view: times(perspective(FOV, aspect, 0.05, 200), lookAt(eye, target)) };
+  }
+
+  swing(x, y) {
+    this.turn -= x * 0.008;
+    this.tilt = Math.min(1.5, Math.max(-0.2, this.tilt + y * 0.006));
+  }
+
+  // Moves what is looked at by parts of the picture's height.
+  shift(x, y) {
+    const size = this.distance * 2 * Math.tan(FOV / 2), s = Math.sin(this.turn), c = Math.cos(this.turn);
+    this.shifted = plus(this.shifted, [x * s - y * c, -x * c - y * s, 0], size);
+  }
+
+  near(by) {
+    this.nearer = Math.min(20, Math.max(0.05, this.nearer * Math.exp(by * 0.001)));
+  }
+}

@@ -1,0 +1,38 @@
+"""What a list tells of model files: read from each once, and again only when it has changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from actr3d.actr.reading import read_source
+from actr3d.errors import ModelFileError
+from workbench.files import LARGEST, MOST_FILES
+from workbench.loader import listing_of
+
+
+@dataclass(frozen=True)
+class Outline:
+    """What a list tells of a model file."""
+
+    title: str = ""
+    """The first line of its docstring."""
+    kind: str = "program"
+    """`simulation` where it builds one, else `program`."""
+
+
+def outline_of(path: Path) -> Outline:
+    """Returns what a list tells of a file; of one that cannot be read nothing."""
+    try:
+        now = path.stat()
+        return _read(path, (now.st_mtime_ns, now.st_size, now.st_ino)) if now.st_size <= LARGEST else Outline()
+    except (OSError, ModelFileError):
+        return Outline()
+
+
+@lru_cache(maxsize=2 * MOST_FILES)
+def _read(path: Path, _: tuple[int, ...]) -> Outline:
+    """Reads a file, which these numbers tell from what it was before."""
+    listing = listing_of(read_source(path), path.name)
+    return Outline(listing.title, listing.kind)

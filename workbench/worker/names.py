@@ -1,0 +1,147 @@
+"""The names at which a run can be stopped: of productions, buffers and bodies."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from actr3d.actr.buffer import Buffer
+from actr3d.actr.model import Model
+from actr3d.actr.pattern import parse
+from actr3d.actr.production_system import ProductionSystem
+from actr3d.actr.sources import syntax_tree
+from actr3d.errors import Actr3dError, did_you_mean
+from workbench.loader import Listing
+from workbench.protocol import Until
+from workbench.worker.messages import Notice, notice
+
+MOST_TOLD = 12
+"""So many names are told of where one is not known."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Names:
+    """What there is in a run, by name."""
+
+    productions: frozenset[str] = frozenset()
+    buffers: frozenset[str] = frozenset()
+    """Their paths."""
+    bodies: frozenset[str] = frozenset()
+    growing: frozenset[str] = frozenset()
+    """Of what there may be more later, `production` or `buffer`, as of a program, which makes its models as it goes on: then only a
+    name that looks misspelt is refused."""
+
+    def check(self, what: str, name: str) -> None:
+        """Checks that there is a thing of this name, or may be.
+
+        Args:
+            what: `production`, `buffer` or `body`.
+            name: Its name; of a production that is learned from others, as it is or will be called.
+
+        Raises:
+            Actr3dError: If there is none.
+        """
+        known = {"production": self.productions, "buffer": self.buffers, "body": self.bodies}[what]
+        likely = {"production": _learned, "buffer": _numbered}.get(what)
+        if name in known or (likely is not None and likely(name, known)):
+            return
+        near = did_you_mean(name, known)
+        if near or what not in self.growing:
+            raise Actr3dError(f"no {what} '{name}'{near or _there_are(known)}")
+
+    def check_new(self, productions: Iterable[str], before: Iterable[str]) -> None:
+        """Checks that there are the productions of these names, but for those that were named before.
+
+        Raises:
+            Actr3dError: If there is one not.
+        """
+        for name in sorted(set(productions).difference(before)):
+            self.check("production", name)
+
+
+def check_until(said: Until, names: Names) -> None:
+    """Checks that there is what a run is to go on for, before it goes on.
+
+    Raises:
+        Actr3dError: If there is no such thing, or the pattern cannot be read.
+    """
+    for what, name in (("production", said.production), ("buffer", said.buffer), ("body", said.contact)):
+        if what == "body" and name is not None and not names.bodies:
+            raise Actr3dError("there is no body in this run that could touch anything")
+        if name:
+            names.check(what, name)
+    parse(said.pattern or "")
+
+
+def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notice]:
+    """Yields what is told of breakpoints whose productions are no more, as after an edit."""
+    for name in sorted(productions):
+        try:
+            names.check("production", name)
+        except Actr3dError as error:
+            yield notice("warning", f"the breakpoint on {name} is kept, but there is {error}")
+
+
+def _learned(name: str, known: frozenset[str]) -> bool:
+    """Tells whether a production could be called so that is compiled from known ones; see `actr3d.actr.compilation`."""
+    first, *more = (part for part in name.split("-") if not part.isdecimal())
+    return bool(more) and known.issuperset((first, *more))
+
+
+def _numbered(name: str, known: frozenset[str]) -> bool:
+    """Tells whether a buffer is called so in a later model of a class that is known: `goal#2`."""
+    return re.sub(r"#\d+", "", name) in known
+
+
+def _there_are(known: Iterable[str]) -> str:
+    names = sorted(known)
+    more = f" and {len(names) - MOST_TOLD} more" if len(names) > MOST_TOLD else ""
+    return f"; there are: {', '.join(names[:MOST_TOLD]) or 'none'}{more}"
+
+
+def names_of(models: Iterable[Model], bodies: Iterable[str] = ()) -> Names:
+    """Returns what there is in models.
+
+    Args:
+        models: The top models, or the minds.
+        bodies: The bodies.
+    """
+    productions: set[str] = set()
+    buffers: set[str] = set()
+    for part in (part for model in models for part in model._tree()):
+        if isinstance(part, Buffer):
+            buffers.add(part._path)
+        elif isinstance(part, ProductionSystem):
+            productions.update(production.name for production in part.__dict__.get("_productions", ()))
+    return Names(productions=frozenset(productions), buffers=frozenset(buffers), bodies=frozenset(bodies))
+
+
+def names_of_program(models: Iterable[Model], listing: Listing, source: str, folder: Path) -> Names:
+    """Returns what there is in a program, as far as it has come.
+
+    Args:
+        models: The models that it has made.
+        listing: What its text says of itself.
+        source: Its text.
+        folder: Where its helper modules are.
+    """
+    made = names_of(models)
+    written = {name.rpartition(".")[2] for name in listing.productions}
+    productions = made.productions | written
+    hidden = not productions or _has_helpers(source, folder)
+    growing = frozenset(("production", "buffer") if hidden else ("buffer",))
+    return Names(productions=productions, buffers=made.buffers, growing=growing)
+
+
+def _has_helpers(source: str, folder: Path) -> bool:
+    """Tells whether a text loads modules that lie in its folder: models may come from there."""
+    roots: set[str] = set()
+    for node in ast.walk(syntax_tree(source)):
+        if isinstance(node, ast.Import):
+            roots.update(alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            roots.add((node.module or "").partition(".")[0])
+    return any((folder / f"{root}.py").is_file() or (folder / root).is_dir() for root in roots - {""})
