@@ -21,6 +21,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   const away = useRef(false);
   const [view, setView] = useState({ top: 0, height: 400 });
   const last = useRef(chosen);
+  const known = useRef(count);
 
   // A scrolled or observed box may be gone when that is told.
   function look() {
@@ -52,7 +53,10 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     return () => watcher.disconnect();
   }, []);
   useLayoutEffect(() => {
-    if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // of which nothing may have been told yet
+    if (count < known.current) away.current = false; // it is another run's, or another way of it
+    if (count === 0) box.current.scrollTop = 0;
+    else if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // of which nothing may have been told yet
+    known.current = count;
     if (aim !== null && !away.current) {
       show(aim);
       set.current = box.current.scrollTop;
@@ -81,7 +85,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     look();
   }
 
-  const from = Math.max(0, Math.floor(view.top / ROW) - SPARE);
+  const from = Math.max(0, Math.floor(Math.min(view.top, count * ROW - view.height) / ROW) - SPARE);
   const to = Math.min(count, Math.ceil((view.top + view.height) / ROW) + SPARE);
   const drawn = [];
   for (let n = from; n < to; n += 1) drawn.push(row(n));
