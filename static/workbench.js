@@ -14,9 +14,10 @@ import { hurried } from "./store.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
+const ROWS = 320; // so high are the usual rows of a model with a body [px]
 // At first, wide windows give the panels more room, too.
 const side = remembered("side width", Math.max(560, Math.round(0.38 * innerWidth)));
-const below = remembered("timeline height", Math.max(270, Math.round(0.32 * innerHeight)));
+const below = remembered("timeline height", Math.round(Math.min(0.4 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
 
 export function Workbench() {
   const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };
