@@ -256,7 +256,7 @@ def test_the_conflict_set_and_a_failed_retrieval(pages: Pages, workbench: Served
     page.click("#cycle")
     page.get_by_role("tab", name="Conflict set").click()
     conflict = page.get_by_role("region", name="Conflict set of top")
-    expect(conflict).to_contain_text("1 matched, left is chosen")
+    expect(conflict).to_contain_text("1 matched, left is about to fire")
     moment = page.get_by_label("Explain the time [s]")
     moment.fill("0.01")
     moment.press("Enter")
@@ -325,6 +325,13 @@ def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
     expect(rows.first).to_contain_text("line 10000")
     page.get_by_role("button", name="To the present").click()
     expect(rows.last).to_contain_text("line 59999")
+    page.get_by_role("region", name="Firing trace").press("Home")
+    expect(rows.first).to_contain_text("line 10000")
+    page.click("#restart")
+    expect(rows).to_have_count(0)
+    page.click("#run")
+    expect(rows.last).to_contain_text("line 59999")  # who had scrolled away had done so in another run
+    expect(page.get_by_role("button", name="To the present")).to_have_count(0)
 
 
 def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> None:
