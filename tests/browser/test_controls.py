@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import drawn, open_tab, shows, until
+from tests.browser.looking import choose, drawn, open_tab, shows, until
 from tests.server.serving import Served
 
 
@@ -133,6 +133,7 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
 
 def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
+    shows(page, "#status", "at its start")
     bar = page.get_by_role("separator", name="Width of the panels")
     before = int(bar.get_attribute("aria-valuenow") or 0)
     bar.focus()
@@ -151,6 +152,10 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
     expect(bar).to_have_attribute("aria-valuenow", str(after))
     expect(page.get_by_role("tab", name="Messages")).to_have_attribute("aria-selected", "true")
+    choose(page, "doorway.py")
+    expect(bar).to_have_attribute("aria-valuenow", "560")  # beside a world there is less room
+    choose(page, "counting.py")
+    expect(bar).to_have_attribute("aria-valuenow", str(after))
 
 
 def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None:
