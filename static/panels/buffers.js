@@ -38,7 +38,7 @@ function Buffer({ path, name, chunk }) {
       ${more || open
         ? html`<button class="bare" aria-expanded=${open} aria-label="All of ${name}" title=${open ? "A few lines only" : "All of it"} onClick=${() => setOpen(!open)}><${Icon} name="down" /></button>`
         : null}
-      <div class="chunk" ref=${box} style=${{ minHeight: `${lines}lh`, maxHeight: open ? "none" : `${LINES}lh` }}>
+      <div class="chunk" ref=${box} style=${{ minHeight: `calc(${lines} * var(--row))`, maxHeight: open ? "none" : `calc(${LINES} * var(--row))` }}>
         <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
         ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
       </div>

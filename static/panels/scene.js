@@ -8,7 +8,7 @@ import { remembered } from "../remembered.js";
 import { standing } from "../standing.js";
 import { hurried, running, session, state } from "../store.js";
 
-const open = remembered("scene switches", true);
+const open = remembered("scene switches", innerWidth >= 1100) // in a small window they would hide the scene;
 const CAMERAS = { free: "free", follow: "with the body", eye: "through the eye", top: "from above" };
 const BETWEEN = 250; // between two looks at what time the 3D view shows [ms]
 const LATE = 0.5; // what it shows may be so old before that is said [s]

@@ -48,10 +48,10 @@ function Going() {
   const ready = alive.value && past && wanted.value === null;
   return html`<div class="timeline-going">
     <button disabled=${!ready} title="Run on from this moment. It goes as it went before; if you change something here, another way begins." onClick=${() => order({ type: "run" })}>
-      <${Icon} name="run" />Continue from here
+      <${Icon} name="run" /><span>Continue from here</span>
     </button>
     <button disabled=${!alive.value || !past} title="Go to the newest moment of the run (End)" onClick=${() => seek(furthest.peek())}>
-      <${Icon} name="until" />Newest moment
+      <${Icon} name="until" /><span>Newest moment</span>
     </button>
   </div>`;
 }

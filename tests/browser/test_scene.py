@@ -15,6 +15,7 @@ import zstandard
 from PIL import Image
 from playwright.sync_api import Browser, Page, Route, WebSocket, expect
 
+from tests.browser.looking import until
 from tests.server.serving import MODELS, Served, served
 
 PATIENCE = 120_000
@@ -104,7 +105,7 @@ def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_withou
     page.goto(f"{workbench.url}/?model=aperture_passage.py")
     cover = page.locator(".scene-cover")
     expect(cover).to_have_text("The 3D view loads …", timeout=PATIENCE)
-    wait(lambda: held)
+    until(page, lambda: bool(held))
     held[0].continue_()
     expect(cover).to_have_count(0, timeout=PATIENCE)
     frame = page.frame_locator("iframe[title='3D view']").locator("html")
