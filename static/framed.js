@@ -1,6 +1,7 @@
 // What is put before viser's own script, in its page: it goes on connecting again when it is not in front, too; `?panel=hidden` hides its
-// panel and notices, for a page that has controls of its own around it; and it goes easy on a machine without a graphics card. It is no
-// module, for those may run after viser has read its address.
+// panel and notices and lets what is behind it be its ground, for a page that has controls and a theme of its own around it; it tells
+// that page when it has drawn; and it goes easy on a machine without a graphics card. It is no module, for those may run after viser has
+// read its address.
 
 {
   document.hasFocus = () => true;
@@ -8,13 +9,35 @@
   const asked = new URLSearchParams(location.search);
   if (asked.get("panel") === "hidden") {
     const style = document.createElement("style");
-    style.textContent = ".mantine-Paper-root, .mantine-Notification-root { display: none !important; }";
+    style.textContent = `
+      .mantine-Paper-root, .mantine-Notification-root { display: none !important; }
+      html, body, div:has(canvas) { background: none !important; }
+    `;
     document.documentElement.append(style);
+  }
+
+  /** Tells the page around it whether there is a picture, or, by false, that there will be none. */
+  const tellDrawn = (drawn) => parent.postMessage({ drawn }, location.origin);
+
+  /** Tells when something is first drawn on the screen itself, not for the sake of what is drawn later. */
+  function tellFirst() {
+    const kind = WebGL2RenderingContext.prototype;
+    for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"]) {
+      const draw = kind[name];
+      kind[name] = function (...all) {
+        draw.apply(this, all);
+        if (this.getParameter(this.FRAMEBUFFER_BINDING) !== null) return;
+        kind[name] = draw;
+        tellDrawn(true);
+      };
+    }
   }
 
   /** Whether the processor draws, in place of a graphics card. */
   function drawnBySoftware() {
-    const gl = document.createElement("canvas").getContext("webgl");
+    const gl = document.createElement("canvas").getContext("webgl2");
+    if (gl) tellFirst();
+    else tellDrawn(false);
     const told = gl?.getExtension("WEBGL_debug_renderer_info");
     const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
     gl?.getExtension("WEBGL_lose_context")?.loseContext();
@@ -22,7 +45,8 @@
   }
 
   // Half of what a picture costs without a graphics card is its shadows, and four tenths of the rest that edges are smooth.
-  if (!asked.has("websocket") && drawnBySoftware()) {
+  const bySoftware = drawnBySoftware();
+  if (!asked.has("websocket") && bySoftware) {
     asked.set("websocket", `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname.replace(/\/$/, "")}?shadows=off`);
     history.replaceState(null, "", `?${asked}`);
     const usual = HTMLCanvasElement.prototype.getContext;

@@ -20,8 +20,6 @@ export const opening = signal(null);
 export const connected = signal(null);
 
 export const running = computed(() => state.value?.status === "running");
-/** Whether the run is over, as it stands now. */
-export const over = computed(() => ["ended", "failed"].includes(state.value?.status));
 /** Whether the run goes as fast as it can: then drawing it is not to take too much of the processor. */
 export const hurried = computed(() => running.value && state.value.wanted === null);
 /** Whether there is a run that can be asked. */
@@ -79,11 +77,6 @@ let ownNotices = 0;
 export function complain(text, level = "error") {
   ownNotices -= 1;
   tell([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
-}
-
-/** Says why there is no session to show: a model is on its way, or none is chosen. */
-export function noSession(otherwise) {
-  return opening.value?.text ?? otherwise;
 }
 
 /** Tells the run that is shown from others. */

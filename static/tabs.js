@@ -1,5 +1,6 @@
 // The tabs beside the 3D view. A new panel is one file in panels/, and one line here.
 
+import { bindKey, noteKey } from "./keys.js";
 import { remembered } from "./remembered.js";
 import { buffers } from "./panels/buffers.js";
 import { editor } from "./panels/editor.js";
@@ -14,3 +15,10 @@ export const TABS = [buffers, productions, memory, eye, parameters, editor, runs
 
 /** The id of the tab that is open. */
 export const openTab = remembered("tab", "buffers");
+
+TABS.forEach(({ id }, n) => bindKey(String(n + 1), "", () => (openTab.value = id)));
+noteKey(`1 … ${TABS.length}`, "Open a tab", "Panels");
+noteKey("w", "Why, of a line of the firing trace", "Panels");
+noteKey("b", "Breakpoint, in the list of productions", "Panels");
+noteKey("Enter", "Go to a line of the trace; open a run", "Panels");
+noteKey("Delete", "Delete the chosen runs", "Panels");

@@ -1,6 +1,6 @@
 // The layout: a bar above, the 3D view beside the tabs, the timeline below, and a line that says how things stand.
 
-import { html } from "./vendor/preact.js";
+import { computed, effect, html } from "./vendor/preact.js";
 import { Bar } from "./bar/bar.js";
 import { StatusLine } from "./bar/status.js";
 import { Dialogs } from "./parts/dialog.js";
@@ -10,22 +10,29 @@ import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
 import { remembered } from "./remembered.js";
-import { hurried } from "./store.js";
+import { hurried, session } from "./store.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
+const ROWS = 336; // so high are the usual rows of a model with a body [px]
 // At first, wide windows give the panels more room, too.
-const side = remembered("side width", Math.max(560, Math.round(0.38 * innerWidth)));
-const below = remembered("timeline height", Math.max(270, Math.round(0.32 * innerHeight)));
+const beside = remembered("side width", Math.max(560, Math.round(0.38 * innerWidth)));
+const alone = remembered("side width without world", Math.round(0.7 * innerWidth)); // then there is nothing beside them to be seen
+const hasWorld = remembered("has world", true); // while a model loads, that of the one before
+effect(() => {
+  if (session.value?.kind) hasWorld.value = Boolean(session.value.world);
+});
+const side = computed(() => (hasWorld.value ? beside : alone));
+const below = remembered("timeline height", Math.round(Math.min(0.42 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
 
 export function Workbench() {
-  const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };
+  const sizes = { "--side": `${side.value.value}px`, "--below": `${below.value}px` };
   return html`
     <div class="workbench ${hurried.value ? "hurried" : ""}" style=${sizes}>
       <${Bar} />
       <main class="work">
         <${Scene} />
-        <${Splitter} size=${side} along="columns" label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
+        <${Splitter} size=${side.value} along="columns" label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
         <section class="side" aria-label="Panels">
           <${Tabs} label="Panels" tabs=${TABS} shown=${openTab} />
         </section>

@@ -131,7 +131,7 @@ def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     """Deletes a recording; 409 while a run goes on writing it."""
     sessions = sessions_of(request)
     if recording in sessions.writing():
-        raise SessionError("the present run is still writing this recording; begin another run, or close the session, and then delete it")
+        raise SessionError("a run that is open still writes this recording; begin its model anew, or close its session, and then delete it")
     sessions.recordings.delete(recording)
     return {"deleted": recording}
 

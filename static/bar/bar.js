@@ -1,6 +1,7 @@
 // The bar above: which model, its aperture, and the controls of the run.
 
 import { html } from "../vendor/preact.js";
+import { bindKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { chosen, nextTheme } from "../theme.js";
 import { Aperture } from "./aperture.js";
@@ -8,6 +9,8 @@ import { Clock } from "./clock.js";
 import { showKeys } from "./help.js";
 import { ModelChoice } from "./models.js";
 import { Transport } from "./transport.js";
+
+bindKey("t", "Light, dark, or as the system has it", nextTheme, "Panels");
 
 export function Bar() {
   return html`<header class="bar">
@@ -17,7 +20,7 @@ export function Bar() {
     <${Clock} />
     <${Aperture} />
     <span class="stretch"></span>
-    <button class="bare" title="Theme: ${chosen}" aria-label="Theme: ${chosen}" onClick=${nextTheme}><${Icon} name="theme" /></button>
+    <button class="bare" title="Theme: ${chosen} (T)" aria-label="Theme: ${chosen}" onClick=${nextTheme}><${Icon} name="theme" /></button>
     <button class="bare" title="Keys (?)" aria-label="Keys" onClick=${showKeys}><${Icon} name="help" /></button>
   </header>`;
 }

@@ -1,12 +1,17 @@
 // The keys, shown by `?`.
 
 import { html } from "../vendor/preact.js";
-import { bindKey, boundKeys, keyText } from "../keys.js";
+import { bindKey, KEY_GROUPS, keysOf, keyText } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 
 export function showKeys() {
-  const rows = boundKeys().map(({ key, text }) => html`<tr><td><kbd>${keyText(key)}</kbd></td><td>${text}</td></tr>`);
-  dialog({ title: "Keys", body: html`<table class="keys"><tbody>${rows}</tbody></table>` });
+  const groups = KEY_GROUPS.map(
+    (group) => html`<section key=${group}>
+      <h3 id="keys-${group}">${group}</h3>
+      <table aria-labelledby="keys-${group}"><tbody>${keysOf(group).map(({ key, text }) => html`<tr key=${text}><td><kbd>${keyText(key)}</kbd></td><td>${text}</td></tr>`)}</tbody></table>
+    </section>`,
+  );
+  dialog({ title: "Keys", body: html`<div class="keys">${groups}</div>` });
 }
 
-bindKey("?", "Show the keys", showKeys);
+bindKey("?", "Show the keys", showKeys, "Panels");

@@ -5,7 +5,8 @@ import { bindKey, keyText } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { settable } from "../parts/settable.js";
 import { order } from "../server.js";
-import { over, running, session, state } from "../store.js";
+import { isOver } from "../standing.js";
+import { running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { runUntil } from "./until.js";
 
@@ -13,15 +14,15 @@ import { runUntil } from "./until.js";
 const SPEEDS = [["1/20 x", 0.05], ["1/10 x", 0.1], ["1/4 x", 0.25], ["1/2 x", 0.5], ["1 x", 1], ["2 x", 2], ["5 x", 5], ["10 x", 10], ["20 x", 20], ["fastest", null]];
 
 /** Whether the run cannot go on from here. */
-function isOver() {
-  return over.value || !session.value?.alive;
+function isDone() {
+  return isOver.value || !session.value?.alive;
 }
 
 /** Runs or pauses; a run that is over begins again. */
 function toggle() {
   if (isIdle("run")) return;
   if (running.value) order({ type: "pause" });
-  else if (isOver()) order({ type: "restart", run: true });
+  else if (isDone()) order({ type: "restart", run: true });
   else orderThere({ type: "run" });
 }
 
@@ -41,14 +42,14 @@ function isIdle(id) {
   if (id === "run") return loading;
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;
-  return ["step", "cycle", "until"].includes(id) && isOver();
+  return ["step", "cycle", "until"].includes(id) && isDone();
 }
 
 function press({ id, what, say = order }) {
   if (!isIdle(id)) say(what);
 }
 
-bindKey(" ", "Run or pause", toggle);
+bindKey(" ", "Run or pause; in the past, continue from here", toggle);
 for (const button of BUTTONS) bindKey(button.key, button.text, () => press(button));
 bindKey("u", "Run until …", () => isIdle("until") || runUntil());
 bindKey("+", "Faster", () => changeSpeed(1));
@@ -70,7 +71,7 @@ function changeSpeed(by) {
 
 export function Transport() {
   const goes = running.value;
-  const text = goes ? "Pause" : session.value && isOver() && !session.value.loading ? "Run again" : "Run";
+  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
     <button id="run" class="primary" disabled=${isIdle("run")} title="${text} (Space)" onClick=${toggle}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}

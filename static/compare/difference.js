@@ -2,6 +2,7 @@
 
 import { html } from "../vendor/preact.js";
 import { chunkText, valueText } from "../parts/chunk.js";
+import { counted } from "../parts/count.js";
 
 const KINDS = [
   ["all events", []],
@@ -22,12 +23,13 @@ function Cells({ event, none }) {
 }
 
 function headline({ same_events: same, whole, difference }) {
-  const count = same.toLocaleString("en");
-  if (!difference) return whole ? `The traces are the same: ${count} events.` : `The first ${count} events are the same; no more are compared.`;
+  const count = counted(same, "event");
+  const first = same === 1 ? "The first event is" : `The first ${count} are`;
+  if (!difference) return whole ? `The traces are the same: ${count}.` : `${first} the same; no more are compared.`;
   const [one, other] = difference.events;
-  if (!one || !other) return `The first ${count} events are the same; then the ${one ? "second" : "first"} run has no more.`;
+  if (!one || !other) return `${first} the same; then the ${one ? "second" : "first"} run has no more.`;
   if (same === 0) return `The traces differ from the first event on, at ${difference.time.toFixed(3)} s.`;
-  return `The first ${count} events are the same; the traces part at ${difference.time.toFixed(3)} s.`;
+  return `${first} the same; the traces part at ${difference.time.toFixed(3)} s.`;
 }
 
 function What({ what }) {

@@ -1,6 +1,7 @@
 // What is wrong with a text, as a list; choosing one goes to its line.
 
 import { html } from "../vendor/preact.js";
+import { counted } from "../parts/count.js";
 import { Traceback } from "../parts/place.js";
 import { remembered } from "../remembered.js";
 import { goTo } from "./code.js";
@@ -12,7 +13,7 @@ const SIGNS = { error: "✕", warning: "▲", info: "●" }; // the worst first
 export function Problems({ document }) {
   const marks = document.marks.value;
   const counts = Object.keys(SIGNS).map((level) => [level, marks.filter((mark) => mark.level === level).length]);
-  const said = counts.filter(([, count]) => count > 0).map(([level, count]) => `${count} ${level}${count === 1 ? "" : "s"}`);
+  const said = counts.filter(([, count]) => count > 0).map(([level, count]) => counted(count, level));
   const worst = marks.length === 0 ? "quiet" : { error: "bad", warning: "warning", info: "" }[counts.find(([, count]) => count > 0)[0]];
   return html`<section class="problems" aria-label="Problems">
     <div class="head">

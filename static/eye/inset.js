@@ -8,7 +8,7 @@ import { remembered } from "../remembered.js";
 import { openTab } from "../tabs.js";
 import { Retina } from "./retina.js";
 
-const open = remembered("retina", true);
+const open = remembered("retina", innerWidth >= 900);
 
 export function RetinaInset() {
   const body = seeing()[0];

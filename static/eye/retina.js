@@ -1,6 +1,7 @@
 // The retina: what an eye sees, as a picture; the pointer tells label, place and distance.
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { counted } from "../parts/count.js";
 import { dark } from "../theme.js";
 import { drawView, extentAt } from "./drawing.js";
 
@@ -33,7 +34,8 @@ export function Retina({ view, chosen = null }) {
   }
 
   return html`<div class="retina">
+    ${view?.extents.length === 0 ? html`<p class="retina-nothing">Nothing is in view of this eye now.</p>` : null}
     <canvas ref=${canvas} role="img" aria-label="What the eye sees: extents by row" onPointerMove=${point} onPointerLeave=${() => setUnder(null)}></canvas>
-    <output class="mono">${under ? extentText(under) : view ? `${view.extents.length} extents in ${view.rows} rows` : ""}</output>
+    <output class="mono">${under ? extentText(under) : view ? `${counted(view.extents.length, "extent")} in ${counted(view.rows, "row")}` : ""}</output>
   </div>`;
 }

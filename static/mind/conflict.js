@@ -2,7 +2,8 @@
 
 import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
-import { over, running, state } from "../store.js";
+import { chosenText, isGone, nothingYet } from "../standing.js";
+import { running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, production, shownReasons } from "./asked.js";
 import { pairs, timeText } from "./event_text.js";
@@ -27,7 +28,7 @@ function lastCycles(sifted, end, time) {
 function comesOf({ select, fire, changed, conflict }) {
   if (fire) return html`<b class="mono">${fire.production}</b> fired at ${timeText(fire.time)} s`;
   if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but matched no longer at ${timeText(changed.time)} s`;
-  if (select) return html`<b class="mono">${select.production}</b> ${over.value && at.value === null ? "was chosen as the run ended" : "is chosen, and about to fire"}`;
+  if (select) return html`<b class="mono">${select.production}</b> ${chosenText(at.value === null)}`;
   return conflict.threshold === undefined ? "nothing is chosen yet" : "none reaches the threshold";
 }
 
@@ -85,6 +86,6 @@ export function ConflictSets() {
   const sifted = useSifted(isChoice, "choices");
   const agents = agentsOf(state.value?.parts);
   const cycles = lastCycles(sifted, at.value === null ? (state.value?.events ?? 0) : Infinity, at.value === null ? null : at.value * 1e6);
-  if (cycles.length === 0) return html`<p class="empty">No production has matched yet. Step the run until one does.</p>`;
+  if (cycles.length === 0) return isGone.value ? null : html`<p class="empty">${nothingYet("No production has matched in this run.")}</p>`;
   return html`${cycles.map((cycle) => html`<${Cycle} key=${cycle.source} cycle=${cycle} agents=${agents} />`)}`;
 }

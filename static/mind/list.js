@@ -1,17 +1,18 @@
 // All productions: which match, which is chosen, where breakpoints are; one of them is explained.
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { counted } from "../parts/count.js";
 import { systemsOf } from "./agents.js";
 import { at, production } from "./asked.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
-import { over, state } from "../store.js";
+import { chosenText, isBare, isGone, nothing } from "../standing.js";
+import { state } from "../store.js";
 
 /** How a production stands: [class, sign, in words]. */
-export function standing(reason) {
+export function howItStands(reason) {
   if (!reason) return ["", "", ""];
   if (reason.matches === null) return ["unknown", "?", "cannot be told"];
-  const comes = over.value && at.value === null ? "was chosen as the run ended" : "is about to fire";
-  if (reason.selected) return ["selected", "▸", reason.matches ? `matches, and ${comes}` : "was chosen, but matches no longer"];
+  if (reason.selected) return ["selected", "▸", reason.matches ? `matches, and ${chosenText(at.value === null)}` : "was chosen, but matches no longer"];
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }
 
@@ -38,7 +39,7 @@ export function explained(all) {
 
 function Item({ item, chosen, several }) {
   const { system, name, reason } = item;
-  const [kind, sign, words] = standing(reason);
+  const [kind, sign, words] = howItStands(reason);
   const marked = breakpoints.value.includes(name);
   const line = useRef(null);
   useLayoutEffect(() => {
@@ -74,7 +75,7 @@ export function ProductionList({ all, chosen }) {
   }
 
   return html`<div class="production-list" onKeyDown=${press}>
-    <input type="search" aria-label="Search productions" placeholder="${all.length} productions" value=${words} onInput=${(event) => setWords(event.currentTarget.value)} />
+    <input type="search" aria-label="Search productions" placeholder=${counted(all.length, "production")} value=${words} onInput=${(event) => setWords(event.currentTarget.value)} />
     <div class="production-names" ref=${box}>
       ${systems.map(
         (system) => html`<div key=${system}>
@@ -84,7 +85,7 @@ export function ProductionList({ all, chosen }) {
           </ul>
         </div>`,
       )}
-      ${shown.length === 0 ? html`<p class="empty">${all.length ? "No production of that name." : Object.keys(state.value?.parts ?? {}).length ? "This model has no productions." : "The program has not made a model yet."}</p>` : null}
+      ${shown.length === 0 && !(isGone.value && isBare.value) ? html`<p class="empty">${all.length ? "No production of that name." : nothing("This model has no productions.")}</p>` : null}
     </div>
   </div>`;
 }

@@ -2,7 +2,9 @@
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
-import { over, state } from "../store.js";
+import { counted } from "../parts/count.js";
+import { chosenText } from "../standing.js";
+import { state } from "../store.js";
 import { pairs, timeText } from "./event_text.js";
 import { Flash } from "./flash.js";
 import { eventAt, useSifted } from "./sifted.js";
@@ -27,14 +29,14 @@ function requestText([time, , , data]) {
 
 /** Says what a part is about: what it waits for, which production is about to fire, how many chunks it has. */
 export function doing(part, request) {
-  if (part.is === "system") return part.chosen ? `${part.chosen} ${over.value ? "was chosen as the run ended" : "is about to fire"}` : "nothing matches";
+  if (part.is === "system") return part.chosen ? `${part.chosen} ${chosenText()}` : "nothing matches";
   if (part.state?.busy === true) {
     const groups = Object.keys(part.state).filter((name) => name.endsWith("_busy") && part.state[name] === true);
     if (groups.length) return `moves ${groups.map((name) => name.slice(0, -5).replaceAll("_", " ")).join(", ")}`;
     return request ? `waits for ${requestText(request)}` : "waits for an answer";
   }
   if (part.state?.watching === true) return "watches";
-  if (part.is === "memory") return `${part.state.size ?? 0} chunks`;
+  if (part.is === "memory") return counted(part.state.size ?? 0, "chunk");
   return "";
 }
 

@@ -21,6 +21,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   const away = useRef(false);
   const [view, setView] = useState({ top: 0, height: 400 });
   const last = useRef(chosen);
+  const known = useRef(count);
 
   // A scrolled or observed box may be gone when that is told.
   function look() {
@@ -52,7 +53,12 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     return () => watcher.disconnect();
   }, []);
   useLayoutEffect(() => {
-    if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // of which nothing may have been told yet
+    if (count < known.current) {
+      // They are another run's, or the first are gone, and others stand here now.
+      away.current = false;
+      set.current = box.current.scrollTop;
+    } else if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // of which nothing may have been told yet
+    known.current = count;
     if (aim !== null && !away.current) {
       show(aim);
       set.current = box.current.scrollTop;
@@ -68,8 +74,11 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     const at = chosen ?? aim ?? -1;
     const page = Math.max(1, Math.floor(view.height / ROW) - 2);
     const to = { ArrowUp: at - 1, ArrowDown: at + 1, PageUp: at - page, PageDown: at + page, Home: 0, End: count - 1 }[event.key];
-    if (to !== undefined && count > 0) onChoose?.(Math.max(0, Math.min(count - 1, to)));
-    else if (event.target === box.current && event.key === "Enter" && chosen !== null) onOpen?.(chosen);
+    if (to !== undefined && count > 0) {
+      const n = Math.max(0, Math.min(count - 1, to));
+      onChoose?.(n);
+      show(n); // also where it was chosen before
+    } else if (event.target === box.current && event.key === "Enter" && chosen !== null) onOpen?.(chosen);
     else if (event.target === box.current && keys[event.key] && chosen !== null) keys[event.key](chosen);
     else return;
     event.preventDefault();
@@ -81,7 +90,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     look();
   }
 
-  const from = Math.max(0, Math.floor(view.top / ROW) - SPARE);
+  const from = Math.max(0, Math.floor(Math.min(view.top, count * ROW - view.height) / ROW) - SPARE);
   const to = Math.min(count, Math.ceil((view.top + view.height) / ROW) + SPARE);
   const drawn = [];
   for (let n = from; n < to; n += 1) drawn.push(row(n));

@@ -1,6 +1,7 @@
 // The firing trace: what happened, line by line, with what is wanted of it.
 
 import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
+import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventText, GROUPS, timeText } from "./event_text.js";
 import { goTo } from "./go.js";
@@ -9,10 +10,12 @@ import { useSifted } from "./sifted.js";
 import { askWhy } from "./asked.js";
 import { Mixed, touchEvents } from "./touches.js";
 import { seek } from "../timeline/seek.js";
+import { nothingYet } from "../standing.js";
 import { events, session, state } from "../store.js";
 import { remembered } from "../remembered.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
+const TIME = "88px"; // so wide that there is room for times of some hours
 const wantedWords = remembered("trace words", "");
 
 function testOf(kinds, words, agent) {
@@ -102,7 +105,7 @@ export function FiringTrace() {
     return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
   const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goTo(mixed.numberAt(n)));
-  const nothing = list.length === 0 ? "Nothing has happened yet. Run the model, or step it." : "None of the events so far is one of those that are shown.";
+  const nothing = list.length === 0 ? nothingYet() : "None of the events so far is one of those that are shown.";
   return html`<section class="trace">
     <div class="tools">
       <input type="search" aria-label="Filter the trace" placeholder="Filter" value=${wantedWords.value} onInput=${(event) => (wantedWords.value = event.currentTarget.value)} />
@@ -114,13 +117,13 @@ export function FiringTrace() {
         : null}
       <${Groups} />
     </div>
-    ${first > 0 ? html`<p class="gap-note" role="note">${first.toLocaleString("en")} earlier events are not shown</p>` : null}
+    ${first > 0 ? html`<p class="gap-note" role="note">${counted(first, "earlier event is", "earlier events are")} not shown</p>` : null}
     <${Rows}
       id="events"
       label="Firing trace"
       count=${mixed.count}
       row=${row}
-      columns=${several ? ["74px", "22%", "auto", "42px"] : ["74px", "auto", "42px"]}
+      columns=${several ? [TIME, "22%", "auto", "42px"] : [TIME, "auto", "42px"]}
       head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th></th>`}
       aim=${present > 0 ? present - 1 : null}
       chosen=${chosenRow}

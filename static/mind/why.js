@@ -2,7 +2,8 @@
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
-import { standing } from "./list.js";
+import { standing } from "../standing.js";
+import { howItStands } from "./list.js";
 import { Part } from "./part_names.js";
 
 const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "cannot be told"] };
@@ -48,8 +49,8 @@ function Utility({ reason }) {
 export function Why({ item }) {
   if (!item) return null;
   const { reason, name } = item;
-  if (!reason) return html`<h3 class="mono">${name}</h3><p class="quiet">It is explained as soon as the run pauses.</p>`;
-  const [kind, , words] = standing(reason);
+  if (!reason) return standing.value.is === "running" ? html`<h3 class="mono">${name}</h3><p class="quiet">${standing.value.text}</p>` : null;
+  const [kind, , words] = howItStands(reason);
   const bound = Object.entries(reason.bindings);
   return html`<h3 class=${kind}><span class="mono">${name}</span>: ${words}</h3>
     ${reason.verdict ? html`<p>${reason.verdict}</p>` : null}

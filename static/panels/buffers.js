@@ -7,7 +7,8 @@ import { Module, Plain, useRequests } from "../mind/modules.js";
 import { Result } from "../mind/result.js";
 import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf } from "../parts/chunk.js";
-import { noSession, session, state } from "../store.js";
+import { nothing } from "../standing.js";
+import { session, state } from "../store.js";
 
 const LINES = 3; // so much of a chunk is shown, unless more is asked for
 
@@ -37,7 +38,7 @@ function Buffer({ path, name, chunk }) {
       ${more || open
         ? html`<button class="bare" aria-expanded=${open} aria-label="All of ${name}" title=${open ? "A few lines only" : "All of it"} onClick=${() => setOpen(!open)}><${Icon} name="down" /></button>`
         : null}
-      <div class="chunk" ref=${box} style=${{ minHeight: `${lines}lh`, maxHeight: open ? "none" : `${LINES}lh` }}>
+      <div class="chunk" ref=${box} style=${{ minHeight: `calc(${lines} * var(--row))`, maxHeight: open ? "none" : `calc(${LINES} * var(--row))` }}>
         <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
         ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
       </div>
@@ -82,7 +83,7 @@ function Buffers() {
   const paths = Object.keys(parts);
   const busy = paths.filter((path) => parts[path].state?.busy === true);
   const requests = useRequests(busy);
-  if (paths.length === 0) return html`<p class="empty">${nothing()}</p>`;
+  if (paths.length === 0) return html`<p class="empty">${nothing("This model has no mind to look into.")}</p>`;
   const agents = agentsOf(parts);
   const groups = [...agents, null]
     .map((agent) => [agent, paths.filter((path) => agentOf(path, agents) === agent)])
@@ -92,14 +93,6 @@ function Buffers() {
     ${state.value.result ? html`<${Result} result=${state.value.result} />` : null}
     ${groups.map(([agent, own]) => html`<${Agent} key=${agent} agent=${agent} paths=${own} parts=${parts} requests=${requests} several=${groups.length > 1} />`)}
   </div>`;
-}
-
-function nothing() {
-  const { loading, kind, ending } = session.value ?? {};
-  if (loading) return "The model is being loaded …";
-  if (!session.value) return noSession("Choose a model above to see what its mind holds.");
-  if (kind === "program") return "The program has not made a model yet. Run it: it does so as it goes.";
-  return ending ? `There is no run: ${ending}. Restart it.` : "This model has no mind to look into.";
 }
 
 export const buffers = { id: "buffers", title: "Buffers", View: Buffers };

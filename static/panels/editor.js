@@ -10,7 +10,7 @@ import { duplicate, makeNew, remove, rename } from "../editor/files.js";
 import { Problems } from "../editor/problems.js";
 import { saveAndRun } from "../editor/running.js";
 import { Strip } from "../editor/strip.js";
-import { bindKey } from "../keys.js";
+import { bindKey, noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
@@ -34,9 +34,9 @@ async function runShown() {
 }
 
 Object.assign(keys, { run: runShown, save: saveShown });
-bindKey("Mod+s", "Save the text in the editor", saveShown);
-bindKey("Mod+Enter", "Save the text in the editor, and run it", runShown);
-bindKey("Escape+Tab", "One after the other: leave the text in the editor, where Tab alone indents", () => {});
+bindKey("Mod+s", "Save the text", saveShown, "Editor");
+bindKey("Mod+Enter", "Save the text, and run it", runShown, "Editor");
+noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
 /** Does what the user has chosen of two texts. */
 async function choose(document, which) {

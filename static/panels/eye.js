@@ -3,8 +3,11 @@
 import { html, useSignal } from "../vendor/preact.js";
 import { shadeOf } from "../eye/drawing.js";
 import { Retina } from "../eye/retina.js";
+import { Waiting } from "../mind/waiting.js";
 import { useAnswer } from "../parts/answer.js";
+import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { isGone, nothing } from "../standing.js";
 import { complain, session } from "../store.js";
 import { dark } from "../theme.js";
 
@@ -67,14 +70,10 @@ function Edges({ view }) {
     ${rest > 0 ? html`<p class="empty">${rest} more; «Copy as JSON» has all.</p>` : null}`;
 }
 
-function Empty() {
-  return html`<p class="empty">Nothing is in view of this eye now.</p>`;
-}
-
 async function copy(view) {
   try {
     await navigator.clipboard.writeText(JSON.stringify(view));
-    complain(`${view.extents.length} extents are on the clipboard.`, "info");
+    complain(`${counted(view.extents.length, "extent is", "extents are")} on the clipboard.`, "info");
   } catch {
     complain("The browser does not let the page write to the clipboard.");
   }
@@ -85,8 +84,9 @@ function Eye() {
   const body = useSignal(null);
   const kind = useSignal("objects");
   const of = bodies.includes(body.value) ? body.value : bodies[0];
-  const { answer, error } = useAnswer(of === undefined ? null : { type: "view", body: of }, { live: true });
-  if (of === undefined) return html`<p class="empty">No body of this model has an eye. One is seen here as soon as a model with a camera runs.</p>`;
+  const told = useAnswer(of === undefined ? null : { type: "view", body: of }, { live: true });
+  const { answer } = told;
+  if (of === undefined) return html`<p class="empty">${nothing("No body of this model has an eye. What one sees is shown here as soon as a model with a camera runs.")}</p>`;
   const Table = kind.value === "objects" ? Objects : Edges;
   return html`<div class="eye">
     <div class="tools">
@@ -95,9 +95,9 @@ function Eye() {
       ${KINDS.map(([id, text]) => html`<button key=${id} aria-pressed=${kind.value === id} onClick=${() => (kind.value = id)}>${text}</button>`)}
       <button disabled=${!answer} onClick=${() => copy(answer)}><${Icon} name="copy" />Copy as JSON</button>
     </div>
-    ${error ? html`<p class="empty">${error}</p>` : null}
-    <${Retina} view=${answer} />
-    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer ? html`<${answer.extents.length ? Table : Empty} view=${answer} />` : null}</div>
+    <${Waiting} told=${told} />
+    ${isGone.value && !answer ? null : html`<${Retina} view=${answer} />`}
+    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer?.extents.length ? html`<${Table} view=${answer} />` : null}</div>
   </div>`;
 }
 

@@ -7,8 +7,10 @@ import { postures, SchemaTable } from "../mind/schema_table.js";
 import { Waiting } from "../mind/waiting.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
+import { counted } from "../parts/count.js";
 import { remembered } from "../remembered.js";
-import { noSession, running, session, state } from "../store.js";
+import { nothing } from "../standing.js";
+import { running, session, state } from "../store.js";
 
 const MOST = 5000; // so many chunks are asked for
 const LIVE = 150; // a memory with no more chunks than these is shown while the run goes on, too
@@ -30,9 +32,9 @@ function Seen() {
 function Note({ told, schema }) {
   if (!told.answer) return null;
   const { rows, size, threshold } = told.answer;
-  const found = rows.length === size ? `${size} chunks` : `${rows.length} of ${size} chunks`;
+  const found = rows.length === size ? counted(size, "chunk") : `${rows.length} of ${counted(size, "chunk")}`;
   const cut = rows.length === MOST ? "; search for fewer" : "";
-  return html`<span class="quiet">${schema ? `${schema.length} postures` : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
+  return html`<span class="quiet">${schema ? counted(schema.length, "posture") : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
 }
 
 function Chunks({ memory, schema }) {
@@ -63,7 +65,7 @@ function Memory() {
   const memories = Object.keys(parts).filter((path) => parts[path].is === "memory");
   const eyes = Object.values(parts).some((part) => part.is === "module" && "watching" in (part.state ?? {}));
   const moves = Object.values(parts).some((part) => part.is === "module" && "size_grid" in (part.state ?? {}));
-  if (memories.length === 0 && !eyes) return html`<p class="empty">${nothing()}</p>`;
+  if (memories.length === 0 && !eyes) return html`<p class="empty">${nothing("This model has no declarative memory.")}</p>`;
   const views = [
     ...(memories.length ? [{ id: "chunks", text: "Chunks" }] : []),
     ...(memories.length && moves ? [{ id: "schema", text: "Body schema" }] : []),
@@ -88,14 +90,6 @@ function Memory() {
       : null}
     ${shown === "seen" ? html`<${Seen} />` : html`<${Chunks} key=${memory} memory=${memory} schema=${shown === "schema"} />`}
   </div>`;
-}
-
-function nothing() {
-  const { loading, kind } = session.value ?? {};
-  if (loading) return "The model is being loaded …";
-  if (!session.value) return noSession("Choose a model above to see what it remembers.");
-  if (kind === "program" && Object.keys(state.value?.parts ?? {}).length === 0) return "The program has not made a model yet. Run it: it does so as it goes.";
-  return "This model has no declarative memory.";
 }
 
 export const memory = { id: "memory", title: "Memory", View: Memory };

@@ -73,5 +73,5 @@ export const messages = {
   id: "messages",
   title: "Messages",
   View: Messages,
-  badge: () => (errors() > seen.value ? { text: String(errors() - seen.value), level: "bad" } : null),
+  badge: () => (errors() > seen.value ? { text: errors() - seen.value > 99 ? "99+" : String(errors() - seen.value), level: "bad" } : null),
 };

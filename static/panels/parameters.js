@@ -3,7 +3,8 @@
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { boundsText, read, written } from "../parameters/values.js";
 import { call, isLeft, order, say } from "../server.js";
-import { complain, noSession, session, state } from "../store.js";
+import { standing } from "../standing.js";
+import { complain, session, state } from "../store.js";
 
 const listing = signal(null); // what the model's text says of itself
 const drafts = signal({}); // what is written in fields and not yet in force, by name
@@ -142,7 +143,7 @@ function Field({ parameter }) {
 function Parameters() {
   const shown = session.value;
   useLayoutEffect(() => void (shown && follow(shown))); // before anything is written into a field of the model before
-  if (!shown) return html`<p class="empty">${noSession("Choose a model above: its parameters are shown here.")}</p>`;
+  if (!shown) return html`<p class="empty">${standing.value.text}</p>`;
   if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
   const fields = known();
   const changed = waiting().length;

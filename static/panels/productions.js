@@ -16,7 +16,7 @@ import { remembered } from "../remembered.js";
 import { running, state } from "../store.js";
 import { travel } from "../timeline/seek.js";
 
-const below = remembered("reasons height", 270);
+const below = remembered("reasons height", Math.round(Math.min(270, 0.27 * innerHeight)));
 
 function Moment({ told }) {
   const [text, setText] = useState("");

@@ -1,16 +1,20 @@
 // The 3D view: viser's page in a frame that never moves, for moving it would load it again; and a strip of switches on its edge.
 
-import { html, useRef } from "../vendor/preact.js";
+import { html, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { RetinaInset } from "../eye/inset.js";
 import { Icon } from "../parts/icon.js";
 import { settable } from "../parts/settable.js";
 import { remembered } from "../remembered.js";
 import { rest } from "../rest.js";
-import { opening, session } from "../store.js";
-import { dark } from "../theme.js";
+import { standing } from "../standing.js";
+import { running, session, state } from "../store.js";
 
-const open = remembered("scene switches", true);
+const open = remembered("scene switches", innerWidth >= 1100); // in a small window they would hide the scene
 const CAMERAS = { free: "free", follow: "with the body", eye: "through the eye", top: "from above" };
+const BETWEEN = 250; // between two looks at what time the 3D view shows [ms]
+const LATE = 0.5; // what it shows may be so old before that is said [s]
+const NO_WEBGL =
+  "This browser cannot draw in 3D, for its WebGL is off or missing: switch on hardware acceleration in its settings, or take another browser. All else works without it.";
 
 const camera = settable(
   () => session.value?.camera,
@@ -46,28 +50,55 @@ function Switches() {
   </div>`;
 }
 
-/** Whether there will be something to see, or known that there is not, in a while. */
-function awaited(told) {
-  return told ? Boolean(told.world || told.loading) : Boolean(opening.value);
+/** Says what time the 3D view shows, where it cannot keep up with the run. */
+function Lag({ frame }) {
+  const shown = useSignal(null);
+  useEffect(() => {
+    if (!running.value) return undefined;
+    const timer = setInterval(() => {
+      const time = Number(/t = ([\d.]+) s/.exec(frame.current?.contentDocument?.body?.textContent)?.[1] ?? NaN); // in viser's own panel
+      const { time: now, measured } = state.peek() ?? {};
+      shown.value = now - time > LATE * (measured ?? Infinity) ? time : null;
+    }, BETWEEN);
+    return () => {
+      clearInterval(timer);
+      shown.value = null;
+    };
+  }, [running.value]);
+  return shown.value === null ? null : html`<p class="scene-lag number" title="The run goes faster than this machine can draw it">3D view of ${shown.value.toFixed(1)} s</p>`;
 }
 
-/** Says why there is nothing to see yet. */
-function missing(told) {
-  if (!told) return opening.value?.text ?? "";
-  if (told.world) return "The 3D view is being made …";
-  if (told.loading) return "The model is being loaded …";
-  if (!told.kind) return "There is no run: what is wrong with the model stands in Messages, with its line.";
-  return "This model has no world: there is nothing to see. Its buffers, productions and memory stand beside.";
+/** Says why there is nothing to see: [text, whether there will be in a while]; null where there is. `drawn` is what the frame tells. */
+function missing(drawn) {
+  const { world, scene, alive } = session.value ?? {};
+  if (world && scene) return drawn === null ? ["The 3D view loads …", true] : drawn ? null : [NO_WEBGL, false];
+  if (world && alive) return ["The 3D view is being made …", true];
+  if (state.value === null) return [standing.value.text, standing.value.is === "loading"];
+  return ["This model has no world: there is nothing to see. Its buffers, productions and memory stand beside.", false];
+}
+
+function Cover({ text, awaited }) {
+  return html`<div class="empty scene-cover" role="status"><p>${text}</p>${awaited ? html`<progress aria-label="Loading" />` : null}</div>`;
 }
 
 export function Scene() {
   const told = session.value;
   const shown = Boolean(told?.world && told.scene);
   const address = useRef("about:blank");
-  if (shown) address.current = `/viser/${told.id}/?panel=hidden${dark.value ? "&darkMode" : ""}`;
+  const frame = useRef(null);
+  const pictured = useSignal({ of: "", drawn: null });
+  useEffect(() => {
+    const hear = ({ source, data }) => {
+      if (source === frame.current.contentWindow && typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
+    };
+    addEventListener("message", hear);
+    return () => removeEventListener("message", hear);
+  }, []);
+  if (shown) address.current = `/viser/${told.id}/?panel=hidden`;
+  const lacks = missing(pictured.value.of === address.current ? pictured.value.drawn : null);
   return html`<section id="scene" class="scene" aria-label="3D view">
-    <iframe onLoad=${(event) => event.currentTarget.contentWindow?.restWith?.(rest)} title="3D view" src=${address.current} hidden=${!shown}></iframe>
-    ${shown ? html`<${Switches} />` : html`<div class="empty" role="status"><p>${missing(told)}</p>${awaited(told) ? html`<progress aria-label="Loading" />` : null}</div>`}
+    <iframe ref=${frame} onLoad=${(event) => event.currentTarget.contentWindow?.restWith?.(rest)} title="3D view" src=${address.current} hidden=${!shown}></iframe>
+    ${lacks ? html`<${Cover} text=${lacks[0]} awaited=${lacks[1]} />` : html`<${Switches} /><${Lag} frame=${frame} />`}
     <${RetinaInset} />
   </section>`;
 }

@@ -1,7 +1,7 @@
 // The timeline: one axis of time for mind and body, on which one goes back and forth.
 
 import { computed, html } from "../vendor/preact.js";
-import { noSession, over, session, state } from "../store.js";
+import { nothingYet } from "../standing.js";
 import { curvesVersion, names } from "../timeline/curves.js";
 import { lanes, lanesVersion } from "../timeline/record.js";
 import { column } from "../timeline/rows.js";
@@ -12,10 +12,7 @@ import { Tools } from "../timeline/tools.js";
 const nothing = computed(() => {
   lanesVersion.value;
   curvesVersion.value;
-  if (lanes.lanes.size > 0 || names.value.length > 0) return "";
-  if (!session.value) return noSession("Choose a model above: what its mind and body do is shown here over time.");
-  if (over.value) return "Nothing has happened in this run: no model made anything to show here.";
-  return state.value ? "Nothing has happened yet. Press Run or step: what mind and body do is shown here over time." : "The run has not begun.";
+  return lanes.lanes.size > 0 || names.value.length > 0 ? "" : nothingYet();
 });
 
 export function Timeline() {

@@ -39,6 +39,7 @@ export function rangeOf(series) {
       if (value > most) most = value;
     }
   }
+  if (Math.max(Math.abs(least), Math.abs(most)) < LEAST_RANGE / 2) return [0, 1]; // nothing has moved yet
   const room = Math.max(0, LEAST_RANGE - (most - least)) / 2;
   return roundRange(least - room, most + room);
 }

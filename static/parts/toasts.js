@@ -17,7 +17,7 @@ export function Toasts() {
     toast.value = fresh.at(-1);
     return undefined;
   }, [list]);
-  const shown = toast.value;
+  const shown = toast.value; // of another run that was shown before it is no matter any more
   useEffect(() => {
     if (!shown) return undefined;
     const timer = setTimeout(() => (toast.value = null), SHOWN);
@@ -30,7 +30,7 @@ export function Toasts() {
   }
 
   return html`<div class="toasts" aria-live="assertive">
-    ${shown && openTab.value !== "messages"
+    ${list.includes(shown) && openTab.value !== "messages"
       ? html`<div class="toast">
           <span>${shown.file ? `${shown.file}:${shown.line}: ` : ""}${shown.text}</span>
           <button class="bare" onClick=${read}>Show</button>

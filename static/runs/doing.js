@@ -1,6 +1,7 @@
 // What can be done with recordings: open, run again, delete. What goes on and what came of it is known here.
 
 import { signal } from "../vendor/preact.js";
+import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
 import { saveFile } from "../parts/picture.js";
 import { call, show, wish } from "../server.js";
@@ -90,9 +91,13 @@ export function cancelReplay(id) {
 /** Deletes recordings, after asking; but for those that a run is still writing. */
 export async function deleteRuns(all) {
   const list = all.filter((run) => !run.session);
-  if (list.length < all.length) complain("The present run is still writing its recording. Restart it or show another model to delete that.");
+  const open = all.filter((run) => run.session);
+  if (open.length > 0) {
+    const names = open.map((run) => `${run.model || run.id}, ${whenText(run.made)}`).join("; ");
+    complain(`Not deleted, for a run that is open still writes it: ${names}. Show that model and restart it, and delete this then.`);
+  }
   if (list.length === 0) return;
-  const one = list.length === 1 ? `the recording of ${list[0].model || list[0].id}, ${whenText(list[0].made)}` : `${list.length} recordings`;
+  const one = list.length === 1 ? `the recording of ${list[0].model || list[0].id}, ${whenText(list[0].made)}` : counted(list.length, "recording");
   if (!(await confirmed(`Delete ${one}?`, "It cannot be undone: recordings do not go to the trash folder.", "Delete"))) return;
   const refused = [];
   for (const [n, run] of list.entries()) {

@@ -2,7 +2,8 @@
 
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
-import { over, session, state } from "../store.js";
+import { isOver } from "../standing.js";
+import { session, state } from "../store.js";
 
 const PART = 250;
 const LATER = 700; // [ms]
@@ -64,7 +65,7 @@ export function forgetRun(id) {
 
 /** Keeps the list as the server has it for as long as it is shown; returns what ends that. */
 export function follow() {
-  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${over.value}`);
+  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value}`);
   return effect(() => {
     key.value;
     untracked(() => void listRuns());

@@ -3,7 +3,7 @@
 import { valueText } from "../parts/chunk.js";
 
 const ENDED = {
-  stop: "a mind said stop",
+  stop: "the model called stop()",
   done: "no mind had anything left to do",
   end: "the program was over",
   exit: "the program ended itself",

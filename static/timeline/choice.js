@@ -10,7 +10,7 @@ export function CurveChoice() {
   return html`<div class="curve-choice">
     ${[...groups].map(
       ([group, curves]) => html`<fieldset key=${group}>
-        <legend>${titleOf(group)} <span class="quiet">[${curves[0].unit}]</span></legend>
+        <legend>${titleOf(group)} <span class="quiet">[${[...new Set(curves.map(({ unit }) => unit))].join(", ")}]</span></legend>
         ${curves.map(
           ({ name }) => html`<label key=${name} title=${name}>
             <input type="checkbox" checked=${chosen.value.includes(name)} onChange=${(event) => set(name, event.currentTarget.checked)} />

@@ -5,8 +5,8 @@ import { contacts, names, plots } from "./curves.js";
 import { lanes } from "./record.js";
 
 export const AXIS = 20; // [px]
-export const LANE = 18;
-export const PLOT = 52;
+export const LANE = 16;
+export const PLOT = 46;
 const GAP = 5; // between two groups
 
 /** The groups in their order. */

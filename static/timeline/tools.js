@@ -1,6 +1,7 @@
 // The tools above the timeline: what is shown of it, how near, and where the run goes on.
 
 import { html } from "../vendor/preact.js";
+import { bindKey, noteKey } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { order } from "../server.js";
@@ -30,6 +31,14 @@ function near(factor) {
   zoom(factor, present.peek(), present.peek(), furthest.peek());
 }
 
+bindKey("Home", "To the beginning of the run", () => seek(0), "Timeline");
+bindKey("End", "To its newest moment", () => seek(furthest.peek()), "Timeline");
+noteKey("Shift+ArrowLeft", "Five ticks back, on the timeline", "Timeline");
+noteKey("Shift+ArrowRight", "Five ticks on, on the timeline", "Timeline");
+bindKey("z", "Zoom in", () => near(1 / STEP), "Timeline");
+bindKey("Shift+z", "Zoom out", () => near(STEP), "Timeline");
+bindKey("f", "Show all of the run", fit, "Timeline");
+
 function chooseCurves() {
   dialog({ title: "Curves below the lanes", body: html`<${CurveChoice} />` });
 }
@@ -39,10 +48,10 @@ function Going() {
   const ready = alive.value && past && wanted.value === null;
   return html`<div class="timeline-going">
     <button disabled=${!ready} title="Run on from this moment. It goes as it went before; if you change something here, another way begins." onClick=${() => order({ type: "run" })}>
-      <${Icon} name="run" />Continue from here
+      <${Icon} name="run" /><span>Continue from here</span>
     </button>
     <button disabled=${!alive.value || !past} title="Go to the newest moment of the run (End)" onClick=${() => seek(furthest.peek())}>
-      <${Icon} name="until" />Newest moment
+      <${Icon} name="until" /><span>Newest moment</span>
     </button>
   </div>`;
 }
@@ -56,9 +65,9 @@ export function Tools() {
     <span class="stretch"></span>
     <${Going} />
     <div class="timeline-zoom" role="group" aria-label="Zoom">
-      <button class="bare" title="Show less, nearer (wheel)" aria-label="Zoom in" onClick=${() => near(1 / STEP)}>+</button>
-      <button class="bare" title="Show more (wheel)" aria-label="Zoom out" onClick=${() => near(STEP)}>−</button>
-      <button class="bare" aria-pressed=${mode.value === "fit"} title="Show all of the run" onClick=${fit}>Fit</button>
+      <button class="bare" title="Show less, nearer (Z, wheel)" aria-label="Zoom in" onClick=${() => near(1 / STEP)}>+</button>
+      <button class="bare" title="Show more (Shift Z, wheel)" aria-label="Zoom out" onClick=${() => near(STEP)}>−</button>
+      <button class="bare" aria-pressed=${mode.value === "fit"} title="Show all of the run (F)" onClick=${fit}>Fit</button>
     </div>
     <button class="bare" disabled=${!session.value} title="Keep the timeline or a plot as a picture" aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
   </div>`;

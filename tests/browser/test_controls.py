@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import drawn, open_tab, shows, until
+from tests.browser.looking import choose, drawn, open_tab, shows, until
 from tests.server.serving import Served
 
 
@@ -130,7 +130,7 @@ def test_an_eye_with_nothing_in_view_says_so_and_nothing_is_about_to_fire_in_a_r
     page.click("#run")
     shows(page, "#status", "ended")
     open_tab(page, "Eye")
-    expect(page.locator(".eye-table")).to_have_text("Nothing is in view of this eye now.")
+    expect(page.locator(".eye .retina-nothing")).to_have_text("Nothing is in view of this eye now.")
     open_tab(page, "Buffers")
     expect(page.locator(".mind [data-path='walker'] .doing")).to_have_text(re.compile("stop_behind was chosen as the run ended"))
     open_tab(page, "Productions")
@@ -156,10 +156,26 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
     expect(page.locator("#run")).to_have_text("Run again")
     page.keyboard.press("Space")
     shows(page, "#status", "ended")
+    page.keyboard.press("Home")
+    shows(page, "#time", "0.00 s")
+    page.keyboard.press("End")
+    shows(page, "#status", "ended")
+    page.keyboard.press("z")
+    expect(page.get_by_role("button", name="Fit")).to_have_attribute("aria-pressed", "false")
+    page.keyboard.press("f")
+    expect(page.get_by_role("button", name="Fit")).to_have_attribute("aria-pressed", "true")
+    page.keyboard.press("3")
+    expect(page.get_by_role("tab", name="Memory")).to_have_attribute("aria-selected", "true")
+    page.keyboard.press("t")
+    expect(page.get_by_role("button", name="Theme: light")).to_be_visible()
+    page.get_by_label("Search the memory").focus()
+    page.keyboard.press("t")  # which is written
+    expect(page.get_by_role("button", name="Theme: light")).to_be_visible()
 
 
 def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
+    shows(page, "#status", "at its start")
     bar = page.get_by_role("separator", name="Width of the panels")
     before = int(bar.get_attribute("aria-valuenow") or 0)
     bar.focus()
@@ -178,6 +194,10 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
     expect(bar).to_have_attribute("aria-valuenow", str(after))
     expect(page.get_by_role("tab", name="Messages")).to_have_attribute("aria-selected", "true")
+    choose(page, "doorway.py")
+    expect(bar).to_have_attribute("aria-valuenow", "560")  # beside a world there is less room
+    choose(page, "counting.py")
+    expect(bar).to_have_attribute("aria-valuenow", str(after))
 
 
 def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None:

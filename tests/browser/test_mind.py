@@ -256,11 +256,11 @@ def test_the_conflict_set_and_a_failed_retrieval(pages: Pages, workbench: Served
     page.click("#cycle")
     page.get_by_role("tab", name="Conflict set").click()
     conflict = page.get_by_role("region", name="Conflict set of top")
-    expect(conflict).to_contain_text("1 matched, left is chosen")
+    expect(conflict).to_contain_text("1 matched, left is about to fire")
     moment = page.get_by_label("Explain the time [s]")
     moment.fill("0.01")
     moment.press("Enter")
-    expect(conflict).to_contain_text("2 matched, right is chosen, and about to fire")
+    expect(conflict).to_contain_text("2 matched, right is about to fire")
     expect(conflict.get_by_role("columnheader", name=re.compile("noise"))).to_be_visible()
     expect(conflict.get_by_role("row", name="left")).to_contain_text("n=1")
     page.get_by_role("button", name="Now", exact=True).click()
@@ -295,14 +295,14 @@ def test_memory_is_searched_and_sorted(pages: Pages, workbench: Served) -> None:
 
 def test_a_mind_with_nothing_in_it_says_so(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "quiet.py", QUIET)
-    expect(page.locator("#panel-buffers")).to_contain_text("The program has not made a model yet")
+    expect(page.locator("#panel-buffers")).to_contain_text("There is no model yet. Press Run: the program makes its model as it goes.")
     open_tab(page, "Productions")
     expect(page.locator("#panel-productions")).to_contain_text("Nothing has happened yet")
     page.click("#run")
     shows(page, "#status", "ended")
     expect(page.locator("#why-text")).to_contain_text("never: does not match")
     page.get_by_role("tab", name="Conflict set").click()
-    expect(page.locator("#reasons-panel")).to_contain_text("No production has matched yet")
+    expect(page.locator("#reasons-panel")).to_contain_text("No production has matched in this run")
     page.get_by_role("tab", name="Retrievals").click()
     expect(page.locator("#reasons-panel")).to_contain_text("Nothing had been asked of a memory")
     open_tab(page, "Memory")
@@ -325,6 +325,13 @@ def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
     expect(rows.first).to_contain_text("line 10000")
     page.get_by_role("button", name="To the present").click()
     expect(rows.last).to_contain_text("line 59999")
+    page.get_by_role("region", name="Firing trace").press("Home")
+    expect(rows.first).to_contain_text("line 10000")
+    page.click("#restart")
+    expect(rows).to_have_count(0)
+    page.click("#run")
+    expect(rows.last).to_contain_text("line 59999")  # who had scrolled away had done so in another run
+    expect(page.get_by_role("button", name="To the present")).to_have_count(0)
 
 
 def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> None:
@@ -337,7 +344,7 @@ def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> Non
     expect(page.locator("#reasons-panel")).to_contain_text(re.compile(r"The model is busy at line \d+; it answers after this step"))
     page.click("#stop")
     shows(page, "#status", "stopped")
-    expect(page.locator("#reasons-panel")).to_contain_text("Restart it")
+    expect(page.locator("#reasons-panel")).to_contain_text("The run was stopped")
 
 
 def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pages, workbench: Served) -> None:

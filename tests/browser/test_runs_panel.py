@@ -55,7 +55,8 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
         pass
     open_tab(page, "Runs")
     narrow, wide = row(page, two[0]), row(page, two[1])
-    expect(wide).to_contain_text(re.compile(r"doorway\.py.*width 0\.9 · seed 1.*ended.*a mind said stop.*6\.85 s.*1\.\d MB", re.DOTALL))
+    told = r"doorway\.py.*width 0\.9 · seed 1.*ended.*the model called stop\(\).*6\.85 s.*1\.\d MB"
+    expect(wide).to_contain_text(re.compile(told, re.DOTALL))
     expect(narrow).not_to_contain_text("width")  # it is the default
     expect(page.locator("tr.present")).to_have_count(1)
     expect(row(page, "old-20250102-101010-aaaa")).to_contain_text("unreadable")
@@ -79,7 +80,7 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     expect(present).to_contain_text("not over")
     page.click("#run")
     expect(present).to_contain_text("6.80 s")
-    expect(present).to_contain_text("a mind said stop")
+    expect(present).to_contain_text("the model called stop()")
 
 
 HALF = """import os, time
@@ -148,7 +149,7 @@ def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], 
     name = page.locator("tr.present").first.get_attribute("data-run")
     page.locator("tr.present").first.click()
     page.keyboard.press("Delete")
-    expect(page.locator(".toast")).to_contain_text("The present run is still writing")
+    expect(page.locator(".toast")).to_contain_text("Not deleted, for a run that is open still writes it: counting.py")
     assert (recordings / f"{name}.sqlite").exists()
 
 

@@ -6,13 +6,16 @@ import re
 import shutil
 import time
 from collections.abc import Callable, Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import pytest
 import zstandard
-from playwright.sync_api import Browser, Page, WebSocket, expect
+from PIL import Image
+from playwright.sync_api import Browser, Page, Route, WebSocket, expect
 
+from tests.browser.looking import until
 from tests.server.serving import MODELS, Served, served
 
 PATIENCE = 120_000
@@ -94,6 +97,51 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
     page.goto(f"{workbench.url}/viser/{session}/")
     expect(page.locator("html")).to_have_attribute("data-mantine-color-scheme", "light", timeout=PATIENCE)
     expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
+
+
+def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_loading_anew(workbench: Served, page: Page) -> None:
+    held: list[Route] = []
+    page.route("**/static/framed.js", lambda route: held.append(route))
+    page.goto(f"{workbench.url}/?model=aperture_passage.py")
+    cover = page.locator(".scene-cover")
+    expect(cover).to_have_text("The 3D view loads …", timeout=PATIENCE)
+    until(page, lambda: bool(held))
+    held[0].continue_()
+    expect(cover).to_have_count(0, timeout=PATIENCE)
+    frame = page.frame_locator("iframe[title='3D view']").locator("html")
+    begun = frame.evaluate("() => performance.timeOrigin")
+    grounds: list[Any] = []
+    for theme in ("system", "light"):
+        page.get_by_role("button", name=f"Theme: {theme}").click()
+        expect(page.locator("html")).to_have_attribute("data-theme", {"system": "light", "light": "dark"}[theme])
+        area = page.locator("#scene").bounding_box()
+        assert area is not None
+        with Image.open(BytesIO(page.screenshot(clip={**area, "width": area["width"] - 20}))) as picture:
+            grounds.append(picture.convert("RGB").getpixel((picture.width - 1, 1)))  # above the horizon
+    assert min(grounds[0]) > 200
+    assert max(grounds[1]) < 60
+    assert frame.evaluate("() => performance.timeOrigin") == begun
+
+    page.get_by_label("Speed", exact=True).select_option("1 x")
+    page.click("#run")
+    lag = page.locator(".scene-lag")
+    expect(lag).to_have_count(0)
+    frame.evaluate("() => { window.requestAnimationFrame = () => 0; }")  # it draws no more
+    expect(lag).to_have_text(re.compile(r"^3D view of \d\.\d s$"), timeout=PATIENCE)
+    page.click("#run")
+    expect(lag).to_have_count(0)
+
+
+def test_a_browser_that_cannot_draw_in_3d_is_told_what_to_do(workbench: Served, page: Page) -> None:
+    page.add_init_script("""
+        const made = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+            return kind.startsWith("webgl") ? null : made.call(this, kind, ...more);
+        };
+    """)
+    page.goto(f"{workbench.url}/?model=aperture_passage.py")
+    expect(page.locator(".scene-cover")).to_contain_text("This browser cannot draw in 3D", timeout=PATIENCE)
+    expect(page.locator(".scene-cover progress")).to_have_count(0)
 
 
 def test_where_the_processor_draws_there_are_no_shadows_and_edges_are_not_smoothed(workbench: Served, page: Page, session: str) -> None:

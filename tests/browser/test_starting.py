@@ -44,6 +44,8 @@ def test_its_own_faults_do_not_bury_other_messages(page: Page) -> None:
 def test_all_keys_are_named(page: Page) -> None:
     shows(page, "#status", "paused")
     page.keyboard.press("?")
+    for group in ("Run", "Timeline", "Panels", "Editor"):
+        expect(page.get_by_role("table", name=group, exact=True)).to_be_visible()
     keys = page.get_by_role("dialog").locator("kbd")
     expect(keys.filter(has_text="+")).to_have_text("+")
     assert all(text.strip() for text in keys.all_inner_texts())

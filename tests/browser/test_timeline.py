@@ -17,7 +17,7 @@ from tests.server.serving import Served
 
 NAMES = 150
 """How wide the column of names is at first [px]."""
-LANE = 18
+LANE = 16
 """How high a row is [px]."""
 
 

@@ -51,7 +51,7 @@ def ended(talk: Talk) -> dict[str, Any]:
 def test_a_run_does_what_it_does_without_a_workbench(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
     state = ended(talk)
-    assert (state["reason"], state["time"]) == ("a mind said stop", 6.8)
+    assert (state["reason"], state["time"]) == ("the model called stop()", 6.8)
     assert bare(talk.events) == traced_doorway()
     assert [data["text"] for _, _, kind, data in talk.events if kind == "output"][-1] == "6.80 s: is through"
 

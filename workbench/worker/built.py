@@ -44,7 +44,7 @@ BLOCK = 0.008
 """For about so long [s] the run goes on before it looks whether a user has said something."""
 MOST_TICKS = 64
 """And for no more ticks than these."""
-ENDINGS = {"stop": "a mind said stop", "done": "no mind has anything left to do"}
+ENDINGS = {"stop": "the model called stop()", "done": "no mind has anything left to do"}
 
 
 class BuiltRun:

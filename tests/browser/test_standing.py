@@ -1,0 +1,90 @@
+"""What the page says of the state that a run is in: the same in every panel, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.looking import choose, open_tab, shows
+from tests.server.serving import Served
+
+MIND = """
+import os
+from actr3d.actr import *
+
+class Mind(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+
+    def init():
+        memory.add('red apple')
+        goal.set('begin')
+
+    def begin(goal='begin'):
+        goal.set('end')
+
+    def end(goal='end'):
+        {last}
+
+Mind().run()
+"""
+MODELS = {
+    "waits.py": MIND.format(last="self.stop()"),
+    "dies.py": "import os\nos._exit(3)\n",
+    "fails.py": MIND.format(last="nonsense(1)"),
+    "broken.py": "class Mind(:\n    pass\n",
+}
+
+
+def says(page: Page, text: str, panels: tuple[str, ...]) -> None:
+    """Panels say the same."""
+    for title in panels:
+        open_tab(page, title)
+        expect(page.locator(f"#panel-{title.lower()} p.empty").first).to_contain_text(text)
+
+
+def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: Callable[..., Page], workbench: Served) -> None:
+    for name, text in MODELS.items():
+        (workbench.folder / name).write_text(text, encoding="utf-8")
+    page = pages("waits.py")
+    timeline = page.locator(".timeline-nothing")
+
+    shows(page, "#status", "^paused: at its start$")
+    says(page, "There is no model yet. Press Run: the program makes its model as it goes.", ("Buffers", "Memory", "Eye"))
+    says(page, "Nothing has happened yet. Press Run", ("Productions",))
+    expect(timeline).to_contain_text("Nothing has happened yet. Press Run")
+
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    page.click("#stop")
+    shows(page, "#status", "^stopped$")
+    says(page, "The run was stopped: nothing more can be asked of it. «Run again» begins it anew.", ("Productions", "Memory"))
+    expect(page.locator("#panel-memory")).not_to_contain_text("red apple")
+    open_tab(page, "Buffers")
+    expect(page.locator(".buffers [data-path$='goal']")).to_contain_text("end")  # as it was
+    expect(page.locator("#run")).to_have_text("Run again")
+
+    choose(page, "dies.py")
+    page.click("#run")
+    lost = "There is no run any more: the model ended its process, with exit code 3. «Run again» begins it anew."
+    shows(page, "#status", "^failed: the model ended its process, with exit code 3$")
+    says(page, lost, ("Buffers", "Productions", "Memory", "Eye"))
+    expect(timeline).to_have_text(lost)
+    expect(page.locator(".toast")).to_contain_text("exit code 3")
+
+    page.get_by_label("Model", exact=True).select_option("broken.py")
+    unloadable = "This model cannot be loaded: Messages says why, with the line. Mend it in the Editor, and run it again."
+    shows(page, "#status", "^the model cannot be loaded$")
+    says(page, unloadable, ("Buffers", "Productions", "Memory", "Eye"))
+    expect(timeline).to_have_text(unloadable)
+    expect(page.locator("#scene")).to_contain_text(unloadable)
+    expect(page.locator(".toast")).not_to_contain_text("exit code 3")  # which was of another model
+
+    choose(page, "fails.py")
+    page.click("#run")
+    shows(page, "#status", "^failed: NameError")
+    open_tab(page, "Productions")
+    expect(page.locator("#why-text")).to_contain_text("end: matches")  # it can still be asked
+    expect(page.locator("#panel-productions p.empty")).to_have_count(0)
