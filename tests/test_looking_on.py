@@ -194,6 +194,14 @@ def test_a_complaint_names_the_modeller_s_line() -> None:
     assert "loading.py" not in told.text
 
 
+def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises() -> None:
+    with pytest.raises(ValueError, match="Expecting") as caught:
+        run_text("import json\njson.loads('no')", "mine.py")
+    told = complaint(caught.value)
+    assert (told.file, told.line) == ("mine.py", 2)
+    assert "decoder.py" in told.text
+
+
 @pytest.mark.parametrize("text", ["1 +", "x = 3\nprint 'so'\n"])
 def test_a_complaint_names_the_line_that_cannot_be_read(text: str) -> None:
     with pytest.raises(Exception, match="bad") as caught:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sysconfig
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,10 @@ from pathlib import Path
 from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.saying import is_library
+
+
+PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "purelib", "platlib")})
+"""Where Python's own modules and installed packages lie."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +26,7 @@ class Complaint:
     text: str
     """All of it, with the modeller's lines that led there; ends with a line break."""
     file: str | None
-    """The file of the innermost of these lines; None where there is none."""
+    """The file of the innermost of these lines that is not Python's own or a package's, if there is such; None where there is none."""
     line: int | None
     """Its number in that file, from 1."""
 
@@ -59,7 +64,8 @@ def _place(error: BaseException, report: traceback.TracebackException) -> tuple[
     if isinstance(error, SyntaxError) and error.filename is not None:
         return error.filename, error.lineno
     if report.stack:
-        return report.stack[-1].filename, report.stack[-1].lineno
+        own = [frame for frame in report.stack if not frame.filename.startswith(PYTHON)] or report.stack
+        return own[-1].filename, own[-1].lineno
     return None, None
 
 

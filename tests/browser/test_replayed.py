@@ -52,7 +52,7 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         page.on("request", lambda request: asked.append(request.url))
         page.goto(replay.as_uri())
         expect(page.get_by_role("heading", name="doorway.py · seed 1")).to_be_visible()
-        expect(page.locator("#outcome")).to_have_text("Ended: a mind said stop.")
+        expect(page.locator("#outcome")).to_have_text("Ended: the model called stop().")
         page.get_by_text("Parameters and result").click()
         expect(page.get_by_role("row", name="width")).to_be_visible()
         page.get_by_text("Parameters and result").click()

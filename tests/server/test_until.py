@@ -48,11 +48,11 @@ def test_what_there_is_not_is_refused_before_anything_runs(desk: Desk, tmp_path:
 def test_what_has_not_come_is_told_at_the_end(desk: Desk, tmp_path: Path, wanted: dict[str, Any], told: str) -> None:
     talk = desk.begin(tmp_path, DOORWAY, settings={"width": 0.9})
     talk.say("until", **wanted)
-    assert talk.until("ended")["reason"] == f"a mind said stop; {told}"
+    assert talk.until("ended")["reason"] == f"the model called stop(); {told}"
     talk.say("seek", time=1.0)
     talk.until("paused", time=1.0)
     talk.say("run")
-    assert talk.until("ended")["reason"] == "a mind said stop"
+    assert talk.until("ended")["reason"] == "the model called stop()"
 
 
 def test_a_program_that_has_not_begun_knows_what_its_text_tells(desk: Desk, tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ function table(id, values) {
 table("parameters", data.parameters);
 table("result", data.events.result);
 const came = data.events.result && data.events.result.outcome;
-const ENDINGS = { stop: "a mind said stop", done: "no mind had anything left to do", end: "the program was over" };
+const ENDINGS = { stop: "the model called stop()", done: "no mind had anything left to do", end: "the program was over" };
 get("outcome").textContent =
   (came ? `Outcome: ${came}. ` : "") + (data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : "It was broken off, or was still going on.");
 
