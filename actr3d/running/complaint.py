@@ -12,7 +12,6 @@ from actr3d.actr.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.saying import is_library
 
-
 PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "purelib", "platlib")})
 """Where Python's own modules and installed packages lie."""
 
