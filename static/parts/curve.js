@@ -70,6 +70,12 @@ function pointsOf(times, values, span, box, yOf) {
   return points;
 }
 
+/** Returns the values that a scale names: at least two, for one alone tells of no size; otherwise no more than there is room for. */
+function scaleOf(least, most, room) {
+  const values = [...ticks(least, most, stepFor(most - least, room))];
+  return values.length > 1 ? values : ticks(least, most, stepFor(most - least, room + 1));
+}
+
 /**
  * Draws curves.
  *
@@ -83,8 +89,7 @@ function pointsOf(times, values, span, box, yOf) {
 export function drawCurves(surface, box, { series, times, span, range }) {
   const [least, most] = range;
   const yOf = (value) => box.y + box.height - ((value - least) / (most - least)) * box.height;
-  const step = stepFor(most - least, Math.max(1, Math.floor(box.height / 11)));
-  for (const value of ticks(least, most, step)) {
+  for (const value of scaleOf(least, most, Math.max(1, Math.floor(box.height / 11)))) {
     const y = Math.round(yOf(value)) + 0.5;
     surface.line([box.x, y, box.x + box.width, y], "line");
     if (y > box.y + 4) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
