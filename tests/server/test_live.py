@@ -231,9 +231,11 @@ def test_the_description_names_every_command(server: Served) -> None:
 # -- websockets
 
 
-async def attached(server: Served, session: str, **known: int) -> Any:
+async def attached(server: Served, session: str, queue: int | None = None, **known: int) -> Any:
+    """Returns a websocket that shows a session; where it may queue no more than so many messages, whoever does not read it is frozen."""
     bearer = {"authorization": f"Bearer {server.token}"}
-    socket = await websockets.connect(f"ws://127.0.0.1:{server.port}/ws", additional_headers=bearer, max_size=5_000_000)
+    more: dict[str, Any] = {"max_size": 5_000_000, "max_queue": queue, "close_timeout": 1}
+    socket = await websockets.connect(f"ws://127.0.0.1:{server.port}/ws", additional_headers=bearer, **more)
     await socket.send(json.dumps({"type": "attach", "session": session, **known}))
     return socket
 
@@ -310,7 +312,7 @@ def test_a_frozen_browser_holds_up_nobody(server: Served) -> None:
     name = opened(server, "busy.py")
 
     async def talk() -> None:
-        frozen = await attached(server, name)  # it reads nothing from now on
+        frozen = await attached(server, name, queue=1)  # it reads nothing from now on
         await frozen.send(json.dumps({"id": 1, "say": {"type": "run"}}))
         other = await attached(server, name)
         await heard(other, lambda message: "state" in message and message["state"]["status"] == "ended")
