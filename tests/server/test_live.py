@@ -77,7 +77,18 @@ def test_wrong_options_are_told(options: list[str]) -> None:
 
 def test_a_port_that_is_taken_is_told(server: Served) -> None:
     done = subprocess.run([sys.executable, "-m", "workbench", "--port", str(server.port)], capture_output=True, text=True)
-    assert (done.returncode, "in use" in done.stderr) == (1, True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"error: cannot listen at 127.0.0.1, port {server.port}: Address already in use\n"
+
+
+@pytest.mark.parametrize(
+    ("named", "told"), [("file", "'{}' cannot be had: it is a file"), ("file/inside", "'{}' cannot be had: Not a directory")]
+)
+def test_a_models_folder_that_cannot_be_had_is_named(tmp_path: Path, named: str, told: str) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    done = subprocess.run([sys.executable, "-m", "workbench", str(tmp_path / named)], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"error: the models folder {told.format(tmp_path / named)}\n"
 
 
 def test_the_server_answers_before_it_has_loaded_what_only_runs_and_their_views_need() -> None:
