@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import re
 import secrets
@@ -22,6 +23,8 @@ HEADER = b"x-workbench"
 SAFE = frozenset({"GET", "HEAD"})
 LARGEST = 2_000_000
 """No request has a larger body [bytes]."""
+BODY_TIME = 30.0
+"""So long a request's body may take to come [s]."""
 LONGEST_PATH = 4_000
 """Nor a longer path and query."""
 _HOST = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.\-]+)(?::(\d{1,5}))?")
@@ -117,11 +120,11 @@ class Guard:
         elif status != 200:
             await _refuse(send, status, reason)
         else:
-            body = await _body(receive)
-            if body is None:
-                await _refuse(send, 413, f"no request has more than {LARGEST:,} bytes")
-            else:
+            body, status, reason = await _body(receive)
+            if status == 200:
                 await self._app(_without_secrets(scope), _given(body, receive), _with_headers(send))
+            else:
+                await _refuse(send, status, reason)
 
     def _judge(self, scope: Scope) -> tuple[int, str]:
         """Returns 200 for who may pass, 303 for who has brought the token in the address, and else why not."""
@@ -188,16 +191,20 @@ class _Headers:
         return values
 
 
-async def _body(receive: Receive) -> bytes | None:
-    """Returns a request's body; None where it is larger than any may be, whatever length it said it has."""
+async def _body(receive: Receive) -> tuple[bytes, int, str]:
+    """Returns a request's body and 200; or why it is not taken: it is too large, whatever length it said it has, or too late."""
     body = bytearray()
-    while True:
-        message = await receive()
-        body += message.get("body", b"")
-        if len(body) > LARGEST:
-            return None
-        if message["type"] == "http.disconnect" or not message.get("more_body", False):
-            return bytes(body)
+    try:
+        async with asyncio.timeout(BODY_TIME):
+            while True:
+                message = await receive()
+                body += message.get("body", b"")
+                if len(body) > LARGEST:
+                    return b"", 413, f"no request has more than {LARGEST:,} bytes"
+                if message["type"] == "http.disconnect" or not message.get("more_body", False):
+                    return bytes(body), 200, ""
+    except TimeoutError:
+        return b"", 408, f"the request did not come as a whole within {BODY_TIME:g} s"
 
 
 def _given(body: bytes, receive: Receive) -> Receive:

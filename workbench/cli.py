@@ -71,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         folder = models_folder(options.models, Path.cwd(), Path.home())
         listening = _listen(options.host, options.port)
     except OSError as error:
-        print(f"error: {error.strerror or error}", file=sys.stderr)
+        print(f"error: {_reason(error, options)}", file=sys.stderr)
         return 1
     host, port = options.host if ":" not in options.host else f"[{options.host.strip('[]')}]", listening.getsockname()[1]
     local = host in LOOPBACK
@@ -90,6 +90,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def _reason(error: OSError, options: argparse.Namespace) -> str:
+    """Says why it cannot be started: which folder cannot be had, or which address."""
+    told = error.strerror or str(error)
+    if error.filename is None:
+        return f"cannot listen at {options.host}, port {options.port}: {told}"
+    where = Path(error.filename)
+    return f"the models folder '{where}' cannot be had: {'it is a file' if where.is_file() else told}"
 
 
 def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:

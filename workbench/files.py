@@ -74,7 +74,11 @@ class ModelFolder:
         return sorted(found, key=lambda path: (path.count("/"), path))
 
     def _walk(self, folder: Path) -> Iterator[Path]:
-        for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+        try:
+            inside = sorted(folder.iterdir()) if folder.is_dir() else []
+        except OSError:  # which one may not read, or which has gone meanwhile: the others are there all the same
+            return
+        for path in inside:
             if path.name[0] in "._":
                 continue
             if path.is_dir() and not path.is_symlink():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import json
 from typing import Any
 
 import msgspec
@@ -131,8 +132,7 @@ class _Page:
                     self._tasks.add(task)
                     task.add_done_callback(self._tasks.discard)
                 else:
-                    number = None if request is None else request.id
-                    feed.reply(_reply(number, error=problem or "too much waits already for what comes of it"))
+                    feed.reply(_reply(_number_of(text), error=problem or "too much waits already for what comes of it"))
         finally:
             if feed is not None:
                 session.part(feed)
@@ -154,6 +154,15 @@ class _Page:
 
 def _reply(number: int | None, result: bytes = b"null", error: str | None = None) -> bytes:
     return msgspec.json.encode({"id": number, "result": Raw(result), "error": error})
+
+
+def _number_of(text: str) -> int | None:
+    """Returns the number of what a page says, whatever else is wrong with it, so that who waits is told; None where it has none."""
+    try:
+        number = json.loads(text)["id"]
+    except (ValueError, TypeError, LookupError, RecursionError):
+        return None
+    return number if isinstance(number, int) and 0 <= number < 2**53 else None
 
 
 def _read(text: str) -> tuple[say.Attach | None, say.Request | None, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
@@ -25,9 +26,13 @@ def models_folder(named: Path | None, present: Path, home: Path) -> Path:
         named: What the user named, if anything.
         present: The present folder.
         home: The user's.
+
+    Raises:
+        OSError: If it cannot be made or read.
     """
     if named is not None:
         named.mkdir(parents=True, exist_ok=True)
+        os.scandir(named).close()
         return named
     if (present / "models").is_dir():
         return present / "models"

@@ -68,7 +68,12 @@ class Bridge:
         try:
             # Only what is named here goes on: neither our cookie nor our token does.
             upstream = await websockets.connect(
-                f"ws://127.0.0.1:{port}", subprotocols=offered, additional_headers=headers, max_size=None, compression=None, proxy=None
+                f"ws://127.0.0.1:{port}",
+                subprotocols=offered or None,
+                additional_headers=headers,
+                max_size=None,
+                compression=None,
+                proxy=None,
             )
         except (OSError, websockets.WebSocketException):
             await browser.close(1011)

@@ -61,3 +61,4 @@ def served(folder: Path, *options: str) -> Generator[Served]:
             rest = process.stdout.read()
             process.wait(30)
             assert not re.search("Traceback|Exception", rest), rest
+            assert Served(process, lines, folder).token not in rest  # it is told once, as the address

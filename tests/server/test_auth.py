@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+import hmac
 import json
 import logging
 import re
+import webbrowser
 from pathlib import Path
 from typing import Any
 
 import pytest
+import websockets
 from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.websockets import WebSocket
 
 from tests.server.asking import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, TOKEN, Answer, Header, ask, connect
+from workbench import cli
 from workbench.app import make_app
 from workbench.auth import LARGEST, Gate, Guard, MutableMapping, Receive, Scope, Send, Token
 from workbench.files import ModelFolder
+from workbench.viser_bridge import Bridge
 
 
 @pytest.fixture(scope="module")
@@ -222,6 +228,75 @@ def test_the_token_shows_itself_nowhere(app: Any, caplog: pytest.LogCaptureFixtu
     ask(app, "/", HOST, query=f"token={TOKEN}")
     ask(app, "/", HOST, COOKIE)
     assert TOKEN not in caplog.text
+
+
+def test_the_token_is_compared_in_constant_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared: list[tuple[bytes, bytes]] = []
+
+    def compare(one: bytes, other: bytes) -> bool:
+        compared.append((one, other))
+        return one == other
+
+    monkeypatch.setattr(hmac, "compare_digest", compare)
+    for headers, query in (((COOKIE,), ""), ((("authorization", f"Bearer {TOKEN}"),), ""), ((), f"token={TOKEN}")):
+        assert ask(guarded, "/", HOST, *headers, query=query).status in (200, 303)
+        assert compared.pop() == (TOKEN.encode(), TOKEN.encode())
+
+
+def test_the_browser_is_led_here_by_a_file_that_only_its_user_can_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+
+    def browse(url: str) -> None:
+        page = Path(url.removeprefix("file://"))
+        assert TOKEN in page.read_text(encoding="utf-8")
+        assert page.parent.stat().st_mode & 0o077 == 0
+        opened.append(url)
+
+    monkeypatch.setattr(webbrowser, "open", browse)
+    monkeypatch.setattr(cli, "READ_TIME", 0.0)
+    cli._browse(f"http://127.0.0.1:8000/?token={TOKEN}")
+    (url,) = opened
+    assert TOKEN not in url  # which lists of processes show
+    assert not Path(url.removeprefix("file://")).exists()
+
+
+class _View:
+    """A 3D view whose server tells what it is asked with."""
+
+    over = False
+
+    def __init__(self, port: int) -> None:
+        self._port = port
+
+    def address(self, *, shadows: bool) -> tuple[int, dict[str, str]]:
+        return self._port, {"x-workbench-bridge": "secret"}
+
+
+def test_the_bridge_tells_viser_nothing_of_who_asks() -> None:
+    asked: list[dict[str, str]] = []
+
+    async def viser(socket: Any) -> None:
+        asked.append(dict(socket.request.headers.raw_items()))
+
+    async def carry() -> None:
+        async with websockets.serve(viser, "127.0.0.1", 0) as server:
+            waiting: list[dict[str, Any]] = [{"type": "websocket.connect"}]
+            scope: dict[str, Any] = {"type": "websocket", "path": "/viser/s1", "query_string": b"", "subprotocols": [], "headers": []}
+            scope["headers"] = [(name.encode(), value.encode()) for name, value in (HOST, ORIGIN, COOKIE, ("authorization", TOKEN))]
+
+            async def receive() -> MutableMapping[str, Any]:
+                return waiting.pop() if waiting else await asyncio.Future()
+
+            async def send(_: MutableMapping[str, Any]) -> None: ...
+
+            view: Any = _View(server.sockets[0].getsockname()[1])
+            await Bridge().carry(WebSocket(scope, receive, send), view)
+
+    asyncio.run(carry())
+    (headers,) = asked
+    assert headers["x-workbench-bridge"] == "secret"
+    assert not {"cookie", "authorization", "origin"} & {name.lower() for name in headers}
+    assert TOKEN not in str(headers)
 
 
 def test_the_token_goes_from_the_address_into_a_cookie() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -141,6 +142,18 @@ def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
     (folder.root / "large.py").write_bytes(b"#" * (LARGEST + 1))
     with pytest.raises(FileError, match="larger"):
         folder.read("large.py")
+
+
+def test_a_folder_that_cannot_be_read_hides_no_other(folder: ModelFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = Path.iterdir
+
+    def iterdir(path: Path) -> Iterator[Path]:
+        if path.name == "tutorial":
+            raise PermissionError(13, "Permission denied", str(path))
+        return usual(path)
+
+    monkeypatch.setattr(Path, "iterdir", iterdir)
+    assert folder.paths() == ["one.py"]
 
 
 def test_a_folder_that_is_no_file(folder: ModelFolder) -> None:

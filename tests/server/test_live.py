@@ -77,7 +77,18 @@ def test_wrong_options_are_told(options: list[str]) -> None:
 
 def test_a_port_that_is_taken_is_told(server: Served) -> None:
     done = subprocess.run([sys.executable, "-m", "workbench", "--port", str(server.port)], capture_output=True, text=True)
-    assert (done.returncode, "in use" in done.stderr) == (1, True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"error: cannot listen at 127.0.0.1, port {server.port}: Address already in use\n"
+
+
+@pytest.mark.parametrize(
+    ("named", "told"), [("file", "'{}' cannot be had: it is a file"), ("file/inside", "'{}' cannot be had: Not a directory")]
+)
+def test_a_models_folder_that_cannot_be_had_is_named(tmp_path: Path, named: str, told: str) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    done = subprocess.run([sys.executable, "-m", "workbench", str(tmp_path / named)], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"error: the models folder {told.format(tmp_path / named)}\n"
 
 
 def test_the_server_answers_before_it_has_loaded_what_only_runs_and_their_views_need() -> None:
@@ -231,11 +242,11 @@ def test_the_description_names_every_command(server: Served) -> None:
 # -- websockets
 
 
-async def attached(server: Served, session: str, **known: int) -> Any:
+async def attached(server: Served, session: str, queue: int | None = None, **known: int) -> Any:
+    """Returns a websocket that shows a session; where it may queue no more than so many messages, whoever does not read it is frozen."""
     bearer = {"authorization": f"Bearer {server.token}"}
-    address = f"ws://127.0.0.1:{server.port}/ws"
-    # Without a bound to what waits unread, for one who does not read hears nothing of the end either.
-    socket = await websockets.connect(address, additional_headers=bearer, max_size=5_000_000, max_queue=None)
+    more: dict[str, Any] = {"max_size": 5_000_000, "max_queue": queue, "close_timeout": 1}
+    socket = await websockets.connect(f"ws://127.0.0.1:{server.port}/ws", additional_headers=bearer, **more)
     await socket.send(json.dumps({"type": "attach", "session": session, **known}))
     return socket
 
@@ -312,7 +323,7 @@ def test_a_frozen_browser_holds_up_nobody(server: Served) -> None:
     name = opened(server, "busy.py")
 
     async def talk() -> None:
-        frozen = await attached(server, name)  # it reads nothing from now on
+        frozen = await attached(server, name, queue=1)  # it reads nothing from now on
         await frozen.send(json.dumps({"id": 1, "say": {"type": "run"}}))
         other = await attached(server, name)
         await heard(other, lambda message: "state" in message and message["state"]["status"] == "ended")

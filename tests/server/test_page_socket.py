@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
+import typing
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,6 +14,7 @@ import websockets
 
 from tests.server.serving import Served, served
 from tests.server.test_live import attached, heard, opened
+from workbench import protocol as say
 from workbench.page import MOST_PAGES
 
 
@@ -65,12 +67,45 @@ def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) 
     asyncio.run(talk())
 
 
+NONSENSE: list[Any] = [None, True, -1, 0.5, 10**30, "\ud800", "x" * 20_000, "<img src=x>", [], [[]], [None] * 300, {}, {"x": {}}]
+LEFT_OUT = (say.Restart, say.Stop)
+"""What ends the run that is spoken to."""
+USUAL = {"name": "width", "memory": "memory", "value": 1, "word": "teleport", "time": 0.01, "width": 0.5, "view": "free", "shown": True}
+
+
+def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(server: Served, session: str) -> None:
+    kinds: list[Any] = [*typing.get_args(typing.get_args(say.Anything)[0])]
+    frames: dict[int, dict[str, Any]] = {}
+    for kind in (kind for kind in kinds if kind not in LEFT_OUT):
+        known = {"type": kind.model_fields["type"].default}
+        known |= {name: USUAL[name] for name, field in kind.model_fields.items() if field.is_required()}
+        for name in kind.model_fields:
+            for value in NONSENSE:
+                frames[len(frames)] = {**known, name: value}
+        frames[len(frames)] = {**known, "more": 1}
+    assert len(frames) > 500
+
+    async def talk() -> None:
+        socket = await attached(server, session)
+        waiting = set(frames)
+        for number, said in frames.items():
+            await socket.send(json.dumps({"id": number, "say": said}))
+            if number % 20 == 19 or number == len(frames) - 1:  # no more may wait at once than so many
+                while any(earlier in waiting for earlier in range(number + 1)):
+                    told = await heard(socket, lambda message: "replies" in message)
+                    waiting -= {reply["id"] for reply in told["replies"]}
+        await socket.close()
+
+    asyncio.run(talk())
+    assert server.get(f"/api/sessions/{session}").json()["session"]["alive"]
+    assert server.post(f"/api/sessions/{session}/say", {"say": {"type": "speed", "factor": None}}).status_code == 200
+
+
 def test_who_asks_without_end_and_reads_nothing_is_sent_away(server: Served, session: str) -> None:
     async def talk() -> None:
         bearer = {"authorization": f"Bearer {server.token}"}
         address = f"ws://127.0.0.1:{server.port}/ws"
-        # Who does not read hears nothing of the end: it need not wait for that.
-        async with websockets.connect(address, additional_headers=bearer, max_size=None, max_queue=1, close_timeout=0.1) as socket:
+        async with websockets.connect(address, additional_headers=bearer, max_size=None, max_queue=1, close_timeout=1) as socket:
             await socket.send(json.dumps({"type": "attach", "session": session}))
             question = json.dumps({"id": 1, "say": {"type": "events", "most": 20_000}})
 
