@@ -50,8 +50,8 @@ def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     shows(page, "#time", "0.50 s")
     page.locator("#aperture").fill("100")
     page.get_by_role("button", name="Run until").click()
-    page.get_by_label("Body").fill("walker")
-    page.get_by_label("Body").press("Enter")
+    page.get_by_label("Body", exact=True).fill("walker")
+    page.get_by_label("Body", exact=True).press("Enter")
     shows(page, "#status", "ended: the model called stop(); walker touched nothing more")
 
 
@@ -154,7 +154,10 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
     page.keyboard.press("Space")
     shows(page, "#status", "ended")
     expect(page.locator("#run")).to_have_text("Run again")
+    recording = page.get_by_title("Kept as this recording")
+    kept = recording.inner_text()
     page.keyboard.press("Space")
+    expect(recording).not_to_have_text(kept)  # it is another run
     shows(page, "#status", "ended")
     page.keyboard.press("Home")
     shows(page, "#time", "0.00 s")
