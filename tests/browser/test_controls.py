@@ -52,7 +52,7 @@ def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page.get_by_role("button", name="Run until").click()
     page.get_by_label("Body", exact=True).fill("walker")
     page.get_by_label("Body", exact=True).press("Enter")
-    shows(page, "#status", "ended: the model called stop(); walker touched nothing more")
+    shows(page, "#status", re.escape("ended: the model called stop(); walker touched nothing more"))
 
 
 def test_a_breakpoint_that_an_edit_has_lost_is_kept_and_said_to_be(pages: Callable[..., Page], workbench: Served) -> None:
