@@ -19,7 +19,7 @@ const STANDINGS = {
   ended: { line: asTold, text: () => `The run is over. Go back on the timeline; ${AGAIN}` },
   failed: { line: asTold, text: () => `The run has failed: ${MEND}` },
   stopped: { line: stoppedLine, text: () => `The run was stopped: nothing more can be asked of it. ${AGAIN}` },
-  lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. ${AGAIN}` },
+  lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. What happened just before that may not be told. ${AGAIN}` },
 };
 
 function loadingLine() {

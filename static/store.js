@@ -22,10 +22,12 @@ export const connected = signal(null);
 export const running = computed(() => state.value?.status === "running");
 /** Whether the run goes as fast as it can: then drawing it is not to take too much of the processor. */
 export const hurried = computed(() => running.value && state.value.wanted === null);
+/** Of which run the newest state is: what is shown of a new one is that of the run before until its own first state is there. */
+const stated = signal(0);
 /** Whether there is a run that can be asked. */
-export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null);
+export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null && stated.value === session.value.run);
 /** The moment that is shown, as a text that differs between moments. */
-export const moment = computed(() => `${session.value?.id} ${session.value?.run} ${state.value?.tick} ${state.value?.events}`);
+export const moment = computed(() => `${session.value?.id} ${stated.value} ${state.value?.tick} ${state.value?.events}`);
 
 /** Which events of which run are known, for a connection that is made again. */
 export const known = { run: 0, epoch: 0 };
@@ -42,7 +44,10 @@ function takeOne(message) {
   }
   if (message.run !== known.run) events.value = { list: [], first: 0, missing: 0, cut: false };
   Object.assign(known, { run: message.run, epoch: message.epoch });
-  if ("state" in message) state.value = message.state;
+  if ("state" in message) {
+    state.value = message.state;
+    stated.value = message.run;
+  }
   if (message.events) events.value = withEvents(events.value, message.events);
   if (message.notices) {
     const numbers = new Set(notices.value.map((notice) => notice.number));
@@ -91,6 +96,7 @@ export function forget() {
     state.value = null;
     events.value = { list: [], first: 0, missing: 0, cut: false };
     notices.value = [];
+    stated.value = 0;
     Object.assign(known, { run: 0, epoch: 0 });
   });
 }

@@ -10,11 +10,13 @@ from typing import Protocol
 import msgspec
 
 from workbench.worker.memory import TOO_MUCH_MEMORY
-from workbench.worker.messages import FromWorker, Notice, Over, Start, Where, notice
+from workbench.worker.messages import At, FromWorker, Notice, Over, Start, Where, notice
 from workbench.worker.workers import LOST, PRINTED, Worker
 
 SILENT = 1.0
 """A worker that is busy and says nothing for so long [s] is asked where it is."""
+SPEECHLESS = 2.5
+"""One that does not tell so long after it was last heard [s] is busy in compiled code, which lets nothing else happen in its process."""
 LAST_WORDS = 1.0
 """So long what a worker has said is still read after its end [s]."""
 MOST_PRINTED = 200
@@ -55,6 +57,8 @@ class Attendant:
         self._start = start
         self._told = told
         self._heard = time.monotonic()
+        self._given_up = 0.0
+        """When the worker was heard last before it could not even tell where it is."""
 
     async def serve(self) -> None:
         """Lets the worker begin, takes what it says, and tells how it ended."""
@@ -124,8 +128,14 @@ class Attendant:
             await asyncio.sleep(SILENT / 4)
             now = time.monotonic()
             since = (since or now) if self._told.busy(self._worker) else None
-            if since is not None and now - max(since, self._heard) > SILENT:
+            if since is None:
+                continue
+            silent = now - max(since, self._heard)
+            if silent > SILENT:
                 self._worker.send(Where())
+            if silent > SPEECHLESS and self._given_up != self._heard:
+                self._given_up = self._heard
+                self._told.take(self._worker, self._start, At(file=None, line=None))
 
 
 def _why(status: int) -> str:

@@ -19,7 +19,7 @@ export function Aperture() {
   const [least, most] = widths[name.value] ?? [0, Math.round(cm)];
   return html`<label class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
     <span>${name}</span>
-    <input id="aperture" type="range" min=${least} max=${most} step="1" value=${Math.round(cm)} disabled=${!alive.value} onInput=${(event) => width.set(Number(event.currentTarget.value))} />
+    <input id="aperture" type="range" min=${least} max=${most} step="1" value=${Math.round(cm)} disabled=${!session.value?.alive} onInput=${(event) => width.set(Number(event.currentTarget.value))} />
     <output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>
   </label>`;
 }

@@ -424,3 +424,19 @@ def test_a_tab_keeps_its_unsaved_work_however_slowly_the_page_before_goes(pages:
     edit(twin, "kept.py")
     expect(twin.locator(CODE)).to_have_text("a = 1")
     twin.close()
+
+
+def test_nothing_is_asked_of_a_new_run_before_its_own_first_state_is_there(pages: Callable[..., Page]) -> None:
+    page = pages()
+    shows(page, "#status", "at its start")
+    told = page.evaluate(
+        """async () => {
+          const { alive, moment, session, state, take } = await import("/static/store.js");
+          const [before, run] = [moment.value, session.value.run + 1];
+          take([{ run, epoch: 1, session: { ...session.value, run } }]);
+          const between = [alive.value, moment.value === before];
+          take([{ run, epoch: 1, state: state.value }]);
+          return [...between, alive.value, moment.value === before];
+        }"""
+    )
+    assert told == [False, True, True, False]

@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from workbench.worker.link import Link
-from workbench.worker.messages import News, Notice, Reply, Start, State, framed
+from workbench.worker.messages import At, News, Notice, Reply, Start, State, framed
 
 
 def state(tick: int) -> State:
@@ -53,3 +53,9 @@ def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Link) -> N
     link.show(state(3), 2, [])
     link.post(Notice(level="info", text="said"))  # which a newer state need not wait for
     assert list(link._messages)[2:] == [Reply(id=7), Reply(id=8), Notice(level="info", text="said")]
+
+
+def test_where_a_run_is_busy_comes_after_what_has_happened_up_to_there(link: Link) -> None:
+    link.show(state(1), 0, [b"1"])
+    link.post(At(file="model.py", line=3))
+    assert list(link._messages) == [News(first=0, events=[b"1"]), state(1), At(file="model.py", line=3)]

@@ -85,6 +85,43 @@ def test_an_endless_loop_is_found_and_stopped(desk: Desk, tmp_path: Path, does: 
     runs_again(talk, tmp_path)
 
 
+def test_code_that_lets_nothing_else_happen_is_said_to_be_busy(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("sum(range(10**12))"), run=True, wait="running")
+    talk.wait(lambda: talk.facts["stuck"] == {"file": None, "line": None, "function": ""})
+    talk.say("stop")
+    assert talk.until("ended")["reason"] == "stopped"
+
+
+@pytest.mark.parametrize(
+    ("does", "status", "reason"),
+    [
+        ("sys.exit()", "ended", "the program is over"),
+        ("sys.exit(0)", "ended", "the program is over"),
+        ("sys.exit('bye')", "failed", "the model ended its process (SystemExit: bye)"),
+        ("raise KeyboardInterrupt", "failed", "KeyboardInterrupt"),
+    ],
+)
+def test_a_program_that_exits_leaves_its_run(desk: Desk, tmp_path: Path, does: str, status: str, reason: str) -> None:
+    talk = desk.begin(tmp_path, of(f"print('so far'); {does}"), run=True, wait=status)
+    assert talk.state["reason"] == reason
+    assert [data["text"] for _, _, kind, data in talk.events if kind == "output"] == ["so far"]
+    talk.say("seek", time=0.04)
+    assert talk.until("paused")["time"] == 0.04
+    runs_again(talk, tmp_path)
+
+
+def test_a_loop_that_prints_until_memory_is_full_is_said_to_have_used_too_much(tmp_path: Path) -> None:
+    desk = Desk(memory=300)
+    try:
+        talk = desk.begin(tmp_path, of("while True: print('x' * 200)"), run=True, record=True, wait=None)
+        talk.wait_for_notice("used more memory than it may")
+        talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] == "failed")
+        runs_again(talk, tmp_path)
+    finally:
+        desk.close_sessions()
+        desk.close()
+
+
 def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("while True: pass"), run=True, wait="running")
     talk.wait(lambda: talk.facts["stuck"])

@@ -36,7 +36,7 @@ from workbench.worker.names import Names, names_of
 from workbench.worker.past import Past
 from workbench.worker.surroundings import surroundings
 from workbench.worker.told_helpers import ToldHelpers
-from workbench.worker.trouble import notice_of, told_of
+from workbench.worker.trouble import UNFORESEEN, notice_of, told_of
 from workbench.worker.watch import Touches
 from workbench.worker.widths import widths
 
@@ -127,7 +127,7 @@ class BuiltRun:
             over = "stop" if report.ended_by == "stop" else "done" if simulation.done else None
             if over is not None:
                 self._conclude()
-        except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
+        except UNFORESEEN as error:
             conductor.link.post(notice_of(error))
             self._tell_failure(told_of(error))
             conductor.end("failed", told_of(error))

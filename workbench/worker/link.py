@@ -45,7 +45,8 @@ MOST_TOLD = 1_000
 
 class Link:
     """Carries messages to the server and commands from it. Only the newest state is sent; everything else in order. A reply comes
-    after the state that was there to be shown before it: who is told that something is done has seen what has come of it.
+    after the state that was there to be shown before it: who is told that something is done has seen what has come of it, and
+    who is told where a run is busy is not told after it, by that state, that it goes on.
 
     Args:
         wire: The socket to the server.
@@ -132,7 +133,7 @@ class Link:
         with self._something:
             if isinstance(message, Notice) and len(self._messages) >= MOST_TOLD and message.level != "error":
                 return
-            if isinstance(message, Reply) and self._state is not None:
+            if isinstance(message, (Reply, At)) and self._state is not None:
                 self._flush_events()
                 self._messages.append(self._state)
                 self._state = None

@@ -25,9 +25,17 @@ def watch_memory(megabytes: int) -> None:
     if not megabytes:
         return
     if sys.platform == "linux":
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
         most = _reserved() + megabytes * MEGABYTE
-        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+        resource.setrlimit(resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
     threading.Thread(target=_watch, args=(peak() + megabytes * MEGABYTE,), name="memory", daemon=True).start()
+
+
+def relieve() -> None:
+    """Lets this process have memory to tell what has happened, once it was refused some; it still ends where it takes too much."""
+    if sys.platform == "linux":
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (hard, hard))
 
 
 def _watch(most: int) -> None:

@@ -26,7 +26,7 @@ from workbench.worker.messages import Facts
 from workbench.worker.names import Names, names_of_program
 from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.told_helpers import ToldHelpers
-from workbench.worker.trouble import notice_of, told_of
+from workbench.worker.trouble import UNFORESEEN, notice_of, told_of
 from workbench.worker.watch import Touches
 
 PERIOD = 10_000
@@ -88,7 +88,7 @@ class ProgramRun:
 
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
-        start, conductor = self._conductor.link.start, self._conductor
+        conductor = self._conductor
         self._again = False
         self._clock = 0
         trace = Trace("all")
@@ -109,12 +109,12 @@ class ProgramRun:
         try:
             with ProgramOutput(limits) as output:
                 if not self._again:
-                    run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
+                    self._run_text(limits, helpers)
                 if not self._left:
                     output.finish()
         except _Again:
             return
-        except Exception as error:  # noqa: BLE001 - whatever a model raises is told to its author
+        except UNFORESEEN as error:
             if self._left:
                 return
             conductor.link.post(notice_of(error))
@@ -126,6 +126,14 @@ class ProgramRun:
             if self._recording is not None:
                 self._recording.fact("ended", {"by": "end"})
             self._end("ended", "the program is over")
+
+    def _run_text(self, limits: RunLimits, helpers: ToldHelpers) -> None:
+        start = self._conductor.link.start
+        try:
+            run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
+        except SystemExit as end:
+            if end.code:  # else it is how a program says that it has come to its end
+                raise
 
     @property
     def _left(self) -> bool:

@@ -6,9 +6,13 @@ from pathlib import Path
 
 from actr3d.errors import Actr3dError
 from actr3d.running.complaint import complaint
+from workbench.worker.memory import relieve
 from workbench.worker.messages import Notice, notice, whole
 
 _HERE = str(Path(__file__).parents[1])
+
+UNFORESEEN = (Exception, SystemExit, KeyboardInterrupt)
+"""Whatever a model may raise, which is told to its author; not what ends a run from outside."""
 
 
 def told_of(error: BaseException) -> str:
@@ -26,6 +30,8 @@ def told_of(error: BaseException) -> str:
 
 def notice_of(error: BaseException) -> Notice:
     """Returns what the user is told of an error, with the line of the model where it was."""
+    if isinstance(error, MemoryError):
+        relieve()
     try:
         told = complaint(error, _HERE)
         text = told_of(error).removeprefix(f"{told.file}:{told.line}: ")  # where it is, is told beside it
