@@ -147,6 +147,15 @@ def test_a_paused_run_is_written_too(tmp_path: Path) -> None:
             pytest.fail("nothing was written")
 
 
+def test_a_reader_does_not_hold_up_the_end(tmp_path: Path) -> None:
+    recording = Recording(tmp_path / "run", {"kind": "program"})
+    recording.event(TraceEvent(0, "agent", "output", {"text": "one"}))
+    with Recorded(tmp_path / "run") as recorded:
+        recording.close()
+        assert recorded.event_count == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
 SLOW = "import time; simulation.observe(lambda seen: time.sleep(0.002)); "
 LIMIT = SLOW + "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, 1_000_000))"
 FULL = SLOW + "recording._writer._file.execute('PRAGMA max_page_count = 250')"

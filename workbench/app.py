@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Mapping
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 
 from actr3d.errors import Actr3dError
 from workbench import page, recording_routes, routes
+from workbench import protocol as say
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
 from workbench.keeping import Keeping
+from workbench.loader import sendable
 from workbench.recordings import Recordings
 from workbench.sessions import Sessions
 from workbench.shipped import static
@@ -69,15 +73,37 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.mount("/static", StaticFiles(directory=static()), name="static")
     app.add_exception_handler(Actr3dError, _refused)
     app.add_exception_handler(OSError, _refused)
+    app.add_exception_handler(RequestValidationError, _misunderstood)
+    app.add_exception_handler(HTTPException, _no_answer)
     app.add_exception_handler(Exception, _unexpected)
     app.add_middleware(Guard, gate=gate)
     return app
 
 
+def _told(problem: str, status: int, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    """Returns an answer that says what is wrong; half characters that came with it are written as escapes."""
+    return JSONResponse({"error": sendable(problem)}, status_code=status, headers=headers)
+
+
 async def _refused(_: Request, error: Exception) -> JSONResponse:
-    return JSONResponse({"error": str(error)}, status_code=getattr(error, "status", 409))
+    return _told(str(error), getattr(error, "status", 409))
+
+
+async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
+    """Tells what of a request is not as the description has it."""
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    if first["type"] == "json_invalid":
+        return _told(f"the body is no JSON: {first['ctx']['error']} at character {first['loc'][-1]}", 400)
+    return _told(say.problem_of(first), 422)
+
+
+async def _no_answer(_: Request, error: Exception) -> JSONResponse:
+    """Tells that there is no such address, or that it does not take what was sent."""
+    assert isinstance(error, HTTPException)
+    return _told(error.detail, error.status_code, error.headers)
 
 
 async def _unexpected(_: Request, error: Exception) -> JSONResponse:
     logging.getLogger("workbench").error("an error of the workbench itself", exc_info=error)
-    return JSONResponse({"error": f"an error of the workbench itself: {type(error).__name__}"}, status_code=500)
+    return _told(f"an error of the workbench itself: {type(error).__name__}", 500)

@@ -150,6 +150,8 @@ class ModelFolder:
             )
             raise ConflictError(f"'{path}' was not saved: {told}")
         try:
+            if where.exists() and not _writable(where):
+                raise FileError(f"cannot write '{path}': it is read-only")
             where.parent.mkdir(parents=True, exist_ok=True)
             self._write(where, data)
         except OSError as error:
@@ -226,6 +228,14 @@ class ModelFolder:
         if not where.is_file():
             raise NoSuchFileError(f"there is no '{path}'")
         return where
+
+
+def _writable(where: Path) -> bool:
+    """Tells whether a file may be written: saving puts another in its place, for which the system asks the folder alone.
+
+    It lets root write everything; a file that nobody may write is left alone by root, too.
+    """
+    return os.access(where, os.W_OK) and bool(where.stat().st_mode & 0o222)
 
 
 def _encoded(text: str, line_end: str) -> bytes:

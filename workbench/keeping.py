@@ -90,6 +90,11 @@ def size_of(path: Path) -> int:
     return size
 
 
+def stands_alone(path: Path) -> bool:
+    """Tells whether a recording is all in its own file, as one is whose run has ended in good order."""
+    return not any(path.with_name(path.name + end).exists() for end in BESIDE)
+
+
 def erase(path: Path) -> None:
     """Deletes a recording, and what lies beside it."""
     for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):

@@ -172,6 +172,4 @@ def _read(text: str) -> tuple[say.Attach | None, say.Request | None, str]:
             return say.Attach.model_validate_json(text), None, ""
         return None, say.Request.model_validate_json(text), ""
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
-        place = ".".join(map(str, first["loc"]))
-        return None, None, f"{place}: {first['msg']}" if place else first["msg"]
+        return None, None, say.problem_of(error.errors(include_url=False, include_input=False)[0])

@@ -5,6 +5,7 @@ The same types serve the websocket, the REST interface and its OpenAPI descripti
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
@@ -282,3 +283,16 @@ class Request(Said):
 
     id: int = Field(ge=0, lt=2**53)
     say: Anything
+
+
+def problem_of(error: Mapping[str, Any]) -> str:
+    """Returns in words where something that was said is wrong, and why; never what was said, which may be nothing that JSON has.
+
+    Args:
+        error: One of those that pydantic's `ValidationError.errors` returns.
+    """
+    place = ".".join(str(part)[:100] for part in error["loc"])
+    words = str(error["msg"])
+    if error["type"] == "union_tag_invalid":  # whose words have what was said among them
+        words = f"{error['ctx']['discriminator']} must be one of {error['ctx']['expected_tags']}"
+    return f"{place}: {words}" if place else words

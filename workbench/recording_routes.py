@@ -12,11 +12,14 @@ from fastapi.responses import FileResponse, Response, StreamingResponse
 from pydantic import Field
 from starlette.background import BackgroundTask
 
+from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.comparing import compare
+from workbench.copying import copy_of
 from workbench.html_replay.aside import replay_of
+from workbench.keeping import stands_alone
 from workbench.recordings import MOST as MOST_LISTED
 from workbench.recordings import curves, events_csv, states_csv
 from workbench.routes import Id, sessions_of
@@ -65,23 +68,33 @@ def recording(request: Request, recording: Id) -> Response:
 async def download(
     request: Request, recording: Id, form: Literal["sqlite", "events.csv", "states.csv", "replay.html"] = "sqlite"
 ) -> Response:
-    """Gives a recording: as it is, its events or states as CSV, or one HTML file that plays its scene beside its trace."""
+    """Gives a recording: as it is, its events or states as CSV, or one HTML file that plays its scene beside its trace.
+
+    Of a run that goes on it is what has been recorded until now. 409 where there is nothing to give, as no states of a program.
+    """
     path = sessions_of(request).recordings.path(recording)
     name = f"{recording}.{form}"
     if form == "replay.html":
-        made = await replay_of(sessions_of(request).workers, path)
-        return FileResponse(made, media_type="text/html", filename=name, background=BackgroundTask(made.unlink, missing_ok=True))
+        return _once(await replay_of(sessions_of(request).workers, path), "text/html", name)
     if form == "sqlite":
-        return FileResponse(path, media_type="application/vnd.sqlite3", filename=name)
+        kind = "application/vnd.sqlite3"
+        return FileResponse(path, media_type=kind, filename=name) if stands_alone(path) else _once(await copy_of(path), kind, name)
     make: Callable[[Path], Iterator[str]] = events_csv if form == "events.csv" else states_csv
-    await asyncio.to_thread(_check_readable, path)  # once the answer has begun, it is too late to say that it cannot be read
+    await asyncio.to_thread(_check_there, path, form)  # once the answer has begun, it is too late to say that there is nothing
     headers = {"content-disposition": f'attachment; filename="{name}"'}
     return StreamingResponse(make(path), media_type="text/csv; charset=utf-8", headers=headers)
 
 
-def _check_readable(path: Path) -> None:
-    """Raises `RecordingError` where a file is no recording."""
-    Recorded(path).close()
+def _once(made: Path, kind: str, name: str) -> FileResponse:
+    """Gives a file that has been made to be given, and deletes it then."""
+    return FileResponse(made, media_type=kind, filename=name, background=BackgroundTask(made.unlink, missing_ok=True))
+
+
+def _check_there(path: Path, form: str) -> None:
+    """Raises `RecordingError` where a file is no recording, or has nothing of what is asked for."""
+    with Recorded(path) as recorded:
+        if form == "states.csv" and recorded.state_count == 0:
+            raise RecordingError("the recording has no states: no simulation has run in it")
 
 
 @router.get("/recordings/{recording}/curves")

@@ -19,7 +19,7 @@ from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import NOTHING, Curves, stride
 from workbench.files import OWN
-from workbench.keeping import BESIDE, Keeping, erase, superfluous
+from workbench.keeping import Keeping, erase, stands_alone, superfluous
 from workbench.summaries import Summaries, Summary, begun
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
@@ -91,7 +91,7 @@ class Recordings:
         path, target = self.path(name), self._folder / f"{to}.sqlite"
         if _NAME.fullmatch(to) is None:
             raise RecordingError("a recording's name has letters, digits, '_', '.' and '-', and no more than 150 of them")
-        if any(path.with_name(path.name + end).exists() for end in BESIDE):
+        if not stands_alone(path):
             raise RecordingError("the recording is still being written: stop or restart its run first")
         if target.exists():
             raise RecordingError(f"there is a recording '{to}' already")

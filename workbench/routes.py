@@ -14,7 +14,7 @@ from pydantic import Field
 
 from workbench import protocol as say
 from workbench.files import ModelFile
-from workbench.loader import listing_of
+from workbench.loader import listing_of, sendable
 from workbench.outlines import outline_of
 from workbench.sessions import Sessions
 
@@ -87,8 +87,8 @@ def sessions_of(request: Request) -> Sessions:
 def models(request: Request) -> dict[str, Any]:
     """Lists the model files; none of them is run."""
     folder = sessions_of(request).folder
-    files = [{"path": path, **vars(outline_of(folder.root / path))} for path in folder.paths()]
-    return {"folder": str(folder.root), "models": files}
+    files = [{"path": sendable(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
+    return {"folder": sendable(str(folder.root)), "models": files}
 
 
 @router.get("/model")

@@ -38,7 +38,8 @@ def models_folder(named: Path | None, present: Path, home: Path) -> Path:
         return present / "models"
     folder = home / HOME
     if not folder.exists():
-        shutil.copytree(shipped(), folder, ignore=shutil.ignore_patterns("__pycache__", ".*"))
+        # The bytes alone: the user's own copies may be written, also where what was installed may not.
+        shutil.copytree(shipped(), folder, ignore=shutil.ignore_patterns("__pycache__", ".*"), copy_function=shutil.copyfile)
     return folder
 
 

@@ -49,6 +49,8 @@ class Summary:
     time: float = 0.0
     """How long it is [s of simulated time]."""
     events: int = 0
+    states: int = 0
+    """How many there are of MuJoCo; none of a program that makes no simulation."""
     size: int
     """With what is written beside it while a run goes on [bytes]."""
     made: float
@@ -135,6 +137,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         result=_result(last),
         time=seconds(recorded.ticks * facts["period_us"] if "period_us" in facts else last[-1][0] if last else 0),
         events=recorded.event_count,
+        states=recorded.state_count,
         size=size,
         made=begun(path),
     )

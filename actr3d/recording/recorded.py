@@ -88,6 +88,11 @@ class Recorded:
         """How many events it holds."""
         return self._count("events")
 
+    @property
+    def state_count(self) -> int:
+        """How many states it holds, of all runs together; 0 of a program that makes no simulation."""
+        return self._count("states")
+
     def _count(self, table: str) -> int:
         (count,) = self._file.execute(f"SELECT max(first + count) FROM {table}").fetchone()
         return count or 0

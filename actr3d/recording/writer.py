@@ -226,7 +226,12 @@ class Writer:
     def _finish(self) -> None:
         # In the old way of keeping a journal a closed file stands alone, and can be read in a folder that is read-only.
         self._file.execute("PRAGMA synchronous=OFF")
-        self._file.execute("PRAGMA journal_mode=DELETE")
+        try:
+            self._file.execute("PRAGMA journal_mode=DELETE")
+        except sqlite3.OperationalError as error:
+            # Somebody reads it just now: it is whole all the same, and whoever closes it last removes what lies beside it.
+            if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
+                raise
 
 
 def _reason(error: Exception) -> str:

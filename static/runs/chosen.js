@@ -16,7 +16,7 @@ const FORMS = [
 ];
 
 function Downloads({ run }) {
-  const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => form !== "replay.html" || run.kind === "simulation");
+  const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => (form !== "replay.html" || run.kind === "simulation") && (form !== "states.csv" || run.states > 0));
   const address = (form) => `/api/recordings/${run.id}/file?form=${form}`;
   const make = (event) => (event.preventDefault(), takeHtml(run, address("replay.html")));
   return html`<span class="downloads">

@@ -171,6 +171,30 @@ def test_a_file_that_may_not_be_written(folder: ModelFolder) -> None:
     folder.root.chmod(0o700)
 
 
+def test_a_read_only_file_is_not_written_over(folder: ModelFolder) -> None:
+    file = folder.read("one.py")
+    (folder.root / "link.py").symlink_to(folder.root / "one.py")
+    (folder.root / "one.py").chmod(0o444)
+    for name in ("one.py", "link.py"):
+        with pytest.raises(FileError, match=f"cannot write '{name}': it is read-only"):
+            folder.save(name, "mine = 1\n", file.version)
+    assert folder.read("one.py") == file
+    with pytest.raises(ConflictError):
+        folder.rename("tutorial/two.py", "one.py")
+    assert folder.copy("one.py", "mine.py").text == file.text
+    folder.save("mine.py", "mine = 1\n", file.version)
+    folder.delete("one.py")
+
+
+def test_own_copies_of_the_shipped_models_may_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "installed").mkdir()
+    (tmp_path / "installed" / "one.py").write_text("a = 1\n", encoding="utf-8")
+    (tmp_path / "installed" / "one.py").chmod(0o444)
+    monkeypatch.setattr("workbench.shipped.shipped", lambda: tmp_path / "installed")
+    own = ModelFolder(models_folder(None, tmp_path, tmp_path))
+    assert own.save("one.py", "b = 1\n", own.read("one.py").version).text == "b = 1\n"
+
+
 def test_where_the_models_are(tmp_path: Path) -> None:
     present, home = tmp_path / "present", tmp_path / "home"
     present.mkdir()

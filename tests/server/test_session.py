@@ -243,6 +243,9 @@ def test_why_and_what_is_seen(desk: Desk, tmp_path: Path) -> None:
 
 def test_a_program_runs_steps_goes_back_and_is_explained(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING)
+    for question in ("view", "body"):
+        with pytest.raises(RefusedError, match=r"^the run has no body$"):
+            talk.say(question)
     talk.say("step", ticks=15)
     talk.until("paused", time=0.15)
     talk.say("cycle")

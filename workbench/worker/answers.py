@@ -84,10 +84,12 @@ def _rows(question: say.Rows, models: Sequence[Model]) -> dict[str, Any]:
 
 def _body(name: str | None, world: World | None) -> Any:
     bodies = {} if world is None else world.bodies
-    if name is None and bodies:
+    if not bodies:
+        raise Actr3dError("the run has no body")
+    if name is None:
         return next(iter(bodies.values()))
     if name not in bodies:
-        raise _unknown("body", str(name), bodies)
+        raise _unknown("body", name, bodies)
     return bodies[name]
 
 
