@@ -2,7 +2,7 @@
 
 import { computed, html } from "../vendor/preact.js";
 import { settable } from "../parts/settable.js";
-import { alive, session, state } from "../store.js";
+import { session, state } from "../store.js";
 
 const name = computed(() => Object.keys(state.value?.apertures ?? {})[0]);
 /** The free width [cm]. */
