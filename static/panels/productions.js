@@ -1,7 +1,7 @@
 // The productions: the firing trace above, and below it why: conditions, the conflict set, retrievals.
 
 import { html, useLayoutEffect, useState } from "../vendor/preact.js";
-import { at, production, question, shownReasons } from "../mind/asked.js";
+import { at, question, shownReasons } from "../mind/asked.js";
 import { HeldNote, held } from "../mind/breakpoints.js";
 import { ConflictSets } from "../mind/conflict.js";
 import { explained, ProductionList, productionsOf } from "../mind/list.js";

@@ -42,3 +42,11 @@ def test_what_a_module_imports_is_there(path: Path) -> None:
     for name in re.findall(r"""(?:import|from)\s*\(?\s*["']([^"']+)["']""", path.read_text(encoding="utf-8")):
         assert name.startswith("."), name
         assert (path.parent / name).is_file(), name
+
+
+@pytest.mark.parametrize("path", [path for path in OWN if path.suffix == ".js"], ids=lambda path: path.name)
+def test_a_module_uses_what_it_imports(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    for names in re.findall(r"^import \{([^}]*)\} from", text, re.MULTILINE):
+        for name in (each.split(" as ")[-1].strip() for each in names.split(",")):
+            assert len(re.findall(rf"(?<![\w$]){re.escape(name)}(?![\w$])", text)) > 1, name
