@@ -72,7 +72,7 @@ function pointsOf(times, values, span, box, yOf) {
 
 /** Returns the values that a scale names: at least two, for one alone tells of no size; otherwise no more than there is room for. */
 function scaleOf(least, most, room) {
-  const values = [...ticks(least, most, stepFor(most - least, room))];
+  const values = ticks(least, most, stepFor(most - least, room));
   return values.length > 1 ? values : ticks(least, most, stepFor(most - least, room + 1));
 }
 

@@ -67,8 +67,9 @@ class Conductor:
     def conduct(self, run: Conducted) -> None:
         """Takes the run that is to be conducted; its names are known by now."""
         self.run = run
-        for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
-            self.link.post(lost)
+        if self.watch.breakpoints:  # else the names need not be looked for
+            for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
+                self.link.post(lost)
 
     # -- what the run asks
 
