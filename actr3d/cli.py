@@ -17,13 +17,14 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.reading import read_source
-from actr3d.errors import Actr3dError, SettingError
+from actr3d.errors import Actr3dError, SettingError, UntrustedError
 from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.running.complaint import complaint
+from actr3d.running.declared import check_build, has_build
 from actr3d.running.options import options_help, read_options, read_settings
-from actr3d.running.run import has_build, run_model
+from actr3d.running.run import run_model
 from actr3d.trace import LEVELS, Trace, TraceEvent
 from actr3d.values import to_json
 
@@ -53,18 +54,18 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         # Lines that the model prints are shown as they are, or by `printed`; a result at the end.
         trace.listen(lambda event: None if out.closed or event.kind in ("output", "result") else print(show(event), file=out), level)
     limits.last_resort = partial(_leave, out, printed)
-    trouble: Exception | None = None
+    trouble: BaseException | None = None
     result: Any = None
     try:
         with warnings.catch_warnings(), printing_to(printed or out):
             warnings.showwarning = _show_warning
             result = run_model(options.file, limits, settings=partial(_settings, options), record=options.record)
-    except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
-        trouble = error
     except (SystemExit, KeyboardInterrupt):
         if unwritten := all_written(out, printed):
             return _complain_of_output(unwritten)
         raise
+    except BaseException as error:  # noqa: BLE001 - whatever a model raises is shown to its author
+        trouble = error
     if result is not None and not out.closed:
         if printed is not None:
             printed.finish()
@@ -90,6 +91,7 @@ def _help(run: argparse.ArgumentParser, file: str | None) -> int:
         return 0
     try:
         source = read_source(Path(file))
+        check_build(source, file)
         if has_build(source):
             from actr3d.running.building import Blueprint
 
@@ -125,14 +127,18 @@ def _complain_of_output(error: OSError) -> int:
 
 
 def replay_command(options: argparse.Namespace) -> int:
-    """Runs a recording again, and says whether every byte agrees: 0 where it does, 1 where not, 2 where it cannot tell."""
+    """Runs a recording again, and says whether every byte agrees: returns 0 where it does, 1 where not, 2 where that cannot be told."""
     from actr3d.recording import Recorded
     from actr3d.running.replay import replay
 
     try:
         with Recorded(options.file) as recorded:
-            comparison = replay(recorded, any_version=options.any_version)
-    except Actr3dError as error:
+            comparison = replay(recorded, trust=options.trust, any_version=options.any_version)
+    except UntrustedError:
+        reason = "was not made by this installation (or was changed since), and a replay runs the code that it holds"
+        print(f"error: '{options.file}' {reason}; if you trust where it comes from, add --trust", file=sys.stderr)
+        return 2
+    except (Actr3dError, OSError) as error:
         _complain(error)
         return 2
     print(comparison)
@@ -193,8 +199,16 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--record", metavar="RECORDING", help="record everything to this new file")
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds")
     run.set_defaults(function=run_command, parser=run)
-    again = commands.add_parser("replay", help="run a recording again", description="Runs a recording again: does every byte agree?")
+    again = commands.add_parser(
+        "replay",
+        help="run a recording again",
+        description="Runs a recording again: does every byte agree? It runs the code that the recording holds, with modules that "
+        "are recorded or installed.",
+        epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, of "
+        "another form, made with other versions, or made elsewhere and not trusted; 130 it was interrupted.",
+    )
     again.add_argument("file", metavar="RECORDING", help="the recording")
+    again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")

@@ -54,6 +54,10 @@ class RecordingError(Actr3dError):
     """A recording cannot be written or read."""
 
 
+class UntrustedError(RecordingError):
+    """A recording that another installation made, or that was changed, is to be run; whoever trusts it must say so."""
+
+
 class GridError(Actr3dError):
     """A grid world cannot be made, or a body in it placed or moved, as asked."""
 

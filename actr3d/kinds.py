@@ -74,7 +74,7 @@ KINDS: Mapping[str, Kind] = {
         "module",
         "...",
         "a module is asked for something (`call`); a memory's request with all candidates, and if it was made before the trace, `made` "
-        "[s] and its `outcome`",
+        "[s] and its `outcome`; `outside_vision` where an agent asks for the raw view",
     ),
     "retrieval": Kind("all", "memory", "failed [chunk]", "a memory's answer arrives, or its failure"),
     "answer": Kind("all", "port, vision, motor", "word value", "a body answers what it was asked for"),

@@ -1,33 +1,50 @@
-"""A person walks to a doorway, and turns the shoulders where it is too narrow: the main job of ACT-R 3D.
+"""A person walks to a doorway, and turns the shoulders where it is too narrow.
 
-What is modelled: people turn their shoulders to pass an aperture that is narrower than 1.30 times these, and judge from afar
-that they can pass as they are where it is wider than 1.16 times (Warren & Whang 1987, JEP:HPP 13). What counts is the ratio of
-the aperture to the body, which the walker has to know, and sees nothing of: it learns it.
+People turn their shoulders to pass an aperture that is narrower than 1.30 times their shoulders, and judge from afar that they
+can pass as they are where it is wider than 1.16 times (Warren & Whang 1987, JEP:HPP 13). What counts is the ratio of the aperture
+to the body. The walker does not know the size of its own body at first: it learns it.
 
-Mechanism, in four unit tasks of one planning unit (SGOMS): (1) *learn*: it turns its shoulders each way several times; how wide it
-is in each posture goes to declarative memory. (2) *judge*: is there an opening that is wide enough for it as it is? Else it
-remembers how narrow it can make itself, and asks for an opening of that size; finds none, and declines. (3) *approach*: it walks.
-Its eyes, a parallel system of productions of 10 ms, scan for obstacles ahead. (4) An obstacle interrupts: the planning unit
-*squeeze* has it turn its shoulders at a constant speed until vision finds an opening that is wider than it feels itself to be,
-by some part. Then it goes on, passes, and turns back (*leave*).
+The work is one planning unit (SGOMS) with four unit tasks:
 
-`--variant replication` follows the original ACT-R 3D (facts about its code and its trials: human-data): what is within 3 times its
+1. *Learn*: it turns its shoulders each way several times. How wide it is in each posture goes to declarative memory.
+2. *Judge*: is there an opening that is wide enough for it as it is? If not, it remembers how narrow it can make itself, and looks
+   for an opening of that size. If there is none, it declines.
+3. *Approach*: it walks. Its eyes, a parallel system with productions of 10 ms, look for obstacles ahead.
+4. *Squeeze*: an obstacle interrupts the walk. It turns its shoulders at a constant speed until vision finds an opening that is wider
+   than the body feels by some part. Then it walks on, passes, and turns back (*leave*).
+
+The two variants
+----------------
+The `human` variant (the default) looks first. It turns only below 1.30 times its width, from 1.6 s before the wall on, hips and legs
+with the shoulders, until there is as much room beside it as beside a person who need not turn: 0.30 of its shoulders' width. The
+faster it walks the faster it turns. Its body is as much bigger as its shoulders are wider.
+
+The `replication` variant follows the original ACT-R 3D (facts about its code and its trials: human-data). What is within 3 times its
 width starts a turn of 240 degrees a second, 120 with the torso alone, whatever the size of the opening. It stops with each answer
-of its vision, and turns on where that is no. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one each 175 ms, which
-is where the original's own means lie, and why a fast walker, who has time for fewer, turns less. It turns by about 18 degrees
-before any doorway. Two numbers of this are not facts but inferred from these means: that it turns in pieces, and how deep the trunk is.
-`--variant human` (the default) looks first: it turns below 1.30 times its width only, from 1.6 s before the wall on, hips and legs with
-the shoulders, until there is as much room beside it as beside one who need not turn: 0.30 of its shoulders' width. The faster it walks
-the faster it turns. Its body is as much bigger as its shoulders are wider.
+of its vision, and turns on where that is no. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one each 175 ms.
+The original's own means lie there, and a fast walker, who has time for fewer pieces, turns less. It turns by about 18 degrees before
+any doorway. Two things are not facts but inferred from these means: that it turns in pieces, and how deep the trunk is.
 
 Both go on looking until the doorway's edges are beside them. Where it becomes narrower they turn again (people stand still for that
-where they have come near), or stop; what changes less than 0.3 s before they are there is noticed too late.
+where they have come near), or stop. What changes less than 0.3 s before they are there is noticed too late.
 
-What to expect: `--aperture 0.45` is passed with the body turned by 40 to 47 degrees, nothing is touched, and about 6 or 7 cm are left
-on each side; `--aperture 0.6` is passed as it is, with `--group large` turned; `--aperture 0.25` is declined. The last lines say what
-the world measured.
+What to expect
+--------------
+- With an aperture of 0.45 m the body turns by 40 to 47 degrees and touches nothing; about 6 or 7 cm are left on each side.
+- An aperture of 0.6 m is passed without a turn, but with a turn by the `large` group.
+- An aperture of 0.25 m is declined.
 
-Try: `--condition fast`; `--variant replication --aperture 0.7`; `--margin 0`, and `--noise 0.05`.
+The run begins with about 8 s of learning. At its end the tab *Buffers* shows what the world measured.
+
+What to try
+-----------
+- `aperture = 0.45`: passes with its shoulders turned.
+- `aperture = 0.6`: walks straight through; `aperture = 0.6, group = "large"`: turns.
+- `aperture = 0.25`: declines.
+- `condition = "fast"`: walks and turns faster.
+- `variant = "replication", aperture = 0.7`: the original model turns even here.
+- `margin = 0, noise = 0.05`: a careless walker with poor eyes.
+- Or move the slider of the aperture while the walker is on its way.
 """
 
 from dataclasses import dataclass

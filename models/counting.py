@@ -1,6 +1,6 @@
 """Counts from 2 to 5, by remembering what comes after each number.
 
-An agent is a class of type ACTR. It has buffers, each of which holds one chunk (a few slots with values)
+This is the smallest model. An agent is a class of type `ACTR`. It has buffers, each of which holds one chunk (a few slots with values)
 or nothing, and a memory. Each method whose parameters all have patterns for defaults is a production:
 «if the goal buffer holds ... and the retrieval buffer holds ..., then ...». One production fires at a
 time, and takes 50 ms.
@@ -9,7 +9,15 @@ Productions need no `self`: inside them, the agent's parts are known by name. `?
 the value of that slot, for the whole production; `!?now` means «anything but this». Only slots that a
 pattern names are looked at.
 
-It prints 2, 3, 4, 5. Try other numbers in `goal.set`; then let it count further than it knows.
+What to expect
+--------------
+The tab *Console* shows 2, 3, 4, 5. Counting begins with a production and a retrieval of 0.05 s each; each further number
+takes the same again.
+
+What to try
+-----------
+- Step through it (key C goes to the next production), and watch the goal and the retrieval buffer.
+- Other numbers in `goal.set`, in the tab *Editor*; then let it count further than it knows.
 """
 
 from actr3d.actr import *

@@ -1,12 +1,21 @@
 """Walks through a doorway, and turns the shoulders where they would not fit otherwise.
 
-The mind walks its body towards a doorway 7 m away. Every 100 ms it looks: the view has the edges of what is visible, without
-names. Beside the middle of the screen it finds the nearest edge to the left and to the right, and from their distances
+The agent walks its body towards a doorway 7 m away. Every 100 ms it looks: the view has the edges of what is visible, without
+names. This is the raw view, which steps outside what a vision module gives an agent; aperture_passage.py does without it.
+Beside the middle of the screen it finds the nearest edge to the left and to the right, and from their distances
 and angles how wide the gap is. At 1.5 m it decides: a gap narrower than 1.3 times its shoulders is passed sideways (Warren
 and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it turns back and stops.
 
-Expect: with `width=0.5` it turns, and passes without a touch; with `width=0.8` it walks straight on. Try
-`--width 0.6 --speed 2`, or a width that is too narrow even for a body turned sideways.
+What to expect
+--------------
+With a doorway of 0.5 m it turns its shoulders, and passes without a touch. With 0.8 m it walks straight on. The walk takes about 7 s.
+
+What to try
+-----------
+- `width = 0.5`: turns its shoulders; `width = 0.8`: walks straight on.
+- `width = 0.6, speed = 2`: has less time to turn.
+- `width = 0.2`: too narrow even for a body turned sideways: it walks on against the wall, until you stop it.
+- Move the slider of the aperture while it walks: what it has decided already stays.
 """
 
 from dataclasses import dataclass

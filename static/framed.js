@@ -1,17 +1,30 @@
-// What is put before viser's own script, in its page: it goes on connecting again when it is not in front, too; `?panel=hidden` hides its
-// panel and notices and lets what is behind it be its ground, for a page that has controls and a theme of its own around it; it tells
-// that page when it has drawn; and it goes easy on a machine without a graphics card. It is no module, for those may run after viser has
-// read its address.
+// Runs before viser's own script, in its page. It keeps connecting while the page is not in front; `?panel=hidden` hides viser's panel and
+// notices, for a page that has controls of its own around it; it tells that page when the first picture is drawn; it takes what the server
+// tells of the scene; and it draws less on a machine without a graphics card. It is no module: modules may run after viser has read its address.
 
 {
   document.hasFocus = () => true;
+
+  // What the server tells of the scene beside its shapes, and the view that is chosen: `scene/view.js` shows both.
+  window.scene = {
+    told: {},
+    view: "follow",
+    onview: null,
+    tell(name, value) {
+      this.told[name] = value;
+    },
+    /** Puts the camera where a view begins, also where it is that view already. */
+    choose(view) {
+      this.view = view;
+      this.onview?.();
+    },
+  };
 
   const asked = new URLSearchParams(location.search);
   if (asked.get("panel") === "hidden") {
     const style = document.createElement("style");
     style.textContent = `
       .mantine-Paper-root, .mantine-Notification-root { display: none !important; }
-      html, body, div:has(canvas) { background: none !important; }
     `;
     document.documentElement.append(style);
   }

@@ -3,7 +3,7 @@
 const known = new Map();
 
 /** What keys are for, in the order in which they are shown. */
-export const KEY_GROUPS = ["Run", "Timeline", "Panels", "Editor"];
+export const KEY_GROUPS = ["Run", "Timeline", "3D view", "Panels", "Editor"];
 
 /** Gives a key something to do. `key` is as in KeyboardEvent, "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac) before it. Keys without
  * Mod do nothing while the user writes. Without a text it is not shown. */
@@ -36,17 +36,57 @@ function isWriting(element) {
   return takesText || ["TEXTAREA", "SELECT"].includes(element?.tagName);
 }
 
-addEventListener("keydown", (event) => {
+/** Keys that what has the focus attends to itself: buttons are pressed, sliders and tabs moved. */
+const OWN = {
+  "Space Enter NumpadEnter": "button, a, summary, [role=tab], [type=checkbox], [type=radio]",
+  "ArrowLeft ArrowRight ArrowUp ArrowDown Home End PageUp PageDown": "[role=tab], [role=separator], [role=slider], [type=range], [type=radio]",
+};
+
+/** Does what a key is bound to; returns whether it is bound and may do it now. */
+function press(event) {
   const mod = isMac ? event.metaKey : event.ctrlKey;
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   const shift = event.shiftKey && (event.key.length > 1 || /[a-z]/i.test(event.key)) ? "Shift+" : "";
   const bound = known.get(`${mod ? "Mod+" : ""}${shift}${name}`);
-  if (!bound?.work || event.altKey || event.defaultPrevented) return;
-  if (document.querySelector("dialog[open]")) return;
-  if (!mod && isWriting(document.activeElement)) return;
-  // Space and Enter press the button that has the focus, arrows move sliders and tabs.
-  const pressed = document.activeElement?.closest("button, a, summary, [role=tab], [role=separator], input, [role=slider]");
-  if (!mod && pressed && ["  ", " ", "Enter", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"].includes(event.key)) return;
+  if (!bound?.work || event.altKey || event.defaultPrevented) return false;
+  if (document.querySelector("dialog[open]")) return false;
+  if (!mod && isWriting(document.activeElement)) return false;
+  if (!mod && Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(event.code) && document.activeElement?.closest(where))) return false;
   event.preventDefault();
   bound.work();
-});
+  return true;
+}
+
+const CAMERA = ["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]; // these move the camera of the 3D view
+let inner = null; // the window of the 3D view
+
+/** Hears the keys of the 3D view's window, too: they do what they do elsewhere on the page, and the 3D view gets those of the camera only. */
+export function hearKeys(frame) {
+  inner = frame;
+  for (const kind of ["keydown", "keyup"]) {
+    frame.addEventListener(
+      kind,
+      (event) => {
+        if ((kind === "keydown" && press(event)) || !CAMERA.includes(event.code)) event.stopImmediatePropagation();
+      },
+      true,
+    );
+  }
+}
+
+/** Hands a key of the camera on to the 3D view, wherever the focus is on the page. */
+function handOn(event) {
+  const { type, key, code, ctrlKey, metaKey, altKey } = event;
+  const free = !ctrlKey && !metaKey && !altKey && !event.defaultPrevented && !isWriting(document.activeElement) && !document.querySelector("dialog[open]");
+  if (!CAMERA.includes(code) || (type === "keydown" && !free)) return;
+  inner?.document?.dispatchEvent(new inner.KeyboardEvent(type, { key, code }));
+}
+
+// A list keeps the focus after a choice by mouse, and would take all letters for its own.
+let byMouse = false;
+addEventListener("pointerdown", () => (byMouse = true), true);
+addEventListener("keydown", () => (byMouse = false), true);
+addEventListener("change", ({ target }) => byMouse && target.tagName === "SELECT" && target.blur());
+
+addEventListener("keydown", (event) => press(event) || handOn(event));
+addEventListener("keyup", handOn);

@@ -19,24 +19,53 @@ let timer = 0;
 export async function call(method, path, body, signal) {
   // Whatever changes something is sent as JSON with a header of ours, which no form of another site can do.
   const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
-  let response;
+  const response = await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
+  const text = await response.text();
+  const told = parsed(text);
+  if (!response.ok) throw refusal(response, told);
+  return told;
+}
+
+/** Fetches a file as a whole; returns it as a Blob, or throws an Error that says why not. `progress` is called with how many bytes
+ * have come, and of how many. An AbortSignal ends it. */
+export async function fetchFile(path, signal, progress) {
+  const response = await answerOf(path, { signal });
+  if (!response.ok) throw refusal(response, parsed(await response.text()));
+  const all = Number(response.headers.get("content-length"));
+  let come = 0;
+  const count = new TransformStream({
+    transform(part, on) {
+      come += part.length;
+      progress(come, all);
+      on.enqueue(part);
+    },
+  });
+  const blob = await new Response(response.body.pipeThrough(count)).blob().catch(() => null);
+  if (signal.aborted) throw new DOMException("cancelled", "AbortError");
+  if (blob?.size !== all) throw new Error(`it broke off after ${come.toLocaleString("en")} of ${all.toLocaleString("en")} bytes`);
+  return blob;
+}
+
+async function answerOf(path, options) {
   try {
-    response = await fetch(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
+    return await fetch(path, options);
   } catch {
     throw Object.assign(new Error("the workbench does not answer; is it still running?"), { status: 0, told: null });
   }
-  const text = await response.text();
-  let told;
+}
+
+function parsed(text) {
   try {
-    told = JSON.parse(text);
+    return JSON.parse(text);
   } catch {
-    told = { error: text };
+    return { error: text };
   }
-  if (!response.ok) {
-    const reason = typeof told.error === "string" ? told.error : JSON.stringify(told.detail ?? told);
-    throw Object.assign(new Error(reason), { status: response.status, told });
-  }
-  return told;
+}
+
+/** Returns the Error of an answer that says why something is not done. */
+function refusal(response, told) {
+  const reason = typeof told.error === "string" ? told.error : JSON.stringify(told.detail ?? told);
+  return Object.assign(new Error(reason), { status: response.status, told });
 }
 
 /** Is called when the user wants something else to be shown, which takes a while; returns what tells whether that is still wanted:
@@ -81,17 +110,31 @@ function abandon(reason) {
 /** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
 export async function showModel(model, { run = false } = {}) {
   const wanted = wish();
-  if (model !== session.peek()?.model) leave();
+  if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
-  const there = sessions.filter((session) => session.model === model).at(-1);
+  const there = sessions.filter((session) => session.model === model && session.recorded === null).at(-1);
   if (!wanted() && !run) return;
   if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
     if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
-    const { id } = there ?? (await call("POST", "/api/sessions", { model, run }));
+    const { id } = there ?? (await call("POST", "/api/sessions", { model, run, real_time: true }));
     if (wanted()) show(id);
   } catch (error) {
     if (wanted()) opening.value = null;
+    throw error;
+  }
+}
+
+/** Shows a recording: the session that lives through it again, or a new one. With `trust` its code is run whoever has made it. */
+export async function showRecording(id, trust = false) {
+  const wanted = wish();
+  const waits = opening.peek() === null && session.peek() === null;
+  if (waits) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
+  try {
+    const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
+    if (wanted()) show(found.id);
+  } catch (error) {
+    if (wanted() && waits) opening.value = null;
     throw error;
   }
 }

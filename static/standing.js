@@ -15,6 +15,7 @@ const STANDINGS = {
   ready: { line: asTold, text: ({ kind }) => (kind === "program" ? "Press Run: the program makes its model as it goes." : "Press Run, or step.") },
   running: { line: asTold, text: () => "It is told as soon as the run pauses." },
   busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; it answers after this step. Stop ends it.` },
+  halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and stands still. Stop ends it.` },
   paused: { line: asTold, text: () => "The run is paused." },
   ended: { line: asTold, text: () => `The run is over. Go back on the timeline; ${AGAIN}` },
   failed: { line: asTold, text: () => `The run has failed: ${MEND}` },
@@ -40,12 +41,12 @@ function known() {
   const { alive = false, loading = false, kind, stuck, ending = "" } = session.value ?? {};
   const { status, reason = "", furthest = 0 } = state.value ?? {};
   const at = stuck?.line ? ` at line ${stuck.line}` : "";
-  return { alive, loading, kind, stuck: Boolean(stuck), at, status, reason, furthest, ending: ending || reason || "its process has ended" };
+  return { alive, loading, kind, stuck: Boolean(stuck), signal: stuck?.signal ?? "", at, status, reason, furthest, ending: ending || reason || "its process has ended" };
 }
 
-function nameOf({ alive, loading, kind, stuck, status, furthest, ending }) {
+function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending }) {
   if (!session.value) return opening.value ? "loading" : "none";
-  if (stuck && (alive || loading)) return "busy";
+  if (stuck && (alive || loading)) return signal ? "halted" : "busy";
   if (alive) return status === undefined ? "loading" : status === "paused" && furthest === 0 ? "ready" : status;
   if (loading && kind === undefined) return "loading";
   if (ending === "stopped" || status === "ended") return "stopped";
@@ -54,13 +55,13 @@ function nameOf({ alive, loading, kind, stuck, status, furthest, ending }) {
 
 /**
  * How the run stands: {is, line, text}. `is` tells: none is shown; it is loading; it is unloadable, for what Messages tell; it is ready,
- * running, busy with what does not end, or paused; it has ended by itself; the model has failed; a user has stopped it with its
+ * running, busy with what does not end, halted by a signal, or paused; it has ended by itself; the model has failed; a user has stopped it with its
  * process; its process is lost.
  */
 export const standing = computed(() => {
   const told = known();
   const is = nameOf(told);
-  return { is, line: told.loading && is !== "busy" ? loadingLine() : STANDINGS[is].line(told), text: STANDINGS[is].text(told) };
+  return { is, line: told.loading && is !== "busy" && is !== "halted" ? loadingLine() : STANDINGS[is].line(told), text: STANDINGS[is].text(told) };
 });
 
 const isOne = (names) => computed(() => names.includes(standing.value.is));
@@ -69,7 +70,7 @@ export const isOver = isOne(["ended", "failed", "stopped", "lost"]);
 /** Whether nothing can be asked of the run, for it is not there, or not any more. */
 export const isGone = isOne(["none", "loading", "unloadable", "stopped", "lost"]);
 /** Whether there is no mind to look into: no run is known, or its program has not made one. */
-export const isBare = computed(() => state.value === null || (session.value?.kind === "program" && Object.keys(state.value.parts).length === 0));
+export const isBare = computed(() => state.value === null || (session.value?.kind === "program" && !session.value.world && Object.keys(state.value.parts).length === 0));
 
 /** Says why a panel has nothing to show; `none` is what it says of a model that has nothing of the kind. */
 export function nothing(none) {

@@ -1,7 +1,8 @@
 // The layout: a bar above, the 3D view beside the tabs, the timeline below, and a line that says how things stand.
 
-import { computed, effect, html } from "./vendor/preact.js";
+import { effect, html } from "./vendor/preact.js";
 import { Bar } from "./bar/bar.js";
+import { RecordingBanner } from "./bar/recorded.js";
 import { StatusLine } from "./bar/status.js";
 import { Dialogs } from "./parts/dialog.js";
 import { Splitter } from "./parts/splitter.js";
@@ -16,23 +17,23 @@ import { openTab, TABS } from "./tabs.js";
 const LEAST_SCENE = 320; // [px]
 const ROWS = 336; // so high are the usual rows of a model with a body [px]
 // At first, wide windows give the panels more room, too.
-const beside = remembered("side width", Math.max(560, Math.round(0.38 * innerWidth)));
-const alone = remembered("side width without world", Math.round(0.7 * innerWidth)); // then there is nothing beside them to be seen
+const side = remembered("side width", Math.max(600, Math.round(0.38 * innerWidth)));
+/** Whether there is a 3D view; else the panels have all the room. */
 const hasWorld = remembered("has world", true); // while a model loads, that of the one before
 effect(() => {
   if (session.value?.kind) hasWorld.value = Boolean(session.value.world);
 });
-const side = computed(() => (hasWorld.value ? beside : alone));
 const below = remembered("timeline height", Math.round(Math.min(0.42 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
 
 export function Workbench() {
-  const sizes = { "--side": `${side.value.value}px`, "--below": `${below.value}px` };
+  const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };
   return html`
     <div class="workbench ${hurried.value ? "hurried" : ""}" style=${sizes}>
       <${Bar} />
-      <main class="work">
+      <div><${RecordingBanner} /></div>
+      <main class="work ${hasWorld.value ? "" : "bodiless"}">
         <${Scene} />
-        <${Splitter} size=${side.value} along="columns" label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
+        <${Splitter} size=${side} along="columns" label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
         <section class="side" aria-label="Panels">
           <${Tabs} label="Panels" tabs=${TABS} shown=${openTab} />
         </section>

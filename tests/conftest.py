@@ -12,5 +12,5 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None)
 settings.load_profile("explore" if os.environ.get("EXPLORE") else "same")
 
-# Tests leave the user's cache alone.
-os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="actr3d-tests-")
+# Tests leave the user's cache and key alone.
+os.environ["XDG_CACHE_HOME"] = os.environ["XDG_DATA_HOME"] = tempfile.mkdtemp(prefix="actr3d-tests-")

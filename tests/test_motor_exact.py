@@ -110,7 +110,7 @@ from dataclasses import dataclass
 class Parameters(Configuration):
     height: float = 1.7
 
-def build(parameters):
+def build(parameters: Parameters) -> Simulation:
     return Simulation(Scene(parts=(Floor(), Mannequin(name="walker", height=parameters.height))), {"walker": Restless})
 """
     file.write_text(RESTLESS + building, encoding="utf-8")

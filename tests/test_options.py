@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import sqlite3
 from dataclasses import MISSING
 from pathlib import Path
 from typing import Any
 
 import pytest
+from forging import forge
 
 from actr3d.actr.loading import load_text
 from actr3d.cli import main
@@ -182,9 +182,6 @@ def test_the_result_is_the_last_line(file: Path, tmp_path: Path, capsys: pytest.
 
 def test_the_result_is_recorded_and_compared(file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "run")]) == 0
-    with sqlite3.connect(tmp_path / "run") as recording:
-        changed = "UPDATE events SET data = replace(data, '\"declined\"', '\"passed\"') WHERE data LIKE '%\"declined\"%'"
-        assert recording.execute(changed).rowcount == 1
-    recording.close()
+    forge(tmp_path / "run", "UPDATE events SET data = replace(data, '\"declined\"', '\"passed\"') WHERE data LIKE '%\"declined\"%'")
     assert main(["replay", str(tmp_path / "run")]) == 1
     assert '"passed"' in capsys.readouterr().out

@@ -11,6 +11,7 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
+from forging import Change, forge
 from walkers import DRIVER
 
 from actr3d.cli import main
@@ -108,11 +109,11 @@ def swap(table: str, change: Callable[[bytes], bytes]) -> Callable[[sqlite3.Conn
     return alter
 
 
-def text(change: str) -> Callable[[sqlite3.Connection], None]:
-    def alter(file: sqlite3.Connection) -> None:
-        assert file.execute(change).rowcount > 0
-
-    return alter
+def no_run(file: sqlite3.Connection) -> None:
+    for first, marks in file.execute("SELECT first, marks FROM states").fetchall():
+        numbers = array("q", marks)
+        numbers[::4] = array("q", [0]) * (len(numbers) // 4)
+        file.execute("UPDATE states SET marks = ? WHERE first = ?", (numbers.tobytes(), first))
 
 
 def last_number(data: bytes) -> bytes:
@@ -128,23 +129,21 @@ SOURCE = "UPDATE facts SET value = replace(value, '{}', '{}') WHERE name = 'sour
     ("alter", "message"),
     [
         (swap("states", last_number), "differs: the physics at the end of tick 50 of top: number "),
-        (text(SOURCE.format("1.0))", "1.1))")), "differs: the physics at the end of tick 0 of top#2: number "),
-        (text(SOURCE.format("width=0.6", "width=0.5")), "differs: event "),
-        (text(SOURCE.format("one.seek(0.2)", "one.seek(0.3)")), "differs: event "),
-        (text("DELETE FROM states WHERE first = (SELECT max(first) FROM states)"), "; recorded: nothing; now: tick "),
-        (text("UPDATE states SET marks = zeroblob(length(marks))"), "differs: state 1; recorded: tick 0 of top#0; now: tick 0 of top"),
-        (text(SOURCE.format("one.run(0.3)\\nprint", "print")), "event "),
-        (text("UPDATE commands SET data = replace(data, '0.6', '0.5')"), "differs: command 1; recorded: [1, 41, {"),
-        (text("UPDATE answers SET data = replace(data, '\"x\": 0', '\"x\": 1')"), "differs: answer 1; recorded: [1, "),
-        (text("INSERT INTO commands VALUES (2, 1, 51, '{}')"), "the recording holds 1 command more"),
+        (SOURCE.format("1.0))", "1.1))"), "differs: the physics at the end of tick 0 of top#2: number "),
+        (SOURCE.format("width=0.6", "width=0.5"), "differs: event "),
+        (SOURCE.format("one.seek(0.2)", "one.seek(0.3)"), "differs: event "),
+        ("DELETE FROM states WHERE first = (SELECT max(first) FROM states)", "; recorded: nothing; now: tick "),
+        (no_run, "differs: state 1; recorded: tick 0 of top#0; now: tick 0 of top"),
+        (SOURCE.format("one.run(0.3)\\nprint", "print"), "event "),
+        ("UPDATE commands SET data = replace(data, '0.6', '0.5')", "differs: command 1; recorded: [1, 41, {"),
+        ("UPDATE answers SET data = replace(data, '\"x\": 0', '\"x\": 1')", "differs: answer 1; recorded: [1, "),
+        ("INSERT INTO commands SELECT 2, run, 51, data, checksum FROM commands WHERE first = 1", "the recording holds 1 command more"),
     ],
 )
 def test_a_replay_says_where_a_simulation_of_a_program_differs(
-    alter: Callable[[sqlite3.Connection], None], message: str, path: Path, capsys: pytest.CaptureFixture[str]
+    alter: Change, message: str, path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with sqlite3.connect(path) as file:
-        alter(file)
-    file.close()
+    forge(path, alter)
     capsys.readouterr()
     assert main(["replay", str(path)]) == 1
     assert message in capsys.readouterr().out
@@ -169,3 +168,12 @@ def test_a_program_that_was_killed_agrees_as_far_as_it_goes(tmp_path: Path) -> N
         assert comparison.difference is None
         assert comparison.ticks == recorded.ticks > 50
         assert comparison.events + comparison.unfinished == recorded.event_count
+
+
+def test_a_program_that_raises_what_is_no_exception_is_recorded_as_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, recording = tmp_path / "odd.py", tmp_path / "odd.rec"
+    file.write_text("print('begun')\nclass Odd(BaseException): pass\nraise Odd('on purpose')\n", encoding="utf-8")
+    assert main(["run", str(file), "--seed", "1", "--record", str(recording)]) == 1
+    assert "Odd: on purpose" in capsys.readouterr().err
+    assert main(["replay", str(recording)]) == 0
+    assert "failed after 0 s (Odd: on purpose)" in capsys.readouterr().out

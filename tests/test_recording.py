@@ -20,6 +20,7 @@ from walkers import driving
 from actr3d.errors import RecordingError, SimulationError
 from actr3d.recording import Recorded, Recording
 from actr3d.recording.form import versions
+from actr3d.running.replay import replay
 from actr3d.trace import TraceEvent
 
 TESTS = Path(__file__).parent
@@ -54,7 +55,7 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         simulation.run(0.5)
         simulation.command("aperture", width=0.5)
         simulation.run(0.5)
-        recording.fact("ended", "here")
+        recording.fact("place", "here")
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
     assert simulation.trace is not None
     with Recorded(tmp_path / "run") as recorded:
@@ -77,7 +78,7 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         assert len(answers) >= len(told) > 10
         assert [answer.tick for answer in answers] == sorted(answer.tick for answer in answers)
         facts = recorded.facts
-    assert (facts["seed"], facts["period_us"], facts["timestep_us"], facts["subject"], facts["ended"]) == (1, 10_000, 2_000, 7, "here")
+    assert (facts["seed"], facts["period_us"], facts["timestep_us"], facts["subject"], facts["place"]) == (1, 10_000, 2_000, 7, "here")
     assert facts["versions"] == versions()
     assert {"python", "mujoco", "numpy", "actr3d", "machine"} <= versions().keys()
     (source,) = facts["sources"].values()
@@ -150,9 +151,12 @@ def test_a_paused_run_is_written_too(tmp_path: Path) -> None:
 def test_a_reader_does_not_hold_up_the_end(tmp_path: Path) -> None:
     recording = Recording(tmp_path / "run", {"kind": "program"})
     recording.event(TraceEvent(0, "agent", "output", {"text": "one"}))
+    recording._writer.flush()
     with Recorded(tmp_path / "run") as recorded:
-        recording.close()
         assert recorded.event_count == 1
+        recording.event(TraceEvent(1, "agent", "output", {"text": "two"}))
+        recording.close()
+        assert recorded.event_count == 1  # it is read as it was
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
@@ -168,10 +172,11 @@ def test_a_full_disk_stops_the_run_and_spoils_nothing(before: str, reason: str, 
     assert done.returncode == 1
     last = done.stderr.strip().splitlines()[-1]
     assert last.startswith(f"actr3d.errors.RecordingError: cannot write the recording '{path}': {reason}")
-    assert last.endswith("; what was written before is kept")
     with Recorded(path) as recorded:
         ticks = recorded.ticks
+        kept = f"the first {ticks:,} ticks and {recorded.event_count:,} events of the run are kept, nothing of what came after"
         states = [state.data for state in recorded.states()]
+    assert last.endswith(f"; {kept}")
     assert whole(path)
     assert ticks > 10
     again = driving()
@@ -220,7 +225,11 @@ def test_a_recording_begins_with_its_run(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("content", "message"),
-    [(None, "no recording"), (b"no database at all", "is no recording: file is not a database"), (b"", "is no recording: no such table")],
+    [
+        (None, "no recording"),
+        (b"no database at all", "is no recording: file is not a database"),
+        (b"", "is no recording: it has other tables"),
+    ],
 )
 def test_what_is_no_recording_is_called_that(content: bytes | None, message: str, tmp_path: Path) -> None:
     path = tmp_path / "run"
@@ -295,3 +304,108 @@ def test_facts_without_a_value_are_damage(tmp_path: Path) -> None:
     file.close()
     with pytest.raises(RecordingError, match="is no recording"):
         Recorded(tmp_path / "run")
+
+
+def test_what_going_back_drops_can_be_copied_before(tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run", subject=7) as recording:
+        simulation.run(0.3)
+        simulation.command("aperture", width=0.5)
+        simulation.run(0.3)
+        simulation.seek(0.2)
+        recording.copy_to(tmp_path / "before")
+        with Recorded(tmp_path / "before") as before:  # it is closed at once
+            assert (before.ticks, before.facts["subject"], before.facts["ended"], before.over) == (60, 7, {"by": "left"}, False)
+            assert [command.tick for command in before.commands()] == [30]
+            assert [state.tick for state in before.states()] == list(range(61))
+            same = replay(before, driving)
+            assert (same.difference, same.ticks, same.events) == (None, 60, before.event_count)
+        simulation.command("aperture", width=0.7)
+        simulation.run(0.2)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["before", "run"]
+    with Recorded(tmp_path / "run") as after, Recorded(tmp_path / "before") as before:
+        assert (after.ticks, [command.tick for command in after.commands()]) == (40, [20])
+        assert "ended" not in after.facts
+        one, other = list(after.states()), list(before.states())
+        assert one[:21] == other[:21]
+        assert one[40].data != other[40].data
+        assert replay(after, driving).difference is None
+
+
+def test_a_copy_of_a_run_that_was_over_says_how_it_ended(tmp_path: Path) -> None:
+    simulation = driving()
+    with simulation.record(tmp_path / "run") as recording:
+        simulation.run(0.1)
+        recording.fact("ended", {"by": "stop"})
+        recording.copy_to(tmp_path / "over")
+        recording.fact("ended", None)
+        recording.copy_to(tmp_path / "left")
+        recording.fact("failed", "NameError: x")
+        recording.copy_to(tmp_path / "failed")
+    for name, ended in (("over", {"by": "stop"}), ("left", {"by": "left"}), ("failed", None)):
+        with Recorded(tmp_path / name) as recorded:
+            assert recorded.facts["ended"] == ended
+
+
+def test_a_copy_that_cannot_be_written_leaves_nothing_and_the_recording_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "there").write_text("precious", encoding="utf-8")
+    simulation = driving()
+    with simulation.record(tmp_path / "run") as recording:
+        simulation.run(0.1)
+        with pytest.raises(RecordingError, match="there': it exists already"):
+            recording.copy_to(tmp_path / "there")
+        with pytest.raises(RecordingError, match=r"cannot write the recording '.*nowhere/copy'"):
+            recording.copy_to(tmp_path / "nowhere" / "copy")
+        with pytest.raises(RecordingError, match="embedded null"):
+            recording.copy_to("a\0b")
+        simulation.run(0.1)
+    assert (tmp_path / "there").read_text(encoding="utf-8") == "precious"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run", "there"]
+    with Recorded(tmp_path / "run") as recorded:
+        assert recorded.ticks == 20
+
+
+def test_each_second_of_simulated_time_is_written_however_soon_it_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from actr3d.recording import writer
+
+    monkeypatch.setattr(writer, "INTERVAL", 1_000)  # nothing is written for the time on the wall
+    simulation = driving()
+    recording, events = simulation.record(tmp_path / "run"), Recording(tmp_path / "events", {"kind": "program"})
+    simulation.run(2.05)
+    for tenth in range(21):
+        events.event(TraceEvent(tenth * 100_000, "agent", "output", {"text": "one"}))
+    deadline = time.monotonic() + 20
+    for name, ticks, count in (("run", 199, 0), ("events", 0, 20)):
+        while True:
+            with Recorded(tmp_path / name) as read:  # as a kill would leave it
+                if read.ticks >= ticks and read.event_count >= count:
+                    break
+            assert time.monotonic() < deadline, name
+            time.sleep(0.05)
+    recording.close()
+    events.close()
+
+
+FULL_DISK = """
+import resource, sys
+sys.path.insert(0, {tests!r})
+from walkers import driving
+simulation = driving()
+resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))
+with simulation.record({path!r}):
+    while True:
+        simulation.step()
+"""
+
+
+@pytest.mark.parametrize("size", [1_000, 20_000, 60_000])
+def test_a_run_that_begins_on_a_full_disk_leaves_no_empty_recording(size: int, tmp_path: Path) -> None:
+    path = tmp_path / "runs" / "run"
+    path.parent.mkdir()
+    code = FULL_DISK.format(tests=str(TESTS), path=str(path), size=size)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 1
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith(f"actr3d.errors.RecordingError: cannot write the recording '{path}': ")
+    assert last.endswith("; nothing of the run is kept")
+    assert list(path.parent.iterdir()) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sqlite3
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from forging import forge
 from walkers import driving
 
 from actr3d.actr.limits import RunLimits
@@ -16,9 +18,10 @@ from actr3d.cli import main
 from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.running.building import build
+from actr3d.running.declared import has_build, problem_of_build
 from actr3d.running.options import read_settings
 from actr3d.running.replay import replay
-from actr3d.running.run import has_build, run_model
+from actr3d.running.run import run_model
 from actr3d.trace import Trace
 
 ROOT = Path(__file__).parent.parent
@@ -87,13 +90,6 @@ def recorded_run(file: Path, *words: str) -> Path:
     return path
 
 
-def alter(path: Path, *changes: str) -> None:
-    with sqlite3.connect(path) as file:
-        for change in changes:
-            assert file.execute(change).rowcount > 0
-    file.close()
-
-
 def test_what_a_file_builds_is_run_to_its_end_recorded_and_replayed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file, "--set", "times=4", "--set", "height=0.5")
     assert capsys.readouterr().out.split()[1::2] == ["1", "2", "3", "4"]
@@ -156,7 +152,7 @@ def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
     path = recorded_run(file, "--until", "0.127")
     with Recorded(path) as recorded:
         assert recorded.ticks == 12
-        assert recorded.facts["ended"] == {"by": "seconds"}
+        assert recorded.facts["ended"] == {"by": "limits"}
     assert main(["replay", str(path)]) == 0
 
 
@@ -218,7 +214,7 @@ CHANGES = [
 @pytest.mark.parametrize(("change", "message"), CHANGES)
 def test_a_replay_says_where_it_differs(change: str, message: str, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
-    alter(path, change)
+    forge(path, change)
     capsys.readouterr()
     assert main(["replay", str(path)]) == (2 if "error" in message else 1)
     told = capsys.readouterr()
@@ -227,7 +223,7 @@ def test_a_replay_says_where_it_differs(change: str, message: str, file: Path, c
 
 def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
-    alter(path, """UPDATE facts SET value = '{"python": "2.7"}' WHERE name = 'versions'""")
+    forge(path, """UPDATE facts SET value = '{"python": "2.7"}' WHERE name = 'versions'""")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
     assert "python 2.7 then, 3." in capsys.readouterr().err
@@ -254,34 +250,35 @@ def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> No
     with simulation.record(tmp_path / "run"):
         simulation.command("aperture", 0.5)
         simulation.run(0.3)
-    alter(tmp_path / "run", f"UPDATE {table} SET data = substr(data, 1, length(data) - 9) || 'XXXXXXXXX'")
+    forge(tmp_path / "run", f"UPDATE {table} SET data = substr(data, 1, length(data) - 9) || 'XXXXXXXXX'")
     with Recorded(tmp_path / "run") as recorded, pytest.raises(RecordingError, match="is damaged: "):
         replay(recorded, driving)
 
 
-def test_a_recording_that_was_killed_before_anything_was_written_agrees(file: Path) -> None:
+def test_a_recording_that_was_killed_before_anything_was_written_cannot_be_compared(file: Path) -> None:
     path = recorded_run(file)
-    alter(path, "DELETE FROM events", "DELETE FROM states", "DELETE FROM facts WHERE name IN ('ended', 'whole')")
-    with Recorded(path) as recorded:
-        assert str(replay(recorded)) == "every byte agrees: 0 events"
+    forge(path, "DELETE FROM events", "DELETE FROM states", "DELETE FROM facts WHERE name IN ('ended', 'whole')")
+    message = "holds nothing to compare: its run was broken off before anything was written"
+    with Recorded(path) as recorded, pytest.raises(RecordingError, match=message):
+        replay(recorded)
 
 
 def test_a_recording_without_its_facts_is_told(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
-    alter(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
+    forge(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
-    assert "is no whole recording: it does not say its kind and versions" in capsys.readouterr().err
+    assert "is no recording: it does not say its kind and versions" in capsys.readouterr().err
 
 
 def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY.replace("python_actr", "actr3d.actr"), encoding="utf-8")
     path = recorded_run(file)
-    alter(path, in_fact("sources", "range(2)", "range(1)"))
+    forge(path, in_fact("sources", "range(2)", "range(1)"))
     assert main(["replay", str(path)]) == 1
     assert "differs: the run ended after " in capsys.readouterr().out
-    alter(path, in_fact("sources", "range(1)", "range(3)"))
+    forge(path, in_fact("sources", "range(1)", "range(3)"))
     assert main(["replay", str(path)]) == 1
     assert "recorded: nothing; now: " in capsys.readouterr().out
 
@@ -293,11 +290,11 @@ def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path
     file = tmp_path / "noisy.py"
     file.write_text(NOISY, encoding="utf-8")
     path = recorded_run(file)
-    alter(path, "DELETE FROM facts WHERE name = 'ended'", CUT)
+    forge(path, "DELETE FROM facts WHERE name = 'ended'", CUT)
     with Recorded(path) as recorded:
         comparison = replay(recorded)
-    assert comparison.difference is None
     assert comparison.events > 20
+    assert str(comparison) == f"agrees as far as it goes: {comparison.events} events; the run was broken off at 0.25 s"
 
 
 def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Path) -> None:
@@ -314,7 +311,7 @@ def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Pat
         assert (same.difference, same.ticks, same.unfinished) == (None, 60, 0)
         assert same.events == recorded.event_count
         other = replay(recorded, lambda: driving(seed=2))
-        assert other.difference == "recorded: period 0.01 s, seed 1; now: period 0.01 s, seed 2"
+        assert other.difference == "recorded: period 0.01 s, timestep 0.002 s, seed 1; now: period 0.01 s, timestep 0.002 s, seed 2"
 
 
 def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -324,7 +321,12 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
     assert "has no attribute 'halt'" in capsys.readouterr().err
     assert main(["replay", str(path)]) == 0
-    assert capsys.readouterr().out.startswith("every byte agrees: 14 ticks, ")
+    out = capsys.readouterr().out
+    assert re.fullmatch(
+        r"agrees as far as it goes: 14 ticks, \d+ events \(\d+ more events of a tick that did not end\); "
+        r"the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
+        out,
+    )
 
 
 @pytest.mark.parametrize("code", [0, 3])
@@ -337,12 +339,12 @@ def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, 
     capsys.readouterr()
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out.startswith("every byte agrees: ")
-    alter(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
+    forge(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
     assert main(["replay", str(path)]) == 1
     assert '"text": "moreend..."' in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("leave", ["1 / 0", "raise SystemExit(0)"])
+@pytest.mark.parametrize("leave", ["1 / 0", "raise SystemExit(0)", "raise BaseException"])
 def test_a_replay_that_fails_differs(
     leave: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -353,7 +355,7 @@ def test_a_replay_that_fails_differs(
     file.write_text("import os\n" + text, encoding="utf-8")
     path = recorded_run(file)
     capsys.readouterr()
-    what = "ZeroDivisionError: division by zero" if leave == "1 / 0" else "SystemExit: 0"
+    what = {"1 / 0": "ZeroDivisionError: division by zero", "raise BaseException": "BaseException: "}.get(leave, "SystemExit: 0")
     monkeypatch.setenv("FAIL", "run")
     assert main(["replay", str(path)]) == 1
     assert capsys.readouterr().out == f"differs: the run failed after 0.09 s ({what})\n"
@@ -394,16 +396,34 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("def build(a, b) -> Simulation: pass", "build takes one argument, its parameters"),
-        ("def build(a) -> Simulation: pass", r"build\(a\) does not say which dataclass its parameters are of"),
-        ("def build() -> Simulation: return 3", r"build must return a Simulation \(returned 3\)"),
+        ("def build(a, b) -> Simulation: pass", r":2: build\(a, b\) takes 2 arguments; it must be `def build\(parameters: Parameters\)"),
+        ("def build(a: int, b: int = 3) -> Simulation: pass", r":2: build\(a: int, b: int=3\) takes 2 arguments"),
+        ("def build(*, a: int) -> Simulation: pass", r":2: build\(\*, a: int\) takes arguments by name only"),
+        ("def build(*a) -> Simulation: pass", "any number of them"),
+        ("def build(a) -> Simulation: pass", r":2: build\(a\) does not say which dataclass its parameters are of"),
+        ("def build(a: int) -> Simulation: pass", "takes int, which is no dataclass"),
+        ("class P: pass\ndef build(a: P) -> Simulation: pass", ":3: .* takes P, which is no dataclass"),
+        (
+            "from enum import Enum\nclass P(Enum): pass\ndef build(a: P) -> Simulation: pass",
+            r":4: build\(a: P\) takes what is no dataclass",
+        ),
+        ("def build(): return 3", r":2: build\(\) does not say what it returns, not a Simulation; it must be .* \(or have another name\)"),
+        ("def build(a, b): return 3", r":2: build\(a, b\) does not say what it returns"),
+        ("def build() -> int: return 3", r"says that it returns int, not a Simulation"),
+        ("async def build() -> Simulation: pass", ":2: build is an async function"),
+        ("class build: pass", ":2: build is a class"),
+        ("build = lambda p: Simulation(p)", ":2: build is a value"),
+        ("from elsewhere import build", ":2: build is imported"),
+        ("\ndef build() -> Simulation: return 3", r":3: build must return a Simulation \(returned 3\)"),
     ],
 )
-def test_a_wrong_build_is_told(line: str, message: str) -> None:
+def test_a_wrong_build_is_told_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, message: str) -> None:
     text = f"from actr3d.simulation import Simulation\n{line}\n"
-    assert has_build(text)
-    with pytest.raises(ModelFileError, match=message):
+    (tmp_path / "wrong.py").write_text(text, encoding="utf-8")
+    with pytest.raises(ModelFileError, match=f"wrong.py{message}" if message[0] == ":" else message):
         build(text, "wrong.py", {})
+    assert main(["run", str(tmp_path / "wrong.py")]) == 1
+    assert re.search(message, capsys.readouterr().err)
 
 
 def test_a_build_without_parameters() -> None:
@@ -417,10 +437,12 @@ def test_a_build_without_parameters() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["def build(model):\n    return model", "class A:\n    def build(self) -> Simulation: pass", "not python ("]
+    "text",
+    ["def build(model):\n    return model\nprint(build(3))", "class A:\n    def build(self) -> Simulation: pass", "not python (", ""],
 )
 def test_other_functions_called_build_are_none(text: str) -> None:
     assert not has_build(text)
+    assert problem_of_build(text) is None
 
 
 def test_settings_are_values_or_texts() -> None:
@@ -442,7 +464,7 @@ def test_lines_that_a_model_prints_are_recorded_where_they_come(file: Path, caps
     assert capsys.readouterr().out == "loaded and ready\n1\nend2\nend3\nend"
     assert printed_lines(path) == [(0.0, "loaded and ready"), (0.05, "1"), (0.1, "end2"), (0.15, "end3"), (0.15, "end")]
     assert main(["replay", str(path)]) == 0
-    alter(path, "UPDATE events SET data = replace(data, 'end2', 'end7')")
+    forge(path, "UPDATE events SET data = replace(data, 'end2', 'end7')")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 1
     assert '"text": "end7"' in capsys.readouterr().out

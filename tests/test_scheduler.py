@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
+import pytest
+from cycle import fired, run
 from noting import Part, seen
 
 from actr3d.actr import Model
@@ -275,3 +277,175 @@ def test_priorities_of_triggers() -> None:
     assert order == ["added after", "b", "a"]
     sch.trigger("nobody waits")
     assert repr(bell) == "<Trigger 'bell'>"
+
+
+STEPS = 6000
+"""So many sixtieths of a second are 100 s; rounded one by one they would be 2 ms more."""
+
+
+def chain(sch: Scheduler, left: int) -> None:
+    if left:
+        sch.add(chain, 1 / 60, args=(sch, left - 1))
+
+
+WAITS: list[Callable[[Any], Any]] = [
+    lambda _: 1 / 60,
+    lambda _: Fraction(1, 60),
+    lambda _: {"delay": 1 / 60},
+    lambda _: (1 / 60, Trigger("never")),
+    lambda model: model.step(),
+    lambda model: model.sch.add(lambda: None, 1 / 60),
+]
+
+
+@pytest.mark.parametrize(
+    "wait",
+    WAITS,
+    ids=["number", "fraction", "dict", "first of several", "called generator", "added call"],
+)
+def test_delays_that_follow_one_another_do_not_drift(wait: Any) -> None:
+    class World(Model):
+        def step(self) -> Iterator[Any]:
+            yield 1 / 60
+
+        def start(self) -> Iterator[Any]:
+            for step in range(STEPS):
+                yield wait(self)
+                assert self.sch.now_us == round((step + 1) * 1_000_000 / 60)
+
+    world = World()
+    world.run()
+    assert world.now() == STEPS / 60
+
+
+@pytest.mark.parametrize("first_come", [True, False])
+def test_calls_that_schedule_the_next_do_not_drift(first_come: bool) -> None:
+    sch = Scheduler(first_come)
+    chain(sch, STEPS)
+    sch.run()
+    assert sch.time == STEPS / 60
+
+
+def test_what_is_woken_goes_on_from_the_exact_moment() -> None:
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            self.bell = Trigger("bell")
+            self.ringing()
+            for _ in range(STEPS):
+                yield self.bell
+                yield 1 / 60
+
+        def ringing(self) -> Iterator[Any]:
+            for _ in range(STEPS):
+                yield 1 / 60
+                self.sch.trigger(self.bell)
+                yield 1 / 60
+
+    world: Any = World()
+    world.run()
+    assert world.now() == 2 * STEPS / 60
+
+
+def test_delays_that_take_turns_do_not_drift() -> None:
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            for _ in range(STEPS):
+                yield 1 / 60
+                yield 0.01
+                yield 1 / 7
+
+    world = World()
+    world.run()
+    assert abs(world.now() - STEPS * (1 / 60 + 0.01 + 1 / 7)) <= 1e-6
+
+
+def test_delays_that_differ_are_each_rounded_alone() -> None:
+    class World(Part):
+        def start(self) -> Iterator[Any]:
+            for delay in (0.0000014, 0.0000024, 0.0000034):
+                yield delay
+                self.note("step")
+
+    world = World()
+    world.run()
+    assert [time for _, time in seen(world)] == [0.000001, 0.000003, 0.000006]
+
+
+def test_two_series_of_one_delay_stay_together() -> None:
+    class World(Part):
+        def series(self, name: str) -> Iterator[Any]:
+            for _ in range(100):
+                yield 1 / 60
+                self.note(name)
+
+        def start(self) -> Iterator[Any]:
+            self.series("a")
+            self.series("b")
+            yield 0
+
+    world = World()
+    world.run()
+    times = [time for _, time in seen(world)]
+    assert times[::2] == times[1::2]
+
+
+def test_delays_below_a_microsecond_add_up() -> None:
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            for _ in range(1000):
+                yield 1e-7
+
+    world = World()
+    world.run()
+    assert world.now() == 1e-4
+
+
+@pytest.mark.parametrize("kind", ["ProductionSystem", "ACTR"])
+def test_a_production_time_of_a_sixtieth_of_a_second_does_not_drift(kind: str) -> None:
+    module = run(
+        f"""
+class Agent({kind}):
+    production_time = 1 / 60
+    goal = Buffer()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        pass
+""",
+        STEPS / 60,
+    )
+    assert len(module.trace.select("fire")) == STEPS
+    assert fired(module)[-1][0] == STEPS / 60
+
+
+def test_a_series_goes_on_beside_retrievals_which_are_rounded_each_by_itself() -> None:
+    module = run(
+        """
+class Agent(ACTR):
+    production_time = 1 / 60
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, latency=1 / 60)
+    def init():
+        memory.add("a")
+        goal.set("go")
+    def again(goal="go"):
+        memory.request("a")
+""",
+        STEPS / 60,
+    )
+    assert fired(module)[-1][0] == STEPS / 60
+
+
+def test_whole_milliseconds_stay_whole() -> None:
+    module = run("""
+class Clock(Model):
+    def start(self):
+        for _ in range(3):
+            yield 1 / 60
+            out.append(self.now())
+class Agent(ACTR):
+    profile = "act-r-7"
+    clock = Clock()
+""")
+    assert module.out == [0.017, 0.034, 0.051]

@@ -63,7 +63,7 @@ from actr3d.world import Floor, Mannequin, Scene
 class Parameters(Configuration):
     "What may be set."
 
-def build(parameters):
+def build(parameters: Parameters) -> Simulation:
     return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker})
 """
 

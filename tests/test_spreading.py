@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from typing import Any
 
 import pytest
 from living import living, near
 
-from actr3d.actr import Buffer, Chunk, DMSalience, DMSpreading, Memory
+from actr3d.actr import Buffer, Chunk, DMFixed, DMInhibition, DMSalience, DMSpreading, Memory
 from actr3d.errors import ChunkError, ModelWarning
 
 
@@ -101,3 +102,41 @@ def test_spreading_takes_any_value_and_knows_what_came_before_it() -> None:
     agent.memory.add({"list": [1, 2], "b": "x"})
     agent.goal.set({"list": [1, 2]})
     assert agent.memory.get_activation({"list": [1, 2]}) == near(1 - math.log(3))
+
+
+@pytest.mark.parametrize("copied", [False, True])
+def test_a_module_made_late_counts_each_chunk_once_however_often_it_is_told(copied: bool) -> None:
+    memory, goal = Memory(Buffer()), Buffer()
+    early = DMSpreading(memory, goal)
+    for text in ("a b", "a c", "d a"):
+        memory.add(text)
+    late = DMSpreading(memory, goal)
+    if copied:
+        memory, early, late = copy.deepcopy((memory, early, late))
+    for chunk in memory.dm:
+        late.create(chunk)  # as python_actr needs it
+        late.create(chunk)
+        early.create(chunk)
+    assert late.slots == early.slots == {"a": 3, "b": 1, "c": 1, "d": 1}
+    memory.add("e a")
+    assert late.slots == early.slots == {"a": 4, "b": 1, "c": 1, "d": 1, "e": 1}
+
+
+def test_equal_chunks_that_are_told_by_hand_count_each() -> None:
+    memory = Memory(Buffer())
+    spreading = DMSpreading(memory)
+    for _ in range(2):
+        spreading.create(Chunk("a b"))
+    assert spreading.slots == {"a": 2, "b": 2}
+
+
+@pytest.mark.parametrize("kind", [DMFixed, DMInhibition])
+def test_other_modules_may_be_told_again_too(kind: Any) -> None:
+    memory = Memory(Buffer())
+    agent = living(memory=memory, module=kind(memory))
+    agent.memory.add("a")
+    agent.run(1)
+    (module,) = agent.memory.adaptors
+    before = module.activation(agent.memory.dm[0])
+    module.create(agent.memory.dm[0])
+    assert module.activation(agent.memory.dm[0]) == before

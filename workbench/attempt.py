@@ -18,10 +18,14 @@ from workbench.worker.workers import Worker
 class Relived:
     """An earlier run that is to be lived through again."""
 
+    file: str
+    """Where the model file was then; nothing is read from there."""
     source: str
     """The model's text then."""
     commands: list[tuple[int, dict[str, Any]]]
     """What users did, to be done again: after which tick, and what."""
+    recording: Path
+    """Where it was recorded."""
     helpers: dict[str, tuple[str, str]]
     """Its helper modules, as `actr3d.actr.helper_texts` keeps them."""
 
@@ -57,8 +61,9 @@ def start_of(path: Path, wanted: Wanted, **more: Any) -> Start:
     if relived is None:
         more |= {"source": read_source(path), "version": ModelFolder.version(path)}
     else:
+        path = Path(relived.file)
         more |= {"source": relived.source, "version": digest_of(relived.source)}
-        more |= {"commands": relived.commands, "helpers": relived.helpers}
+        more |= {"commands": relived.commands, "helpers": relived.helpers, "recorded": str(relived.recording)}
     seed = fresh_seed() if wanted.seed is None else wanted.seed
     return Start(path=str(path), folder=str(path.parent), settings=wanted.settings, seed=seed, run=wanted.run, **more)
 

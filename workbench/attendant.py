@@ -9,6 +9,7 @@ from typing import Protocol
 
 import msgspec
 
+from workbench.worker.link import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import At, FromWorker, Notice, Over, Start, Where, notice
 from workbench.worker.workers import LOST, PRINTED, Worker
@@ -40,6 +41,10 @@ class Told(Protocol):
 
     def busy(self, worker: Worker) -> bool:
         """Tells whether a worker is to be saying something."""
+        ...
+
+    def halt(self, worker: Worker, name: str) -> None:
+        """Takes note that a signal of this name has stopped a worker, so that it stands still; no name: that it goes on."""
         ...
 
 
@@ -124,8 +129,15 @@ class Attendant:
     async def _watch(self) -> None:
         """Asks the worker where it is when it is busy and says nothing."""
         since: float | None = None
+        halted = 0
         while True:
             await asyncio.sleep(SILENT / 4)
+            if self._worker.halted != halted:
+                halted, since = self._worker.halted, None
+                self._told.halt(self._worker, _name_of(halted) if halted else "")
+            if halted:
+                self._heard = time.monotonic()
+                continue
             now = time.monotonic()
             since = (since or now) if self._told.busy(self._worker) else None
             if since is None:
@@ -142,10 +154,17 @@ def _why(status: int) -> str:
     """Says how a process ended that nobody has asked to end."""
     if status == LOST:
         return "the process from which all models' processes come was ended, and all runs with it; begin again"
+    if status == WIRE_LOST:
+        return "the model closed the connection of its process to the workbench: it may close only files that it has opened itself"
     if status == TOO_MUCH_MEMORY:
         return "the model's process was ended: it used more memory than it may"
     if status >= 0:
         return f"the model ended its process, with exit code {status}"
-    name = signal.Signals(-status).name if -status in set(signal.Signals) else str(-status)
+    name = _name_of(-status)
     more = {"SIGKILL": ": the system ended it, maybe for want of memory", "SIGSEGV": ": a crash in compiled code"}.get(name, "")
     return f"the model's process was ended by {name}{more}"
+
+
+def _name_of(number: int) -> str:
+    """Returns the name of a signal."""
+    return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"

@@ -9,14 +9,12 @@ from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any, cast
 
-import msgspec
-
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from workbench.loader import listing_of
-from workbench.summaries import EVENTS, UNREADABLE, Event
+from workbench.summaries import UNREADABLE
 
 CONTEXT = 8
 """So many events before the first difference are told, and so many after it of each."""
@@ -109,19 +107,19 @@ def _changes(ours: str, theirs: str) -> list[str]:
 def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> tuple[int, dict[str, Any] | None, bool]:
     """Returns how many events agree, what then differs, and whether all were compared where nothing does."""
     ours, theirs = _events(one, kinds), _events(other, kinds)
-    before: deque[Event] = deque(maxlen=CONTEXT)
+    before: deque[TraceEvent] = deque(maxlen=CONTEXT)
     number = -1
     for number, (mine, its) in enumerate(zip_longest(ours, theirs)):
         if number == MOST_COMPARED:
             return number, None, False
         if mine != its and not (mine is not None and its is not None and _alike(mine, its)):
-            after = [[_shown(event) for event in islice(events, CONTEXT)] for events in (ours, theirs)]
+            after = [[list(event) for event in islice(events, CONTEXT)] for events in (ours, theirs)]
             difference = {
                 "number": number,
                 "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
-                "events": [None if event is None else _shown(event) for event in (mine, its)],
+                "events": [None if event is None else list(event) for event in (mine, its)],
                 "what": _what(mine, its),
-                "before": [_shown(event) for event in before],
+                "before": [list(event) for event in before],
                 "after": after,
             }
             return number, difference, True
@@ -129,27 +127,16 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
     return number + 1, None, True
 
 
-def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[Event]:
-    """Yields events whose particulars are read only where they are needed: there may be a million."""
-    for (text,) in recorded._file.execute("SELECT data FROM events ORDER BY first"):
-        rows = EVENTS.decode(text)
-        yield from (event for event in rows if event[2] in kinds) if kinds else rows
+def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[TraceEvent]:
+    return (event for event in recorded.events() if not kinds or event.kind in kinds)
 
 
-def _alike(mine: Event, its: Event) -> bool:
-    """Tells whether two events differ in nothing but where in memory some object lies."""
-    return mine[:3] == its[:3] and _event(mine).to_json() == _event(its).to_json()
+def _alike(mine: TraceEvent, its: TraceEvent) -> bool:
+    """Returns whether two events differ in nothing but where in memory some object lies."""
+    return mine[:3] == its[:3] and mine.to_json() == its.to_json()
 
 
-def _event(event: Event) -> TraceEvent:
-    return TraceEvent(*event[:3], msgspec.json.decode(event[3]))
-
-
-def _shown(event: Event) -> list[Any]:
-    return [*event[:3], msgspec.json.decode(event[3])]
-
-
-def _what(mine: Event | None, its: Event | None) -> list[list[Any]]:
+def _what(mine: TraceEvent | None, its: TraceEvent | None) -> list[list[Any]]:
     """Returns in what two events differ: names with both values."""
     if mine is None or its is None:
         return []
@@ -158,7 +145,7 @@ def _what(mine: Event | None, its: Event | None) -> list[list[Any]]:
         if one != other:
             found.append([name, one, other])
     if mine[2] == its[2]:
-        found += _differing("", msgspec.json.decode(mine[3]), msgspec.json.decode(its[3]))
+        found += _differing("", mine.data, its.data)
     return found[:CONTEXT]
 
 

@@ -13,6 +13,8 @@ import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
+from actr3d.clock import microseconds
+
 INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 Values = Sequence[float | None]
 
@@ -220,6 +222,20 @@ NOTHING: dict[str, Any] = {"names": [], "times": [], "curves": {}}
 """The curves of a run that has no world."""
 
 
+def joined(parts: Iterable[dict[str, Any]]) -> dict[str, Any]:
+    """Returns the curves of simulations that come one after the other as those of one run; each is null where it is not one of theirs."""
+    names: dict[str, dict[str, str]] = {}
+    times: list[float] = []
+    curves: dict[str, list[float | None]] = {}
+    for part in parts:
+        names |= {curve["name"]: curve for curve in part["names"]}
+        for name in {**curves, **part["curves"]}:
+            known = curves.setdefault(name, [None] * len(times))
+            known += part["curves"].get(name, [None] * len(part["times"]))
+        times += part["times"]
+    return {"names": list(names.values()), "times": times, "curves": curves}
+
+
 def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[Source]:
     """Yields where the curves of bodies come from."""
     roots = np.append(model.body_rootid[model.geom_bodyid], -1)
@@ -240,6 +256,18 @@ def _members(model: MjModel, root: int) -> list[int]:
         if int(model.body_parentid[number]) in members:
             members.add(number)
     return sorted(members)
+
+
+def stretch(first: float, last: float | None, period: int, zero: int = 0) -> tuple[int, int | None]:
+    """Returns the first and the last tick of a stretch; None for one without end.
+
+    Args:
+        first: Its begin [s].
+        last: Its end [s]; None for none.
+        period: A tick [us].
+        zero: When tick 0 was [us].
+    """
+    return -(-max(0, microseconds(first) - zero) // period), None if last is None else (microseconds(last) - zero) // period
 
 
 def stride(count: int, most: int) -> int:

@@ -181,6 +181,7 @@ class Feed:
         if self._facts != shown.facts_version:
             self._facts = shown.facts_version
             message["session"] = Raw(shown.facts_json())
+            message["you"] = self.name
         if (self._run, self._epoch) != (shown.run, shown.epoch):
             self._run, self._epoch, self._next, self._cut = shown.run, shown.epoch, 0, 0
         if self._state != shown.state_version:

@@ -33,14 +33,27 @@ class Job:
         errors = [notice.text for notice in self.notices if notice.level == "error"]
         return errors[-1] if errors else self.ending or "the worker has ended"
 
+    @property
+    def problem_of_reader(self) -> str:
+        """The same, of a worker that has read a recording and run no model."""
+        reader = "the process that read it"
+        return self.problem.replace("the model's process", reader).replace("the model ended its process, with", f"{reader} ended with")
+
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Takes what the worker says."""
         if isinstance(message, Share):
             self.share = message.done
         elif isinstance(message, Reply):
-            self.result = message.result
+            self.reply(message)
         elif isinstance(message, Notice):
             self.tell(message)
+
+    def reply(self, message: Reply) -> None:
+        """Takes what came of it, or why nothing did."""
+        if message.error is None:
+            self.result = message.result
+        else:
+            self.notices.append(Notice(level="error", text=message.error))
 
     def take_end(self, worker: Worker, ending: str) -> None:
         """Takes how the worker ended."""
@@ -52,29 +65,36 @@ class Job:
         if notice.level != "info":  # what is printed is of no interest
             self.notices.append(notice)
 
+    def halt(self, worker: Worker, name: str) -> None:
+        """Ends a worker that a signal has stopped: nobody is there who could let it go on."""
+        if name:
+            self.tell(Notice(level="error", text=f"the model's process was stopped by {name}, and ended"))
+            worker.kill()
+
     def busy(self, worker: Worker) -> bool:
         """Tells that nobody wants to know where the worker is."""
         return False
 
 
 @asynccontextmanager
-async def doing(workers: Workers, start: Start, job: Job | None = None) -> AsyncGenerator[Job]:
-    """Lets a worker do something inside the block; it is ended with that.
+async def doing(workers: Workers, start: Start, job: Job | None = None, memory: int | None = None) -> AsyncGenerator[Job]:
+    """Has a worker do something inside the block, and kills it at the end of the block if it is not done.
 
     Args:
         workers: Who gives workers.
         start: What the worker is told.
         job: Where it is noted how far it has come; None for a new one.
+        memory: How much memory it may take [MB]; None for as much as a model may.
 
     Raises:
         OSError: If no worker can be started.
     """
     noted = job or Job()
-    worker = await workers.launch()
+    worker = await workers.launch(memory)
     serving = asyncio.create_task(Attendant(worker, start, noted).serve())
     try:
         yield noted
     finally:
         if not noted.over.is_set():
-            await worker.stop()
+            worker.kill()
         await serving

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 
+from actr3d.recording.opening import COMPANIONS
 from workbench.feed import EventLog
 from workbench.worker.messages import State
 
@@ -17,8 +19,7 @@ MOST = 500
 """So many recordings are kept, unless told otherwise."""
 MOST_MEGABYTES = 4_000
 """And no more than so many MB of them."""
-BESIDE = ("-wal", "-shm", "-journal")
-"""Files with these endings lie beside a recording that is being written."""
+_BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
 """The name that a run gives its recording; one with another name was given it by a user."""
 
@@ -63,6 +64,17 @@ def _written(path: Path) -> float:
         return 0.0
 
 
+def begun(path: Path) -> float:
+    """Returns when a recording began, as its name tells; else when it was last written [s since 1970]."""
+    named = _BEGUN.search(path.stem)
+    if named is not None:
+        try:
+            return time.mktime(time.strptime(named[1], "%Y%m%d-%H%M%S"))
+        except (ValueError, OverflowError):
+            pass
+    return _written(path)
+
+
 def is_unnamed(path: Path) -> bool:
     """Tells whether a recording has the name that its run has given it."""
     return _UNNAMED.fullmatch(path.stem) is not None
@@ -84,7 +96,7 @@ def never_begun(state: State | None, log: EventLog) -> bool:
 def size_of(path: Path) -> int:
     """Returns how large a recording is with what lies beside it, as of one that is being written [bytes]; 0 where it is gone."""
     size = 0
-    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
+    for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
         with suppress(OSError):
             size += each.stat().st_size
     return size
@@ -92,10 +104,10 @@ def size_of(path: Path) -> int:
 
 def stands_alone(path: Path) -> bool:
     """Tells whether a recording is all in its own file, as one is whose run has ended in good order."""
-    return not any(path.with_name(path.name + end).exists() for end in BESIDE)
+    return not any(path.with_name(path.name + end).exists() for end in COMPANIONS)
 
 
 def erase(path: Path) -> None:
     """Deletes a recording, and what lies beside it."""
-    for each in (path, *(path.with_name(path.name + end) for end in BESIDE)):
+    for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
         each.unlink(missing_ok=True)

@@ -16,7 +16,7 @@ from actr3d.actr.reading import compile_source
 from actr3d.actr.sources import syntax_tree
 from actr3d.actr.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
-from actr3d.running.run import has_build
+from actr3d.running.declared import has_build, problem_of_build
 
 _UNIT = re.compile(r"\[([^\]]+)\]")
 _TAKES = {"float": "number", "int": "whole number", "str": "text", "bool": "switch"}
@@ -96,6 +96,8 @@ class Listing:
     kind: str = "program"
     """`simulation` where it builds one, else `program`."""
     parameters: tuple[Parameter, ...] = ()
+    simulates: bool = False
+    """Whether it makes simulations of its own: its text calls `Simulation`."""
     productions: tuple[str, ...] = ()
     """`Agent.production`, as far as the text tells."""
     problems: tuple[Problem, ...] = field(default=())
@@ -123,6 +125,7 @@ def listing_of(source: str, filename: str = "model.py") -> Listing:
         text=text,
         kind="simulation" if builds else "program",
         parameters=tuple(_of_build(tree) if builds else _of_first_lines(source)),
+        simulates=any(isinstance(node, ast.Call) and _last_name(node.func) == "Simulation" for node in ast.walk(tree)),
         productions=tuple(_productions(tree)),
         problems=problems,
     )
@@ -137,6 +140,9 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
         except ModelFileError as error:
             named = re.match(rf"{re.escape(filename)}:(\d+): (.*)", str(error), re.DOTALL)
             yield Problem(level="error", message=sendable(named[2] if named else str(error)), line=int(named[1]) if named else None)
+    found = problem_of_build(source)
+    if found is not None:
+        yield Problem(level="error", message=sendable(found[1]), line=found[0])
     for warning in told:
         yield Problem(level="warning", message=sendable(str(warning.message)), line=warning.lineno)
 
@@ -278,6 +284,10 @@ def _can_be_told(value: Any) -> bool:
 def sendable(text: str) -> str:
     """Returns a text that can be sent: half characters, which no encoding has, as escapes."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def _last_name(node: ast.expr) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
 def _productions(tree: ast.Module) -> Iterator[str]:

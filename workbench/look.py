@@ -1,4 +1,4 @@
-"""How a session's 3D view is looked at: which overlays are shown, and from where it is seen; the same for all who watch."""
+"""Which overlays a session's 3D view shows: the same for all who watch. From where it is seen each browser chooses for itself."""
 
 from __future__ import annotations
 
@@ -16,23 +16,18 @@ TITLES: dict[say.OverlayName, str] = {
     "contacts": "contacts",
 }
 """What overlays are called, in their order."""
-VIEWS: tuple[say.CameraView, ...] = ("free", "follow", "eye", "top")
 
 
 @dataclass(frozen=True)
 class Look:
-    """Which overlays are shown, and from where the scene is seen."""
+    """Which overlays are shown."""
 
-    shown: frozenset[say.OverlayName] = frozenset({"frustum", "features", "path", "contacts"})
-    camera: say.CameraView = "free"
+    shown: frozenset[say.OverlayName] = frozenset({"features", "path", "contacts"})
 
-    def after(self, said: say.Overlay | say.Camera) -> Look:
-        """Returns how it is looked at after something was said."""
-        if isinstance(said, say.Camera):
-            return replace(self, camera=said.view)
+    def after(self, said: say.Overlay) -> Look:
+        """Returns what is shown after a command."""
         return replace(self, shown=self.shown | {said.name} if said.shown else self.shown - {said.name})
 
     def told(self) -> dict[str, Any]:
-        """Returns what pages are told: `overlays`, each with `name`, `title` and whether it is `shown`, and the `camera`."""
-        overlays = [{"name": name, "title": title, "shown": name in self.shown} for name, title in TITLES.items()]
-        return {"overlays": overlays, "camera": self.camera, "cameras": VIEWS}
+        """Returns what pages are told: `overlays`, each with `name`, `title` and whether it is `shown`."""
+        return {"overlays": [{"name": name, "title": title, "shown": name in self.shown} for name, title in TITLES.items()]}

@@ -1,4 +1,4 @@
-"""Viser's own panel: run, pause, step and back, the apertures, the camera, the overlays; so that it is enough alone."""
+"""Viser's own panel: run, pause, step and back, the apertures, the overlays; so that the 3D view can be used alone."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from workbench import protocol as say
-from workbench.look import TITLES, VIEWS, Look
+from workbench.look import TITLES, Look
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": say.Run, "pause": say.Pause, "step": say.Step, "back": say.Back}
@@ -42,8 +42,6 @@ class Panel:
             slider = gui.add_slider(f"{name} [cm]", min=least, max=most, step=1, initial_value=least)
             slider.on_update(partial(self._slid, name, slider))
             self._sliders[name] = slider
-        self._camera = gui.add_dropdown("camera", VIEWS, initial_value=look.camera)
-        self._camera.on_update(self._turned)
         self._boxes: dict[str, Any] = {}
         with gui.add_folder("overlays"):
             for name, title in TITLES.items():
@@ -65,8 +63,6 @@ class Panel:
 
     def choose(self, look: Look) -> None:
         """Shows how the scene is looked at."""
-        if self._camera.value != look.camera:
-            self._camera.value = look.camera
         for name, box in self._boxes.items():
             if box.value != (name in look.shown):
                 box.value = name in look.shown
@@ -74,10 +70,6 @@ class Panel:
     def _slid(self, name: str, slider: Any, event: Any) -> None:
         if event.client_id is not None:  # else the panel is only being set to what is so
             self._said(say.Aperture(width=slider.value / 100, name=name))
-
-    def _turned(self, event: Any) -> None:
-        if event.client_id is not None:
-            self._said(say.Camera(view=self._camera.value))
 
     def _switched(self, name: say.OverlayName, box: Any, event: Any) -> None:
         if event.client_id is not None:

@@ -19,7 +19,6 @@ Plain = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
 OverlayName = Literal["frustum", "edges", "features", "path", "posture", "contacts"]
 """What can be drawn over the 3D view: what the eye can see, the edges that it sees, what vision has found last with its width, the
 path walked, the posture that the body is commanded to, where it touches something."""
-CameraView = Literal["free", "follow", "eye", "top"]
 """From where the 3D view is seen: from where each user likes, with the body, through its eye, from above."""
 
 
@@ -101,7 +100,18 @@ class Speed(Said):
     factor: float | None = Field(default=None, ge=0.05, le=10_000)
 
 
-class Aperture(Said):
+class Change(Said):
+    """The base of what changes the run itself.
+
+    Where the run has gone back, it goes another way from here. What lies ahead is kept as a recording of its own, a branch; where the
+    run is not recorded, the change is refused unless `drop` allows to lose it.
+    """
+
+    drop: bool = False
+    """Whether what lies ahead may be lost where it cannot be kept."""
+
+
+class Aperture(Change):
     """Sets the free width of an aperture [m]."""
 
     type: Literal["aperture"] = "aperture"
@@ -109,7 +119,7 @@ class Aperture(Said):
     name: Name = "aperture"
 
 
-class Set(Said):
+class Set(Change):
     """Changes a live parameter of the model in the running simulation."""
 
     type: Literal["set"] = "set"
@@ -117,7 +127,7 @@ class Set(Said):
     value: Plain
 
 
-class Say(Said):
+class Say(Change):
     """Says any word to the world, the minds or a body, as `Simulation.command` takes it."""
 
     type: Literal["say"] = "say"
@@ -149,13 +159,6 @@ class Overlay(Said):
     type: Literal["overlay"] = "overlay"
     name: OverlayName
     shown: bool
-
-
-class Camera(Said):
-    """Chooses from where the 3D view is seen, for all who watch the session."""
-
-    type: Literal["camera"] = "camera"
-    view: CameraView
 
 
 class Stop(Said):
@@ -223,12 +226,14 @@ class Curves(Said):
     """Which; None for all."""
     first: Seconds = 0.0
     """From when on [s]: what a page knows already it need not ask for again."""
+    last: Seconds | None = None
+    """Until when, this moment included [s]; None for as far as the run has come."""
     most: int = Field(default=1_000, ge=2, le=5_000)
-    """How many times at most, evenly spread; the last that is known is among them."""
+    """How many times at most, evenly spread; the last one of the stretch is among them. All of a stretch that has fewer."""
 
 
 Command = Annotated[
-    Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Overlay | Camera | Restart | Stop,
+    Run | Pause | Step | Cycle | Back | Seek | Until | Breakpoints | Speed | Aperture | Set | Say | Overlay | Restart | Stop,
     Field(discriminator="type"),
 ]
 Question = Annotated[Explain | Rows | Look | Body | Events | Curves, Field(discriminator="type")]
@@ -246,7 +251,6 @@ Anything = Annotated[
     | Set
     | Say
     | Overlay
-    | Camera
     | Restart
     | Stop
     | Explain
@@ -258,7 +262,7 @@ Anything = Annotated[
     Field(discriminator="type"),
 ]
 
-LOOKS = (Overlay, Camera)
+LOOKS = (Overlay,)
 """What changes the view only, and nothing of the run."""
 QUESTIONS = (Explain, Rows, Look, Body, Events, Curves)
 """What only asks."""

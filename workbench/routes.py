@@ -13,6 +13,7 @@ from fastapi.responses import Response
 from pydantic import Field
 
 from workbench import protocol as say
+from workbench.about import about_of
 from workbench.files import ModelFile
 from workbench.loader import listing_of, sendable
 from workbench.outlines import outline_of
@@ -67,6 +68,8 @@ class Open(say.Said):
     seed: int | None = Field(default=None, ge=0, lt=2**63)
     record: bool = True
     run: bool = False
+    real_time: bool = False
+    """Whether a run with a body goes at real time until a speed is chosen; else every run goes as fast as it can."""
 
 
 class Saying(say.Said):
@@ -171,7 +174,8 @@ def sessions(request: Request) -> dict[str, Any]:
 @router.post("/sessions", status_code=201)
 async def open_session(request: Request, body: Open) -> dict[str, Any]:
     """Begins a session with a model file; it waits at its start, unless it is to run."""
-    session = await sessions_of(request).open(body.model, body.settings, seed=body.seed, record=body.record, run=body.run)
+    wanted = body.model_dump(exclude={"model", "settings"})
+    session = await sessions_of(request).open(body.model, dict(body.settings), **wanted)
     return session.summary()
 
 
@@ -181,6 +185,16 @@ def session(request: Request, session: Id) -> Response:
     found = sessions_of(request).get(session)
     told = {"session": msgspec.Raw(found.facts_json()), "state": msgspec.Raw(found.state_json())}
     return Response(msgspec.json.encode(told), media_type="application/json")
+
+
+@router.get("/sessions/{session}/about")
+def about(request: Request, session: Id) -> dict[str, Any]:
+    """Gives the description of the model whose run is shown: its docstring as a tree of elements, with values to try."""
+    found = sessions_of(request).get(session)
+    source = found.source
+    if source is None:  # no run of it could be begun
+        source = sessions_of(request).folder.read(found.model).text
+    return about_of(source, found.model)
 
 
 @router.post("/sessions/{session}/say")

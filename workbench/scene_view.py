@@ -13,14 +13,17 @@ import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 
-from workbench.cameras import Cameras
+from workbench.backdrop import Outlines, Shades, lay_grounds, light
 from workbench.compiled import loaded
 from workbench.curves import INTEGRATION
 from workbench.look import Look
 from workbench.overlays import Overlay, make_overlays
+from workbench.overlays.features import Features
+from workbench.overlays.frustum import Frustum
 from workbench.panel import Panel
 from workbench.protocol import OverlayName
-from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, header_of, start_viser
+from workbench.stage import Stage
+from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, header_of, start_viser, tell
 from workbench.worker.messages import Facts, State
 
 if TYPE_CHECKING:
@@ -135,12 +138,8 @@ class SceneView:
                 scene.show(state)
 
     def _come(self, client: Any) -> None:
-        """Shows a browser that comes the newest."""
-        if header_of(self._server, client, SHADOWS_HEADER) == "off":
-            client.scene.configure_default_lights(cast_shadow=False)
-        scene = self._scene
-        if scene is not None:
-            scene.cameras.place(client, scene.data)
+        """Lights the scene of a browser that comes, and shows it the newest."""
+        light(client, shadows=header_of(self._server, client, SHADOWS_HEADER) != "off")
         self._wake(client)
 
     def _wake(self, _: Any) -> None:
@@ -178,16 +177,20 @@ class _Drawn:
         self._scene: Any = ViserMujocoScene(server, loaded(facts.mj_model), 1)
         self._scene.camera_tracking_enabled = False  # it would shift the world
         self._scene.set_refresh_handler(lambda: None)  # its own threads read no data
+        server.scene.configure_environment_map(hdri=None)  # much of what a picture costs without a graphics card
         self._overlays: dict[OverlayName, Overlay] = make_overlays(server, self._scene, self._model, world, look)
-        eyes: Any = self._overlays["frustum"]
-        self.cameras = Cameras(server, self._model, eyes)
+        self._server = server
+        self._stage = Stage(self._model)
+        self._outlines = Outlines(server, self._model)
+        self._shades = Shades(self._model, self._stage.ground)
+        tell(server, "stage", self._stage.told(lay_grounds(server, self._model)))
+        self._tell_now()
         self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
         self._look: Look | None = None
 
     def asked(self, look: Look) -> tuple[OverlayName, ...]:
-        """Returns the overlays for which the worker is to tell what there is to draw; who looks through the eye asks how wide it sees."""
-        shown = look.shown | ({"frustum"} if look.camera == "eye" else set[OverlayName]())
-        return tuple(name for name, overlay in self._overlays.items() if overlay.asked and name in shown)
+        """Returns the overlays that need data of the worker, and always the field of view: any browser may look through the eye."""
+        return tuple(name for name, overlay in self._overlays.items() if overlay.asked and name in (look.shown | {"frustum"}))
 
     def look(self, look: Look) -> None:
         """Lets the scene be looked at so."""
@@ -197,8 +200,8 @@ class _Drawn:
         for name, overlay in self._overlays.items():
             overlay.show(name in look.shown)
         self._panel.choose(look)
-        self.cameras.choose(look.camera, self.data)
         self._scene.update_from_mjdata(self.data)
+        self._tell_now()
 
     def show(self, state: State) -> None:
         """Shows a state."""
@@ -213,4 +216,21 @@ class _Drawn:
             if overlay.visible or name == "frustum":
                 overlay.draw(self.data, state.drawn.get(name))
         self._panel.show(state)
-        self.cameras.move(self.data)
+        self._tell_now()
+
+    def _tell_now(self) -> None:
+        """Tells browsers where the body, its eye and its head are, and what there is of shade and labels."""
+        if not np.isfinite(self.data.xpos).all():
+            return  # physics has failed: the last that made sense stays
+        self._outlines.draw(self.data)
+        eyes, features = self._overlays["frustum"], self._overlays["features"]
+        assert isinstance(eyes, Frustum)
+        assert isinstance(features, Features)
+        now = {
+            "body": self._stage.base(self.data).round(5).tolist(),
+            "eye": eyes.eye(self.data),
+            "heads": eyes.heads(self.data),
+            "shade": self._shades.told(self.data),
+            "labels": features.labels if features.visible else [],
+        }
+        tell(self._server, "now", now)

@@ -17,7 +17,7 @@ from workbench.feed import EventLog
 from workbench.keeping import erase, never_begun
 from workbench.telling import Telling
 from workbench.waiting import Waiting
-from workbench.worker.messages import At, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
+from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 
 
@@ -35,6 +35,8 @@ class Session(Telling):
     def __init__(self, name: str, path: Path, workers: Workers, recording: Callable[[str], Path], shown_path: str) -> None:
         super().__init__(name, path, shown_path)
         self.speed: float | None = None
+        self.real_time = False
+        """Whether runs that have a body go at real time, until somebody chooses a speed."""
         self._workers = workers
         self._new_recording = recording
         self._beginning = asyncio.Lock()
@@ -71,7 +73,7 @@ class Session(Telling):
         async with self._beginning:
             wanted = wanted or Wanted()
             record = str(self._new_recording(self.path.stem)) if wanted.record else None
-            more: dict[str, Any] = {"record": record, "factor": self.speed, "breakpoints": self.breakpoints}
+            more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
             start = start_of(self.path, wanted, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
             attempt = Attempt(start, await self._workers.launch())
@@ -98,6 +100,10 @@ class Session(Telling):
         match message:
             case _ if attempt is None:
                 return
+            case Facts() if shown and message is not self.facts:
+                self.facts = message
+                self._tell_watchers(message)
+                self._changed(facts=True)
             case State() if shown:
                 self._take_state(message)
             case News() if shown:
@@ -105,8 +111,13 @@ class Session(Telling):
             case Cut() if shown:
                 self.epoch += 1
                 self.log.cut(message.events)
+                self._cuts.append((self._notice_number, message.events))
+                self._changed(facts=True)
                 for feed in self.feeds:
                     feed.cut(message.events)
+            case Branched() if shown:
+                self.branched = message
+                self._changed(facts=True)
             case Loaded():
                 attempt.texts.take(message)
                 self._changed(facts=shown)
@@ -141,7 +152,8 @@ class Session(Telling):
         self.run += 1
         self.epoch += 1
         self.log = EventLog()
-        self.facts, self.state, self._stuck = facts, None, None
+        self.facts, self.state, self._stuck, self.branched = facts, None, None, None
+        self._cuts.clear()
         if self._drawn:
             attempt.worker.send(Draw(kinds=self._drawn))
         self._tell_watchers(facts)
@@ -171,6 +183,23 @@ class Session(Telling):
                 reason = self._ending or "the worker has ended"
                 self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
                 self.state_version += 1
+        self._changed(facts=True)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has no run that can be told anything, and none is on its way."""
+        return not self.alive and self._loading is None
+
+    def halt(self, worker: Worker, name: str) -> None:
+        """Takes note that a signal of this name has stopped a worker, so that it stands still; no name: that it goes on."""
+        if self._attempt_of(worker) is None:
+            return
+        self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
+        if name:
+            text = (
+                f"the model's process was stopped by {name}, and stands still: SIGCONT to process {worker.pid} lets it go on, Stop ends it"
+            )
+            self.tell(Notice(level="warning", text=text))
         self._changed(facts=True)
 
     def busy(self, worker: Worker) -> bool:
@@ -230,7 +259,7 @@ class Session(Telling):
                     await self.stop()
                 case say.Restart():
                     await self._begin_again(said)
-                case say.Overlay() | say.Camera():
+                case say.Overlay():
                     self.look = self.look.after(said)
                     self._tell_watchers(self.look)
                     self._changed(facts=True)
@@ -255,7 +284,7 @@ class Session(Telling):
     def _note(self, said: Any) -> None:
         """Keeps what holds for later runs, too."""
         if isinstance(said, say.Speed):
-            self.speed = said.factor
+            self.speed, self.real_time = said.factor, False
         elif isinstance(said, say.Breakpoints):
             self.breakpoints = said.productions
             self._changed(facts=True)

@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import Actr3dError
-from actr3d.recording import Recorded
 from workbench.attempt import Relived, Wanted
+from workbench.beginnings import Beginning, parsed
 from workbench.files import ModelFolder
 from workbench.jobs import doing
+from workbench.listing import Listing
+from workbench.readers import Readers
 from workbench.recordings import Recordings
 from workbench.rerunning import Reruns
 from workbench.scene_view import SceneView
@@ -36,6 +38,12 @@ class NoSuchSessionError(SessionError):
     status = 404
 
 
+class UntrustedError(SessionError):
+    """Code of a recording would be run that this installation did not make, and the user has not said that it may."""
+
+    status = 403
+
+
 class Sessions:
     """Begins and ends sessions.
 
@@ -49,11 +57,14 @@ class Sessions:
         self.folder = folder
         self.recordings = recordings
         self.workers = workers
+        self.readers = Readers(workers)
+        self.listing = Listing(recordings, workers)
         self.reruns = Reruns(workers)
         self._sessions: dict[str, Session] = {}
         self._views: dict[str, SceneView] = {}
         self._count = 0
         self._opening = asyncio.Lock()
+        self._reopening = asyncio.Lock()
 
     def all(self) -> list[Session]:
         """Returns all sessions, the oldest first."""
@@ -82,8 +93,18 @@ class Sessions:
         view = self._views.get(name)
         return view if view is not None and view.ready.is_set() else None
 
-    async def open(self, model: str, settings: dict[str, Any], *, seed: int | None, record: bool, run: bool) -> Session:
+    async def open(
+        self, model: str, settings: dict[str, Any], *, seed: int | None, record: bool, run: bool, real_time: bool = False
+    ) -> Session:
         """Begins a session with a model file.
+
+        Args:
+            model: The file, as pages call it.
+            settings: Values of parameters.
+            seed: None for a new one.
+            record: Whether the run is recorded.
+            run: Whether it goes on at once.
+            real_time: Whether a run with a body goes at real time, until a speed is chosen; else it goes as fast as it can.
 
         Raises:
             Actr3dError: If there is no such file, or there are too many sessions.
@@ -91,34 +112,69 @@ class Sessions:
         """
         where = self.folder.locate(model)
         self.folder.read(model)
-        return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run))
+        return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run), real_time=real_time)
 
-    async def reopen(self, recording: str) -> Session:
-        """Begins a session that lives through a recorded run again, with everything that users did.
+    async def beginning(self, recording: str) -> Beginning:
+        """Returns with what a recorded run began; nothing of it is run.
+
+        Raises:
+            Actr3dError: If there is no such recording, or it cannot be read.
+            OSError: If no worker can be started.
+        """
+        with await self.readers.make("beginning", self.recordings.path(recording)) as made:
+            return parsed(made.read())
+
+    async def trusted(self, recording: str, trust: bool) -> Beginning:
+        """Returns with what a recorded run began, if its code may be run.
+
+        Args:
+            recording: Its name.
+            trust: Whether the user has said that code may be run that this installation has not recorded itself.
+
+        Raises:
+            UntrustedError: If it may not.
+            Actr3dError: If there is no such recording, or it cannot be read.
+            OSError: If no worker can be started.
+        """
+        began = await self.beginning(recording)
+        if not (began.made_here or trust):
+            raise UntrustedError(
+                "this installation did not make the recording (or it was changed since), and the code in it would be run: "
+                'send "trust": true if you know where it comes from'
+            )
+        return began
+
+    async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False) -> Session:
+        """Begins a session that lives through a recorded run again, with everything that users did; or returns the one that does already.
+
+        Args:
+            recording: Its name.
+            trust: As of `trusted`.
+            real_time: As of `open`.
 
         Raises:
             Actr3dError: If there is no such recording, or there are too many sessions.
             OSError: If no worker can be started.
         """
-        with Recorded(self.recordings.path(recording)) as recorded:
-            facts = recorded.facts
-            commands = [(command.tick, command.data) for command in recorded.commands()]
-        file = facts.get("file")
-        if file is None or file not in facts.get("sources", {}):
-            raise SessionError("the recording does not say which model file made it")
-        path = Path(file)
-        inside = path.resolve().is_relative_to(self.folder.root)
-        shown = path.resolve().relative_to(self.folder.root).as_posix() if inside else path.name
-        seed = facts.get("program_seed", facts["seed"])
-        settings = facts.get("parameters", {})
-        helpers = {name: (str(where), str(text)) for name, (where, text) in facts.get("helpers", {}).items()}
-        relived = Relived(source=facts["sources"][file], commands=commands, helpers=helpers)
-        return await self._begun(path, shown, Wanted(settings=settings, seed=seed, record=False, relived=relived))
+        async with self._reopening:  # who opens it twice at once gets one session
+            where = self.recordings.path(recording)
+            open_already = [one for one in self.all() if one.recorded == where and not one.is_over]
+            if open_already:
+                return open_already[-1]
+            began = await self.trusted(recording, trust)
+            path = Path(began.file).resolve()
+            if not path.is_relative_to(self.folder.root):
+                path = self.folder.root / path.name  # a new run is one of the user's own model of that name, if there is one
+            shown = path.relative_to(self.folder.root).as_posix()
+            relived = Relived(file=began.file, source=began.source, commands=began.commands, helpers=began.helpers, recording=where)
+            wanted = Wanted(settings=began.parameters, seed=began.seed, record=False, relived=relived)
+            return await self._begun(path, shown, wanted, real_time=real_time)
 
-    async def _begun(self, path: Path, model: str, wanted: Wanted) -> Session:
+    async def _begun(self, path: Path, model: str, wanted: Wanted, *, real_time: bool = False) -> Session:
         """Returns a new session that has begun a run; where that cannot be begun, there is no session either."""
         async with self._opening:  # making room takes a moment, in which nobody else takes it
             session = await self._new(path, model)
+        session.real_time = real_time
         try:
             await session.begin(wanted)
         except BaseException:
@@ -133,7 +189,7 @@ class Sessions:
             idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
             if not idle:
                 raise SessionError(f"there are {MOST} sessions already, and each is watched or goes on: close a page, or stop a run")
-            await self.close(idle[0].name)
+            await self.close(next((one for one in idle if one.recorded is not None), idle[0]).name)
         self._count += 1
         name = f"s{self._count}"
         session = Session(name, path, self.workers, self.recordings.new, model)

@@ -1,14 +1,11 @@
-"""What a list tells of recordings: read from each file once, and again only when it has changed."""
+"""What a list tells of a recording, as a worker reads it from the file."""
 
 from __future__ import annotations
 
-import re
 import sqlite3
-import time
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from threading import Lock
 from typing import Any
 
 import msgspec
@@ -16,17 +13,20 @@ import msgspec
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
-from workbench.keeping import size_of
+from actr3d.values import to_json
+from workbench.branches import branched_at
+from workbench.keeping import begun, size_of
 from workbench.loader import Parameter, listing_of
 
-UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, ValueError, KeyError, TypeError, AttributeError, IndexError)
+_WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
+UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, *_WRONG)
 """What reading a file raises that is no whole recording of this form."""
 Event = tuple[int, str, str, msgspec.Raw]
 """When [us], who, what, and the particulars as JSON."""
 EVENTS = msgspec.json.Decoder(list[Event])
 """Reads a row of events, but not their particulars."""
-_BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
-_Stamp = tuple[int, ...]
+MOST_TEXT = 200_000
+"""No summary is longer [bytes of JSON]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +40,8 @@ class Summary:
     parameters: dict[str, Any] = field(default_factory=dict[str, Any])
     different: tuple[str, ...] = ()
     """Which of these are not what the model's text has as defaults."""
+    branched: float | None = None
+    """Of a branch: where the past of its run was changed [s]."""
     ended: str | None = None
     """How it ended; None where it was broken off, or goes on."""
     failed: str | None = None
@@ -59,64 +61,28 @@ class Summary:
     """Why it cannot be read, where it cannot."""
 
 
-class Summaries:
-    """Reads summaries, and keeps them for as long as their files stay as they are."""
+def summary_json(path: Path) -> bytes:
+    """Returns the `Summary` of a file as JSON; of one that is no recording, with the reason.
 
-    def __init__(self) -> None:
-        self._known: dict[str, tuple[_Stamp, Summary]] = {}
-        self._reading = Lock()
-
-    def of(self, path: Path) -> Summary:
-        """Returns the summary of a file, also of one that is no recording."""
-        # Many who ask at once would only wait for one another's turns.
-        with self._reading:
-            stamp = _stamp(path)
-            known = self._known.get(path.name)
-            if known is None or known[0] != stamp:
-                known = self._known[path.name] = stamp, summary_of(path)
-            return known[1]
-
-    def forget(self, kept: set[str]) -> None:
-        """Forgets all files but those of these names."""
-        with self._reading:
-            self._known = {name: known for name, known in self._known.items() if name in kept}
-
-
-def _stamp(path: Path) -> _Stamp:
-    """Returns numbers that differ when the file has changed; while a run goes on, what is new lies in a file beside it."""
-    numbers: list[int] = []
-    for each in (path, path.with_name(f"{path.name}-wal")):
-        try:
-            told = each.stat()
-        except OSError:
-            continue
-        numbers += told.st_mtime_ns, told.st_size
-    return tuple(numbers)
-
-
-def begun(path: Path) -> float:
-    """Returns when a recording began, as its name tells; else when it was last written [s since 1970]."""
-    named = _BEGUN.search(path.stem)
-    if named is not None:
-        try:
-            return time.mktime(time.strptime(named[1], "%Y%m%d-%H%M%S"))
-        except (ValueError, OverflowError):
-            pass
-    try:
-        return path.stat().st_mtime
-    except OSError:
-        return 0.0
-
-
-def summary_of(path: Path) -> Summary:
-    """Returns what is known of a file."""
+    Raises:
+        RecordingError: If it is too long.
+    """
     size = size_of(path)
     try:
         with Recorded(path) as recorded:
-            return _read(recorded, size)
+            found = _read(recorded, size)
     except UNREADABLE as error:
         reason = str(error) if isinstance(error, (RecordingError, OSError)) else f"it is damaged ({type(error).__name__}: {error})"
-        return Summary(id=path.stem, size=size, made=begun(path), problem=reason.replace(f"'{path}'", "it").removeprefix("it is "))
+        found = unreadable(path, reason.replace(f"'{path}'", "it"))
+    told = to_json(vars(found)).encode()
+    if len(told) > MOST_TEXT:
+        return to_json(vars(unreadable(path, "what it tells of its run is too long to be listed"))).encode()
+    return msgspec.json.encode(msgspec.json.decode(told, type=Summary))
+
+
+def unreadable(path: Path, reason: str) -> Summary:
+    """Returns what is told of a file that cannot be read."""
+    return Summary(id=path.stem, size=size_of(path), made=begun(path), problem=reason.removeprefix("it is ")[:2_000])
 
 
 def _read(recorded: Recorded, size: int) -> Summary:
@@ -132,6 +98,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         seed=facts.get("program_seed", facts.get("seed")),
         parameters=parameters,
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
+        branched=branched_at(path),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),

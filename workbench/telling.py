@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,8 @@ import msgspec
 from workbench.attempt import Attempt
 from workbench.feed import MOST_NOTICES, EventLog, Feed, Raw
 from workbench.look import Look
-from workbench.worker.messages import Facts, Notice, Start, State
+from workbench.summaries import begun
+from workbench.worker.messages import Branched, Facts, Notice, Start, State
 
 Watcher = Callable[[Facts | State | Look | None], None]
 
@@ -43,6 +45,10 @@ class Telling:
         self.state: State | None = None
         self.facts: Facts | None = None
         self.breakpoints: tuple[str, ...] = ()
+        self.born = time.time()
+        """When it began [s since 1970]: tells it from sessions of that name of an earlier server."""
+        self.branched: Branched | None = None
+        """What was kept when a user changed something in the past of the present run, the latest time."""
         self.has_scene = False
         """Whether there is a 3D view to look at."""
         self._shown: Attempt | None = None
@@ -52,6 +58,8 @@ class Telling:
         self._attempt = 0
         """The number of the latest."""
         self._notice_number = 0
+        self._cuts: deque[tuple[int, int]] = deque(maxlen=MOST_NOTICES)
+        """Where the run went another way: before which notice, and after how many events. Notices between are of a past that is gone."""
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
@@ -60,6 +68,12 @@ class Telling:
     def start(self) -> Start | None:
         """What the present run began with."""
         return None if self._shown is None else self._shown.start
+
+    @property
+    def recorded(self) -> Path | None:
+        """The recording of the run that is shown, or is on its way, where that is an earlier run; None for a new one."""
+        start = self._shown.start if self._shown is not None else None if self._loading is None else self._loading.start
+        return None if start is None or start.recorded is None else Path(start.recorded)
 
     @property
     def alive(self) -> bool:
@@ -80,16 +94,22 @@ class Telling:
         told: dict[str, Any] = {
             **self.summary(),
             "stuck": self._stuck,
+            "branched": None
+            if self.branched is None
+            else {"recording": self.branched.recording, "at": self.branched.at, "until": self.branched.until},
             "scene": self.has_scene,
             **self.look.told(),
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
-            "seed": facts.seed if facts is not None else None,
+            "seed": None if facts is None else _exactly(facts.seed),
             "stale": self._shown is not None and self._shown.texts.differ(self.path),
             "gone": not self.path.is_file(),
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
             "version": start.version if start is not None else None,
+            "cuts": list(self._cuts),
+            "born": self.born,
+            "made": None if self.recorded is None else begun(self.recorded),
             "recording": Path(start.record).stem if start is not None and start.record is not None else None,
         }
         if facts is not None:
@@ -99,6 +119,7 @@ class Telling:
     def summary(self) -> dict[str, Any]:
         """Returns what a list of sessions tells of it."""
         return {
+            "recorded": None if self.recorded is None else self.recorded.stem,
             "id": self.name,
             "model": self.model,
             "run": self.run,
@@ -118,6 +139,12 @@ class Telling:
         told = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
         return msgspec.json.encode({**told, "apertures": state.apertures, "result": Raw(state.result), "parts": Raw(state.parts)})
 
+    @property
+    def source(self) -> str | None:
+        """The text of the run that is shown, else of the one that is being built; None where there is neither."""
+        attempt = self._shown or self._loading
+        return None if attempt is None else attempt.start.source
+
     # -- who watches
 
     def join(self, name: str) -> Feed:
@@ -136,6 +163,8 @@ class Telling:
         """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
         told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
+        is_shown = self._shown is not None and (self._attempt if start is None else start.attempt) == self._shown.start.attempt
+        told["events"] = notice.events if notice.events is not None else self.log.next if is_shown else 0
         told |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
         self.notices.append((self._notice_number, msgspec.json.encode(told)))
         self._notice_number += 1
@@ -164,3 +193,8 @@ class Telling:
     def _tell_watchers(self, what: Facts | State | Look | None) -> None:
         for watcher in self.watchers:
             watcher(what)
+
+
+def _exactly(seed: int | str) -> int | str:
+    """Returns a seed as a page can read it without loss: as text where it is larger than the whole numbers that JavaScript has."""
+    return seed if isinstance(seed, int) and abs(seed) < 2**53 else str(seed)

@@ -23,7 +23,10 @@ MOST_VIEWS = 32
 """So many 3D views may be open at once."""
 
 
-FRAMED = '<script src="/static/framed.js"></script>'
+ADDED = (
+    '<script src="/static/framed.js"></script><script type="module" src="/static/scene/view.js"></script>'
+    '<link rel="stylesheet" href="/static/scene/view.css">'
+)
 """What is put into viser's page."""
 
 
@@ -34,7 +37,7 @@ def page() -> str:
     assert spec is not None
     assert spec.origin is not None
     text = (Path(spec.origin).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
-    return text.replace("<head>", f"<head>{FRAMED}", 1)
+    return text.replace("<head>", f"<head>{ADDED}", 1)
 
 
 class Bridge:

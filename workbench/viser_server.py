@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import secrets
 from typing import Any
 
@@ -43,6 +44,19 @@ def start_viser(secret: str) -> Any:
     inner.disconnect_all_clients()
     server.scene.set_up_direction("+z")
     return server
+
+
+def tell(server: Any, name: str, value: Any) -> None:
+    """Tells every browser something of the scene that viser has no message for: it calls `scene.tell(name, value)` there.
+
+    It arrives with what is drawn in the same `server.atomic()`; a browser that comes later, or is slow, gets the newest of each name.
+    """
+    from viser import _messages
+
+    message = _messages.RunJavascriptMessage(f"scene.tell({json.dumps(name)},{json.dumps(value, allow_nan=False)})")
+    # Viser keeps every message of this type for browsers that come later, for they may differ; these replace each other.
+    message.redundancy_key = lambda: f"scene {name}"
+    server._websock_server.queue_message(message)
 
 
 def header_of(server: Any, client: Any, name: str) -> str:

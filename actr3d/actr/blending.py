@@ -7,18 +7,36 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from actr3d.actr.activation import DMNoise
-from actr3d.actr.chunk import Chunk
+from actr3d.actr.chunk import Chunk, as_text
 from actr3d.actr.memory import Memory, Retrieval
+from actr3d.actr.partial import Partial
+from actr3d.actr.spreading import names_a_chunk
 
 
 class BlendingMemory(Memory):
-    """A memory whose retrievals are blends: each numeric slot holds the mean over all matching chunks with the same slots,
-    weighted by exp(A / t); the other slots are the most active chunk's.
+    """A memory whose retrievals are blends of all matching chunks, each weighted by p = exp(A / t) / sum exp(A / t).
 
-    In Python ACT-R t is 1 and the time is the most active chunk's; in ACT-R 7 t is sqrt(2) times the activation noise, and
-    the time comes from ln sum exp A.
+    In Python ACT-R each numeric slot holds the mean over all matching chunks with the same slots, the other slots are the most
+    active chunk's, t is 1, and the time is the most active chunk's.
 
-    Source: Lebiere (1999), Kognitionswissenschaft 8; ACT-R 7 blending module.
+    In ACT-R 7 each slot that was not asked for holds a compromise, and the others what was asked for:
+
+    - Where all values are numbers, the sum of p times the value; chunks without the slot add nothing, and nothing is shared out
+      for them.
+    - Otherwise the value V with the least sum of p times the squared similarity of V to the chunk's value. The candidates are the
+      values of the matching chunks, and, where all of these are words, every value that the model says is similar to one of them,
+      even if no chunk has it. Of equally good candidates the first counts: in the order in which chunks came into memory, then
+      values in the order in which similarities were said.
+    - A missing value (none, or None) counts for nothing.
+
+    There t is sqrt(2) times the activation noise, and the time comes from ln sum exp A. Similarities are those of the `Partial`
+    that serves the request, or of the memory's first one (`Partial(memory, strength=None)` for blending alone); without one,
+    different values have -1.
+
+    ACT-R 7 looks for further candidates among the chunks in memory that have the same slots as those that the values name. Here
+    values are words, so the model's similarities say which others there are. Those it says nothing of could not win.
+
+    Source: Lebiere (1999), Kognitionswissenschaft 8; ACT-R 7, extras/blending/blending-read-me.txt, methods a to c.
     """
 
     temperature: float | None
@@ -26,14 +44,43 @@ class BlendingMemory(Memory):
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         matches = [match for match in matches if not math.isnan(match.activation)]
-        numeric = [slot for slot in sorted(chunk, key=str) if _number(chunk[slot]) is not None]
-        if numeric or self.rules.blend_by_noise:
-            blend: Any = Chunk(chunk)
-            blend.activation = self._match_score(matches) if self.rules.blend_by_noise else chunk.activation
-            slots = set(chunk)
-            self._mix(blend, numeric, [match for match in matches if set(match) == slots])
-            chunk = blend
+        if self.rules.blend_every_slot:
+            chunk = self._compromise(matches)
+        else:
+            numeric = [slot for slot in sorted(chunk, key=str) if _number(chunk[slot]) is not None]
+            if numeric:
+                blend: Any = Chunk(chunk)
+                blend.activation = chunk.activation
+                slots = set(chunk)
+                self._mix(blend, numeric, [match for match in matches if set(match) == slots])
+                chunk = blend
         yield from Memory.recall(self, chunk, matches, request_number)
+
+    # -- as in ACT-R 7
+
+    def _compromise(self, matches: Sequence[Any]) -> Chunk:
+        """Returns the blend of all matching chunks."""
+        search = self._last.search if self._last is not None else None
+        fixed = {slot: text for slot, text in search.equal if text != "None"} if search is not None else {}
+        partial = search.partial if search is not None and search.partial is not None else next(iter(self.partials), None)
+        weights = self._weights(matches)
+        blend: Any = Chunk({})
+        for slot in dict.fromkeys([*fixed, *(slot for match in matches for slot in match)]):
+            held = [(match[slot], weight) for match, weight in zip(matches, weights, strict=True) if as_text(match.get(slot)) != "None"]
+            if slot in fixed:
+                blend[slot] = next((value for value, _ in held if as_text(value) == fixed[slot]), fixed[slot])
+            elif held:
+                blend[slot] = _blended(held, partial, math.fsum(weights))
+        blend.activation = self._match_score(matches)
+        return blend
+
+    def _weights(self, matches: Sequence[Any]) -> list[float]:
+        """Returns what each chunk weighs, the most active one 1."""
+        t = self._temperature()
+        largest = max(match.activation for match in matches)
+        return [1.0 if m.activation == largest else math.exp((m.activation - largest) / t) for m in matches]
+
+    # -- as in Python ACT-R
 
     def _mix(self, blend: Chunk, numeric: Sequence[Any], matches: Sequence[Any]) -> None:
         """Sets the numeric slots of a blend."""
@@ -57,18 +104,20 @@ class BlendingMemory(Memory):
             if total > 0:  # else no chunk has any activation at all, and the most active one's values stay
                 blend[slot] = sums[slot] / total
 
+    # -- in both
+
     def _temperature(self) -> float:
         temperature: float | None = getattr(self, "temperature", None)
         if temperature is not None:
             return temperature
-        if self.rules.blend_by_noise:
+        if self.rules.blend_every_slot:
             noise = next((a.noise for a in self.adaptors if isinstance(a, DMNoise)), 0.0)
             if noise > 0:
                 return math.sqrt(2) * noise
         return 1.0
 
     def _strength(self, record: Retrieval, best: float) -> float:
-        if not self.rules.blend_by_noise:
+        if not self.rules.blend_every_slot:
             return best
         return self._match_score([c.chunk for c in record.candidates if not math.isnan(c.activation)])
 
@@ -86,3 +135,36 @@ def _number(value: Any) -> float | None:
         return float(value)
     except (TypeError, ValueError):
         return None
+
+
+def _blended(held: Sequence[tuple[Any, float]], partial: Partial | None, total: float) -> Any:
+    """Returns the compromise of the values of one slot, as ACT-R 7 has it.
+
+    Args:
+        held: The values that matching chunks have, and what these chunks weigh.
+        partial: What says how similar values are.
+        total: What all matching chunks weigh.
+    """
+    numbers = [None if names_a_chunk(value) or isinstance(value, bool) else _number(value) for value, _ in held]
+    if None not in numbers:
+        return math.fsum(number * weight for number, (_, weight) in zip(numbers, held, strict=True) if number is not None) / total
+    weights: dict[str, float] = {}
+    candidates: dict[str, Any] = {}
+    for value, weight in held:
+        text = as_text(value)
+        weights[text] = weights.get(text, 0.0) + weight
+        candidates.setdefault(text, value)
+    if partial is not None and all(names_a_chunk(value) for value, _ in held):
+        for value in partial.related(weights):
+            if names_a_chunk(value):
+                candidates.setdefault(as_text(value), value)
+
+    def misfit(candidate: str) -> float:
+        return math.fsum(weight * _similarity(partial, candidate, text) ** 2 for text, weight in weights.items())
+
+    return candidates[min(candidates, key=misfit)]
+
+
+def _similarity(partial: Partial | None, a: str, b: str) -> float:
+    """Returns how similar two values are: 0 where they are the same, and -1 where nothing says otherwise."""
+    return 0.0 if a == b else -1.0 if partial is None else partial.between(a, b)

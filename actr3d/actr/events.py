@@ -7,8 +7,13 @@ from inspect import CO_GENERATOR
 from types import GeneratorType
 from typing import Any, Final, cast
 
+from actr3d.actr.profile import PYTHON_ACTR, Profile
+
 AGAIN: Final = object()
 """What the library's own generators yield to go on at the same moment, with the priority their event has."""
+
+NOTHING_LEFT: Final[Mapping[float, float]] = {}
+"""Of no delay."""
 
 
 class Trigger:
@@ -38,11 +43,13 @@ class Trigger:
 class Call:
     """A plain call of the library's own at some time: it returns None, and nobody waits for it."""
 
-    __slots__ = ("args", "call")
+    __slots__ = ("args", "call", "left")
 
     def __init__(self, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
         self.call = call
         self.args = args
+        self.left: Mapping[float, float] = NOTHING_LEFT
+        """What rounding has left over of the delays that led to it; see `Scheduler.left`."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.describe()}>"
@@ -50,11 +57,11 @@ class Call:
     def __lt__(self, other: Call) -> bool:
         return False  # events of one time and priority are equals; the queue alone puts them in order
 
-    def in_milliseconds(self) -> bool:
-        """Tells whether the model whose method this is goes by whole milliseconds."""
+    @property
+    def profile(self) -> Profile:
+        """The numbers that the model goes by whose method this is."""
         owner = getattr(self.call, "__self__", self.call)
-        profile = getattr(owner, "_profile", None)
-        return profile is not None and profile.whole_milliseconds
+        return getattr(owner, "_profile", None) or PYTHON_ACTR
 
     def describe(self) -> str:
         """Names the call."""
@@ -87,11 +94,13 @@ class Event(Call):
         self.parents: list[Event] = []
         self.generator = generator
 
-    def cancel_others(self) -> None:
-        """Drops what else this has waited for, as one of several things."""
-        for other in self.group:
-            other.cancelled = other is not self
+    def cancel_others(self) -> list[Event]:
+        """Cancels what else this has waited for, as one of several things, and returns that."""
+        others = [other for other in self.group if other is not self]
+        for other in others:
+            other.cancelled = True
         self.group = ()
+        return others
 
     def describe(self) -> str:
         """Names the call, and for a generator the line it stands at."""

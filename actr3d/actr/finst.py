@@ -6,13 +6,15 @@ from collections import deque
 from typing import Any
 
 from actr3d.actr.model import Model
+from actr3d.actr.profile import PYTHON_ACTR
 
 
 class Finst:
     """Marks a few things for a while.
 
-    Where simultaneous events come as in python_actr 1.9.5, each mark is taken away by an event of its own, as there.
-    Otherwise marks are taken away when somebody looks, and one event keeps a run going until the last has expired.
+    Marks are taken away when somebody looks. By Python ACT-R's numbers one event besides keeps a run going until the last
+    has expired; where simultaneous events come as in python_actr 1.9.5, each mark is taken away by an event of its own, as
+    there. By ACT-R 7's there are no such events.
 
     Args:
         parent: The module whose clock counts.
@@ -46,7 +48,7 @@ class Finst:
         if self.size == 0:
             return
         sch = self.parent.sch
-        if sch.queue.first_come:
+        if sch.queue.first_come or not self._awaited:
             end = sch.after(self.time)
             self._bring_up_to_date()
             self._mark(obj)
@@ -75,6 +77,11 @@ class Finst:
         """Takes the oldest mark of a thing away."""
         if obj in self._marks:
             self._marks.remove(obj)
+
+    @property
+    def _awaited(self) -> bool:
+        """Whether a run goes on until marks have expired."""
+        return (self.parent._profile or PYTHON_ACTR).awaits_expiry
 
     def _mark(self, obj: Any) -> None:
         self._marks.append(obj)
@@ -105,8 +112,8 @@ class Finst:
             self.remove(ends.popleft()[1])
 
     def _watch(self, end: int) -> None:
-        """Keeps the run going until the last mark has expired."""
-        if not self._watched:
+        """Keeps the run going until the last mark has expired, where it is to be awaited."""
+        if not self._watched and self._awaited:
             self._watched = True
             self.parent.sch.call_at(end, self._look)
 

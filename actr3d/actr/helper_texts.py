@@ -14,10 +14,15 @@ class HelperTexts:
 
     Args:
         known: What `loaded` was the first time: these modules are loaded from there, whatever their files hold now.
+        folder: Where they lie as files, where there are no others; see `actr3d.actr.sealed`. None where others may come from
+            the program's own folder.
     """
 
-    def __init__(self, known: Mapping[str, Sequence[str]] | None = None) -> None:
+    def __init__(self, known: Mapping[str, Sequence[str]] | None = None, folder: Path | None = None) -> None:
         self._known = dict(known or {})
+        self.folder = folder
+        self.packages: set[str] = set()
+        """The packages in which they stand in `sys.modules`, where not by their own names."""
         self.loaded: dict[str, Sequence[str]] = {}
         """By a module's name in the program, its file (below the program's folder, if it is there) and its text."""
         self.heard: Callable[[dict[str, Sequence[str]]], object] = lambda _: None
@@ -29,6 +34,11 @@ class HelperTexts:
         inside = folder is not None and path.is_relative_to(folder)
         self.loaded[name] = (path.relative_to(folder).as_posix() if folder is not None and inside else file, text)
         self.heard(self.loaded)
+
+    def owns(self, fullname: str) -> bool:
+        """Tells whether a module belongs to the program, whether it is known or not."""
+        root = fullname.partition(".")[0]
+        return self.has(root) or root in self.packages
 
     def has(self, root: str) -> bool:
         """Tells whether a top module or package of this name, or something in it, is known from the first time."""

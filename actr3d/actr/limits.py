@@ -9,7 +9,7 @@ from contextlib import suppress
 from contextvars import ContextVar, Token
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Any, NoReturn, Protocol, Self
 from weakref import WeakSet
 
 from actr3d.clock import microseconds
@@ -25,6 +25,8 @@ class EndOfRun(BaseException):
 
 RUNS_TOGETHER = 1000
 """How many times `until` all runs together may last: a program that makes one short run after another never ends by itself."""
+MOST_STILL = 1_000_000
+"""So many runs in a row in which no time passes are an endless loop, which `until` ends, too."""
 MOST_REFUSALS = 100
 """A program that has asked so often for time after its end swallows every error: it is never going to end by itself."""
 
@@ -53,7 +55,8 @@ class RunLimits:
     """What all random choices come from; None draws a seed for each block, which its runs record."""
     until: float | None = None
     """When every run ends at the latest [s of its own simulated time]; the program ends with the first run that is cut short
-    there, or when all its runs together have lasted `RUNS_TOGETHER` times as long. None for no end."""
+    there, or when all its runs together have lasted `RUNS_TOGETHER` times as long, or it runs `MOST_STILL` times without any
+    time passing. None for no end."""
     trace: Trace | None = None
     """Where events go; None for no trace."""
     recorder: Recorder | None = None
@@ -63,10 +66,14 @@ class RunLimits:
     passing: Callable[[int, int], object] | None = field(default=None, repr=False)
     """Called before the time of a run goes on, when all that was to happen at that time has happened: from when, and to when
     [us]. Here a program can be held up, or ended by an `EndOfRun`."""
+    ticked: Callable[[Any, int], object] | None = field(default=None, repr=False)
+    """Called with a simulation before its first tick and after each tock, and with how much time has passed [us]; in place of
+    `passing`, which would come in the midst of a tick."""
     last_resort: Callable[[], Any] | None = field(default=None, repr=False)
     """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)
     _used_us: int = field(default=0, init=False, repr=False)
+    _still: int = field(default=0, init=False, repr=False)
     _ended: bool = field(default=False, init=False, repr=False)
     _refused: int = field(default=0, init=False, repr=False)
     _drawn: int = field(default=0, init=False, repr=False)
@@ -103,37 +110,50 @@ class RunLimits:
         return self._ended
 
     def spend(self, time_us: int) -> None:
-        """Takes note of time that a run has used [us]."""
+        """Notes that a run has used time, or none [us]."""
         if self.until is not None:
             with _LOCK:
                 self._used_us += time_us
+                self._still = 0 if time_us else self._still + 1
         if self._outer is not None:
             self._outer.spend(time_us)
 
     def clip(self, now_us: int) -> int | None:
-        """Returns when a run that starts now must end [us]; None where nothing ends it.
+        """Returns the last moment of a run whose clock stands at `now_us` [us], maybe a past one; None where nothing ends it.
 
         Raises:
-            EndOfRun: If there is no time left.
+            EndOfRun: If a run was cut short before, or runs follow one another without end in which no time passes.
         """
         outer = self._outer.clip(now_us) if self._outer is not None else None
         if self.until is None:
             return outer
-        end = self._last_us(now_us)
-        if self._ended or end <= now_us:
+        if self._ended or self._still > MOST_STILL:
             self._ended = True
-            self._refused += 1
-            if self._refused > MOST_REFUSALS and self.last_resort is not None:
-                self.last_resort()
-            raise EndOfRun
-        return end if outer is None else min(end, outer)
+            self._refuse()
+        last = self._last_us(now_us)
+        return last if outer is None else min(last, outer)
 
-    def cut(self, now_us: int) -> None:
-        """Takes note that a run was cut short now [us]: those limits that did it give no more time."""
-        if self.until is not None and self._last_us(now_us) <= now_us:
+    def refuse(self, now_us: int, wanted_us: int) -> NoReturn:
+        """Refuses a run whose clock stands at `now_us` the time until `wanted_us` [us].
+
+        Raises:
+            EndOfRun: Always.
+        """
+        self.cut(now_us, wanted_us)
+        self._refuse()
+
+    def _refuse(self) -> NoReturn:
+        self._refused += 1
+        if self._refused > MOST_REFUSALS and self.last_resort is not None:
+            self.last_resort()
+        raise EndOfRun
+
+    def cut(self, now_us: int, wanted_us: int) -> None:
+        """Notes that a run was cut short at `now_us`, and wanted to go on to `wanted_us` [us]: limits before that give no more time."""
+        if self.until is not None and self._last_us(now_us) < wanted_us:
             self._ended = True
         if self._outer is not None:
-            self._outer.cut(now_us)
+            self._outer.cut(now_us, wanted_us)
 
     def _last_us(self, now_us: int) -> int:
         """Returns the last moment of a run whose clock stands at `now_us`."""
@@ -145,7 +165,7 @@ class RunLimits:
     def __enter__(self) -> Self:
         if not self._tokens:  # the same limits may serve one program after another
             self._drawn = fresh_seed()
-            self._models = self._used_us = self._refused = 0
+            self._models = self._used_us = self._still = self._refused = 0
             self._ended = False
             self._outer = _CURRENT.get()
         self._tokens.append(_CURRENT.set(self))

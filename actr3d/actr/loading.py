@@ -36,7 +36,7 @@ def _as_main(module: ModuleType, program: Program) -> Generator[None]:
     main, path, argv, known = sys.modules.get("__main__"), list(sys.path), list(sys.argv), set(sys.modules)
     importlib.invalidate_caches()  # helper modules may be newer than the last look into their folder
     sys.modules["__main__"] = module
-    sys.path.insert(0, str(program.folder))
+    sys.path.insert(0, str(program.helpers.folder or program.folder))
     sys.argv[:] = [str(module.__file__)]
     try:
         with program.running():

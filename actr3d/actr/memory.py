@@ -66,6 +66,7 @@ class Memory(WithParameters, TracedMemory):
         self.finst = Finst(self, size=finst_size, time=finst_time)
         self.record_all_chunks = False
         self._request_count = 0
+        self._pending: Any = None
         self._last: Retrieval | None = None
 
     @property
@@ -164,14 +165,13 @@ class Memory(WithParameters, TracedMemory):
 
         Args:
             pattern: What to look for.
-            partial: Which similarities to allow for; the memory's first unless given.
+            partial: Which similarities to allow for; the memory's first unless given. One without a strength allows for none.
             require_new: Whether to leave out what has been retrieved lately.
 
         Raises:
             PatternException: If the text is no pattern.
         """
-        if partial is None and self.partials:
-            partial = self.partials[0]
+        partial = next((one for one in (self.partials if partial is None else [partial]) if _costs(one)), None)
         number = self._begin_request()
         sch = self.sch
         search = search_for(pattern, sch.bound, partial)
@@ -199,8 +199,10 @@ class Memory(WithParameters, TracedMemory):
         if self.error:
             self.error = False
         number = self.__dict__["_request_count"] = self._request_count + 1
-        profile = self._profile
-        if profile is not None and profile.clear_at_request:
+        profile = self.rules
+        if self._pending is not None and not profile.awaits_expiry:
+            self.sch.drop([self._pending])
+        if profile.clear_at_request:
             self._buffer.clear()
         return number
 
@@ -219,16 +221,18 @@ class Memory(WithParameters, TracedMemory):
     def _answer(self, number: int, chosen: Any, latency: float, matches: list[Chunk]) -> None:
         """Schedules what comes of a request."""
         sch = self.sch
+        pending: Any
         if chosen is None:
-            self.fail(number)
+            pending = self.fail(number)
         elif type(self).recall is not Memory.recall:
-            self.recall(chosen, matches=matches, request_number=number)
+            pending = self.recall(chosen, matches=matches, request_number=number)
         elif sch.idle_now():
             # The same as below, but for an event that would do nothing else at this very moment.
             self.finst.add_after(chosen)
-            sch.call_after(latency, self._arrive, (chosen, number))
+            pending = sch.call_after(latency, self._arrive, (chosen, number))
         else:
-            sch.call_at(sch.now_us, self._begin_recall, (chosen, latency, number))
+            pending = sch.call_at(sch.now_us, self._begin_recall, (chosen, latency, number))
+        self.__dict__["_pending"] = pending
 
     def _own_activation(self) -> Callable[[Any], float] | None:
         """Returns a modeller's own `get_activation`, where there is one."""
@@ -241,6 +245,7 @@ class Memory(WithParameters, TracedMemory):
 
     def fail(self, request_number: int) -> Iterator[float]:
         """Lets a request fail, after its time."""
+        self.sch.forget_left()
         yield self._time_of_failure()
         if request_number != self._request_count:
             return
@@ -254,13 +259,14 @@ class Memory(WithParameters, TracedMemory):
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         """Brings a chunk to the buffer, after its time."""
         self.finst.add(chunk)
+        self.sch.forget_left()
         yield self._time(chunk.activation)
         self._arrive(chunk, request_number)
 
     def _begin_recall(self, chunk: Chunk, time: float, request_number: int) -> None:
         """Does what `recall` does, where no subclass has its own."""
         self.finst.add(chunk)
-        self.sch.call_after(time, self._arrive, (chunk, request_number))
+        self.__dict__["_pending"] = self.sch.call_after(time, self._arrive, (chunk, request_number))
 
     def _arrive(self, chunk: Chunk, request_number: int) -> None:
         """Puts a retrieved chunk into the buffer, unless there has been another request since."""
@@ -313,3 +319,8 @@ class Memory(WithParameters, TracedMemory):
     def add_adaptor(self, a: MemorySubModule) -> None:
         """Takes in an activation module; done by the module itself."""
         self.adaptors.append(a)
+
+
+def _costs(partial: Partial) -> bool:
+    """Tells whether a request may find what is only similar; a modeller's own class need not have a strength."""
+    return getattr(partial, "strength", 1.0) is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.chunk import Slot, as_text
@@ -18,14 +19,15 @@ class Partial(WithParameters):
 
     Args:
         memory: The memory; its first `Partial` serves all requests that name no other.
-        strength: MP, what a mismatch of -1 costs in activation.
+        strength: MP, what a mismatch of -1 costs in activation; None for similarities that only blending uses: then only
+            chunks match that have what was asked for.
         limit: The similarity of values that nothing is said about.
 
     Source: P = sum MP M_l (Anderson & Lebiere 1998, equation 3.7).
     """
 
     @named_parameters
-    def __init__(self, memory: Memory, strength: float = 1.0, limit: float = -1.0) -> None:
+    def __init__(self, memory: Memory, strength: float | None = 1.0, limit: float = -1.0) -> None:
         self._memory = memory
         self.limit = limit
         self.strength = strength
@@ -46,15 +48,24 @@ class Partial(WithParameters):
 
     def match(self, key: Slot, a: str, b: str) -> float:
         """Returns what finding `b` where `a` was asked for adds to activation (0 or less)."""
+        return (self.strength or 0.0) * self.between(a, b)
+
+    def between(self, a: str, b: str) -> float:
+        """Returns how similar two different values are, given as patterns compare them."""
         similarity = self.sims.get((a, b))
         if similarity is None and (a, b) in self._texts:
             if self._memory.rules is PYTHON_ACTR:  # patterns compare text, and it looks text up among numbers
                 warn_modeller(f"what is said of the similarity of {a} and {b} is not found, for patterns compare text: write '{a}', '{b}'")
             else:
                 similarity = self._texts[a, b]
-        return self.strength * (self.limit if similarity is None else similarity)
+        return self.limit if similarity is None else similarity
+
+    def related(self, texts: Collection[str]) -> list[Any]:
+        """Returns the values of which a similarity to one of these texts was said, in the order they were first named."""
+        found = {as_text(a): a for a, b in reversed(self.sims) if as_text(b) in texts}
+        return [*reversed(found.values())]
 
     def negated(self, key: Slot, value: str) -> float | None:
         """Returns what finding just what was not wanted adds; None where that rules the chunk out (not in ACT-R 7)."""
         profile = self._memory.rules
-        return self.strength * self.limit if profile.negations_cost else None
+        return (self.strength or 0.0) * self.limit if profile.negations_cost else None

@@ -27,8 +27,9 @@ class Profile:
     """Whether times are whole milliseconds."""
     negations_cost: bool
     """Whether a negative test that fails costs activation in partial matching, instead of ruling the chunk out."""
-    blend_by_noise: bool
-    """Whether blending's temperature is sqrt(2) times the noise, and its time comes from ln sum exp A."""
+    blend_every_slot: bool
+    """Whether blending is that of ACT-R 7's blending module: every slot of the result is a compromise of all matching chunks, the
+    temperature is sqrt(2) times the noise, and the time comes from ln sum exp A."""
     clear_at_request: bool
     """Whether a request empties the retrieval buffer at once."""
     harvest: bool
@@ -37,6 +38,10 @@ class Profile:
     """Whether a compiled rule's utility moves to its first parent's each time it is compiled again."""
     total_utility: bool
     """Whether utility learning moves the whole utility, the production's own base included."""
+    awaits_expiry: bool
+    """Whether a run without a limit also waits for what has no effect any more: for marks of retrieved chunks to expire, for
+    the answers to requests that others have replaced, and for times that something else came before. In ACT-R 7 marks are
+    looked up by their age, and such events are deleted."""
 
 
 PYTHON_ACTR = Profile(
@@ -47,11 +52,12 @@ PYTHON_ACTR = Profile(
     latency=0.05,
     whole_milliseconds=False,
     negations_cost=False,
-    blend_by_noise=False,
+    blend_every_slot=False,
     clear_at_request=False,
     harvest=False,
     learn_compiled=False,
     total_utility=False,
+    awaits_expiry=True,
 )
 
 ACT_R_7 = Profile(
@@ -62,11 +68,12 @@ ACT_R_7 = Profile(
     latency=1.0,
     whole_milliseconds=True,
     negations_cost=True,
-    blend_by_noise=True,
+    blend_every_slot=True,
     clear_at_request=True,
     harvest=True,
     learn_compiled=True,
     total_utility=True,
+    awaits_expiry=False,
 )
 
 PROFILES = {profile.name: profile for profile in (PYTHON_ACTR, ACT_R_7)}

@@ -77,6 +77,8 @@ class Program:
         package = ModuleType(name)
         package.__path__ = [str(self.folder)]
         self._package = name
+        self._path = list(sys.path)
+        self.helpers.packages.add(name)
         _PACKAGES[name] = self
         return {name: package}
 
@@ -95,8 +97,12 @@ class Program:
         if not place or self.folder is None:
             return False
         path = Path(place).resolve()
-        added = [] if self._package else [Path(entry).resolve() for entry in sys.path if entry not in self._path]
-        return any(path.is_relative_to(root) for root in (self.folder, *added)) and not _is_installed(path)
+        roots = (self.folder, *(Path(entry).resolve() for entry in self._added()))
+        return any(path.is_relative_to(root) for root in roots) and not _is_installed(path)
+
+    def _added(self) -> list[str]:
+        """Returns the folders with which the program has extended `sys.path`."""
+        return [entry for entry in sys.path if entry not in self._path]
 
     def owns_module(self, module: ModuleType) -> bool:
         """Tells whether a module is one of the program's helper modules."""
@@ -147,7 +153,11 @@ class Program:
         full = f"{self._package}.{root}"
         if full in sys.modules or self.helpers.has(root):
             return True
-        spec = PathFinder.find_spec(full, [str(self.folder)])
+        if self.helpers.folder is not None:
+            return False
+        where = [str(self.folder), *self._added()]
+        sys.modules[self._package].__path__[:] = where
+        spec = PathFinder.find_spec(full, where)
         # A folder without `__init__.py` stands behind everything else of its name.
         return spec is not None and (spec.loader is not None or importlib.util.find_spec(root) is None)
 
@@ -184,7 +194,7 @@ class _HelperFinder(importlib.abc.MetaPathFinder):
         if program.folder is not None:
             name = program.short_name(fullname)
             known = program.helpers.spec(name, fullname, program.folder, partial(_HelperLoader, program))
-            if known is not None:
+            if known is not None or program.helpers.folder is not None:
                 return known
         spec = PathFinder.find_spec(fullname, path)
         loader = spec.loader if spec is not None else None

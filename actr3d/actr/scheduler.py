@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Generator, Mapping, Sequence
-from heapq import heappop
-from typing import Any
+from collections.abc import Callable, Collection, Generator, Mapping, Sequence
+from heapq import heapify, heappop
+from typing import Any, Literal
 
-from actr3d.actr.events import AGAIN, Call, Event, Trigger, makes_generator
+from actr3d.actr.events import AGAIN, NOTHING_LEFT, Call, Event, Trigger, makes_generator
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.logger import LOG
 from actr3d.actr.waiting import wait, warn_of_none
@@ -24,6 +24,13 @@ END = -9999999
 """The priority of a run's end: everything else of that moment comes before it."""
 FAR = 1e12
 """Delays up to here [s] need no further look."""
+NO_PART = 1e-9
+"""A smaller part of a microsecond is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
+MOST_LEFT = 8
+"""Of so many different delays an event carries what rounding has left over; a model has few that come again and again."""
+
+Ending = Literal["limit", "until", "stop", "done"]
+"""What ended a run: its own limit, the limits of the program, `stop`, or that nothing was left to do."""
 
 
 class Scheduler:
@@ -38,6 +45,13 @@ class Scheduler:
     def __init__(self, first_come: bool = True) -> None:
         self.queue: EventQueue[Call] = EventQueue(first_come)
         self.now_us = 0
+        """The present, in whole microseconds."""
+        self.left: Mapping[float, float] = NOTHING_LEFT
+        """What rounding to whole microseconds has left over of the delays that led to the present event, by delay [us]. The next
+        equal delay that follows from it takes that in, so that a series of equal delays does not drift: 60 times 1/60 s is 1 s.
+        The times of retrievals, which come from activations, are rounded each by itself."""
+        self.ended_by: Ending = "done"
+        """What ended the latest run."""
         self.bound: dict[str, Any] | None = None
         """What the production that fired last had bound; `?name` in a chunk's text means these."""
         self.fired: Any = None
@@ -54,8 +68,10 @@ class Scheduler:
         self.harvests = False
         """Whether there is a memory that collects what leaves buffers, as in ACT-R 7."""
         self.round_ms = False
-        """Whether there are models whose events happen at whole milliseconds, as in ACT-R 7."""
+        """Whether there are models that go by ACT-R 7's numbers, whose events happen at whole milliseconds."""
         self.limits: RunLimits | None = RunLimits.current()
+        self.in_lockstep = False
+        """Whether a simulation lets its time pass, tick by tick, and asks the limits for it."""
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
         self._spent_us = 0
@@ -97,41 +113,94 @@ class Scheduler:
             return None
         generator = func(*args, **(keys or {})) if makes_generator(func) else None
         event = Event(func, args, keys, priority, generator)
-        self.queue.push(self.after(delay, event), event, priority, float(delay))
+        self.put(event, delay, priority)
         return event
 
-    def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
-        """Schedules a plain call of the library's own, which returns None."""
+    def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
+        """Schedules a plain call of the library's own, which returns None; its delay is rounded by itself."""
         event = Call(call, args)
-        self.queue.push(self.after(delay, event), event, 0, delay)
+        kept, self.left = self.left, NOTHING_LEFT
+        self.put(event, delay)
+        self.left = kept
+        return event
 
-    def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
+    def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
         """Schedules such a call at a time [us] that `after` gave."""
-        self.queue.push(time, Call(call, args), 0, (time - self.now_us) / MICROSECONDS)
+        event = Call(call, args)
+        if time == self.now_us:
+            event.left = self.left
+        self.queue.push(time, event, 0, (time - self.now_us) / MICROSECONDS)
+        return event
+
+    def drop(self, events: Collection[Call]) -> None:
+        """Takes events out of the queue that have no effect any more, so that no run waits for them."""
+        heap = self.queue.heap
+        left = [entry for entry in heap if not any(entry[3] is event for event in events)]
+        if len(left) < len(heap):
+            heap[:] = left
+            heapify(heap)
 
     def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
         """Lets a generator, which `call` has made, run from now on."""
         event = Event(call, generator=generator)
-        self.queue.push(self.now_us, event)
+        self.put_now(event)
         return event
 
-    def after(self, delay: float, event: Call | None = None) -> int:
-        """Returns the time `delay` seconds from now [us].
+    def put(self, event: Call, delay: float, priority: float = 0) -> None:
+        """Puts an event into the queue, `delay` seconds from now.
+
+        What rounding leaves over of the delay, the next equal delay takes in; see `left`. Models whose events happen at whole
+        milliseconds have them there, and nothing is taken in, as in ACT-R 7.
 
         Raises:
             SchedulerError: If the delay is negative or not a finite number.
         """
         kind = type(delay)
-        if (kind is float or kind is int) and 0 <= delay < FAR:
-            later = round(delay * MICROSECONDS)
+        if not ((kind is float or kind is int) and 0 <= delay < FAR):
+            self._checked(delay, f"{event.describe()}: a delay")
+            delay = float(delay)
+        exact = delay * MICROSECONDS
+        later = round(exact)
+        part = exact - later
+        left = event.left = self.left
+        if self.round_ms and later > 0 and event.profile.whole_milliseconds:
+            time = max(self.now_us, round((self.now_us + later) / 1000) * 1000)
+        elif -NO_PART < part < NO_PART:
+            time = self.now_us + later
         else:
-            what = "a delay" if event is None else f"{event.describe()}: a delay"
-            later = microseconds(delay, what)
-            if later < 0:
-                raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
-        if self.round_ms and later > 0 and event is not None and event.in_milliseconds():
-            return max(self.now_us, round((self.now_us + later) / 1000) * 1000)
-        return self.now_us + later
+            part += left.get(delay, 0.0)
+            more = round(part)
+            time = self.now_us + later + more
+            kept = {known: of for known, of in left.items() if known != delay} if len(left) > 1 or delay not in left else {}
+            if len(kept) >= MOST_LEFT:
+                del kept[next(iter(kept))]
+            kept[delay] = part - more
+            event.left = kept
+        self.queue.push(time, event, priority, delay)
+
+    def forget_left(self) -> None:
+        """Makes the delays that follow from the present event rounded by themselves, whatever was left over before."""
+        self.left = NOTHING_LEFT
+
+    def put_now(self, event: Event) -> None:
+        """Puts an event into the queue at this very moment, with its own priority."""
+        event.left = self.left
+        self.queue.push(self.now_us, event, event.priority)
+
+    def after(self, delay: float) -> int:
+        """Returns the time `delay` seconds from now [us].
+
+        Raises:
+            SchedulerError: If the delay is negative or not a finite number.
+        """
+        return self.now_us + self._checked(delay, "a delay")
+
+    @staticmethod
+    def _checked(delay: float, what: str) -> int:
+        later = microseconds(delay, what)
+        if later < 0:
+            raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
+        return later
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:
         """Wakes everything that waits for a trigger or for a name."""
@@ -143,7 +212,7 @@ class Scheduler:
         for event in waiting:
             if priority is not None:
                 event.priority = priority
-            self.queue.push(self.now_us, event, event.priority)
+            self.put_now(event)
 
     def named(self, name: str) -> Trigger:
         """Returns the trigger of a name."""
@@ -153,7 +222,8 @@ class Scheduler:
         """Takes everything over from another scheduler: its events, who waits there for a name, what other threads have added."""
         while other.queue.heap:
             time, priority, event = other.queue.take()
-            time = max(time, self.now_us)
+            if time < self.now_us:
+                time = self.now_us
             self.queue.push(time, event, priority, seconds(time - self.now_us))
         for name, trigger in other._named.items():
             self.named(name).waiting += trigger.waiting
@@ -170,44 +240,68 @@ class Scheduler:
     def run(self, duration: float | None = None) -> None:
         """Runs until nothing is left to do, `stop` is called, or `duration` seconds have passed.
 
-        Events at exactly the end belong to this run. After a run that was not stopped the clock stands at its end.
+        Events at exactly the end belong to this run. After a run that was not stopped the clock stands at its end. The
+        limits of the program cut a run that needs more time than they give; they change nothing else.
 
         Raises:
             SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
+            EndOfRun: If the limits of the program leave no time, and the run needs some; or if they cut an earlier run.
         """
         end = None if duration is None else self._ends.after(self.now_us, duration)
         length = float(duration or 0)
-        if self.limits is None:
-            self._run_until(end, end, length)
+        limits = self.limits
+        if limits is None:
+            self._run_until(end, None, length)
             return
-        self._spend(self.limits)
-        bound = self.limits.clip(self.now_us)
+        if self.now_us > self._spent_us:  # this is a run inside a run
+            self._spend(limits)
+        last = limits.clip(self.now_us)
+        none_left = last is not None and last <= self.now_us
         try:
-            self._run_until(end, end if bound is None else bound if end is None else min(bound, end), length)
+            self._run_until(end, self.now_us if none_left else last, length)
         finally:
-            self._spend(self.limits)
-            if bound is not None and self.now_us >= bound and (end is None or end > bound):
-                self.limits.cut(self.now_us)
+            self._spend(limits)
+        if self.ended_by == "until":
+            wanted = self.now_us + 1
+            if none_left:
+                limits.refuse(self.now_us, wanted)
+            limits.cut(self.now_us, wanted)
 
     def _spend(self, limits: RunLimits) -> None:
         """Lets the limits know how much time has passed."""
         limits.spend(self.now_us - self._spent_us)
         self._spent_us = self.now_us
 
-    def _run_until(self, end: int | None, until: int | None, length: float) -> None:
-        """Runs up to a time [us], if any, that is the run's own end, `length` [s] from now, or comes before it."""
+    def _run_until(self, end: int | None, last: int | None, length: float) -> None:
+        """Runs to a time [us], if any, that is `length` [s] from now, but not beyond the last moment [us] that limits allow, if any."""
         total = self.queue.sum + length
         self.stop_flag = False
         heap = self.queue.heap
+        until = end if last is None or (end is not None and end <= last) else last
         idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
-        if end is not None and not self.queue.first_come:
+        if end is not None and not self.queue.first_come and not (idle and until != end):
             self._run_number += 1
             self.queue.push(end, Call(self._end, (self._run_number,)), END, length)
             if idle:
                 self.queue.pop()
-        if until is not None and idle:
-            self._advance(until, total)
-            return
+        if not idle:
+            self._run_on(until)
+        if end is not None and (self.now_us >= end or (until == end and not self.stop_flag)):
+            self.ended_by = "limit"
+            if end > self.now_us:
+                self._advance(end, total)
+        elif self.stop_flag:
+            self.ended_by = "stop"
+        elif end is None and not heap and not self._incoming:
+            self.ended_by = "done"
+        else:
+            self.ended_by = "until"
+            assert until is not None
+            if until > self.now_us:
+                self._advance(until, seconds(until))
+
+    def _run_on(self, until: int | None) -> None:
+        """Lets what is queued happen, up to a time [us], if any; warns where a run is under way already."""
         if self._running:
             warn_modeller(
                 f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
@@ -216,8 +310,6 @@ class Scheduler:
         before, self._running = self._running, True
         try:
             self._run_events(until)
-            if until is not None and not self.stop_flag and until > self.now_us:
-                self._advance(until, total)
         finally:
             self._running = before
 
@@ -231,7 +323,7 @@ class Scheduler:
         queue = self.queue
         heap = queue.heap
         end = NEVER if until is None else until
-        passing = None if self.limits is None else self.limits.passing
+        passing = None if self.limits is None or self.in_lockstep else self.limits.passing
         still = 0
         while not self.stop_flag:
             if self._incoming:
@@ -249,6 +341,7 @@ class Scheduler:
                     raise self._standstill(heap[0][3])
             self.step += 1
             _, queue.sum, _, event = heappop(heap)
+            self.left = event.left
             if isinstance(event, Event):
                 self._happen(event)
             else:
@@ -259,7 +352,9 @@ class Scheduler:
         if event.group:
             if event.cancelled:
                 return
-            event.cancel_others()
+            others = event.cancel_others()
+            if self.round_ms and not event.profile.awaits_expiry:
+                self.drop(others)
         generator = event.generator
         if generator is None:
             result = event.call(*event.args, **event.keys)
@@ -274,11 +369,11 @@ class Scheduler:
             self.finish(event)
             return
         if type(result) is float:
-            self.queue.push(self.after(result, event), event, event.priority, result)
+            self.put(event, result, event.priority)
         elif type(result) is Trigger:
             result.waiting.append(event)
         elif result is AGAIN:
-            self.queue.push(self.now_us, event, event.priority)
+            self.put_now(event)
         else:
             if result is None:
                 warn_of_none(event)
@@ -309,9 +404,10 @@ class Scheduler:
 
     def _advance(self, time: int, total: float) -> None:
         """Lets time pass without events, until then [us], which is also a sum of delays [s]."""
-        if self.limits is not None and self.limits.passing is not None and time > self.now_us:
+        if self.limits is not None and self.limits.passing is not None and not self.in_lockstep and time > self.now_us:
             self.limits.passing(self.now_us, time)
         self.now_us = time
+        self.left = NOTHING_LEFT
         self.queue.sum = total
         LOG.time_us = time
 
@@ -319,5 +415,5 @@ class Scheduler:
         """Notes that an event is over, and wakes those that waited for it."""
         event.done = event.origin.done = True
         for parent in event.parents:
-            self.queue.push(self.now_us, parent, parent.priority)
+            self.put_now(parent)
         event.parents = []

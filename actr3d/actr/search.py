@@ -26,6 +26,11 @@ class Search(Protocol):
         """What mismatches cost, where similar values may match."""
         ...
 
+    @property
+    def equal(self) -> Sequence[tuple[Slot, str]]:
+        """The slots that must have a certain value, with its text."""
+        ...
+
     def among(self, store: ChunkStore) -> list[Chunk]:
         """Returns the chunks that match, in the order they came."""
         ...
@@ -180,17 +185,26 @@ class PatternSearch:
     def __str__(self) -> str:
         return " ".join(map(str, self._pattern.conditions))
 
+    @property
+    def equal(self) -> list[tuple[Slot, str]]:
+        return [(slot, value) for op, _, slot, value in self._pattern.conditions if op == "is" and _is_plain(slot)]
+
     def among(self, store: ChunkStore) -> list[Chunk]:
         """Returns the chunks that match, in the order they came."""
         chunks: list[Chunk] = store
         for op, _, slot, value in self._pattern.conditions:
-            if op in ("call", "empty") or (isinstance(slot, str) and (slot[:1] == "?" or "." in slot)):
+            if op in ("call", "empty") or not _is_plain(slot):
                 continue
             fewer = store.with_value(slot, value) if op == "is" and self.partial is None else store.with_slot(slot)
             if len(fewer) < len(chunks):
                 chunks = fewer
         match = self._pattern.match
         return [chunk for chunk in chunks if match(chunk) is not None]
+
+
+def _is_plain(slot: Slot) -> bool:
+    """Tells whether a slot is named itself, not by a variable or a path."""
+    return not (isinstance(slot, str) and (slot[:1] == "?" or "." in slot))
 
 
 def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> Search:

@@ -38,11 +38,21 @@ class DMSpreading(MemorySubModule):
         self.buffers = buffers
         self.weight: dict[Any, float] = dict.fromkeys(buffers, 1)
         self.slots: dict[Any, int] = {}
+        self._counted: set[_Same] = set()
         self._warned: set[Any] = set()
         for chunk in memory.dm:
             self.create(chunk)
 
     def create(self, chunk: Any, **keys: Any) -> None:
+        """Counts a new chunk's values. A chunk that was counted already is not counted again.
+
+        In python_actr 1.9.5 a module that is made when the memory has chunks already must be given each of them by hand; here
+        it counts them by itself, and both ways give the same.
+        """
+        same = _Same(chunk)
+        if same in self._counted:
+            return
+        self._counted.add(same)
         for value in map(countable, chunk.values()):
             self.slots[value] = self.slots.get(value, 0) + 1
 
@@ -88,6 +98,21 @@ class DMSpreading(MemorySubModule):
     def _occurrences(self, value: Any) -> int:
         """Returns in how many slots of the memory's chunks a value stands."""
         return self.slots.get(countable(value), 0)
+
+
+class _Same:
+    """Stands for one chunk itself in a set, however many are equal to it, also after the set has been copied with its chunks."""
+
+    __slots__ = ("chunk",)
+
+    def __init__(self, chunk: Any) -> None:
+        self.chunk = chunk
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.chunk is self.chunk
+
+    def __hash__(self) -> int:
+        return id(self.chunk)
 
 
 def countable(value: Any) -> Hashable:

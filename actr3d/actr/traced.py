@@ -9,7 +9,6 @@ from actr3d.actr.chunk import LASTING_TYPES, Chunk
 from actr3d.actr.limits import EndOfRun
 from actr3d.actr.profile import PYTHON_ACTR, Profile
 from actr3d.actr.tree import Part
-from actr3d.clock import microseconds
 from actr3d.trace import Trace, top_path
 from actr3d.values import COLLECTIONS, Naming, plain
 
@@ -120,7 +119,7 @@ class TracedPart(Part):
 
     def _trace_run(self, limit: float | None) -> None:
         """Runs the tree, and records when and why that begins and ends; raises what a listener has raised meanwhile."""
-        sch, begin = self.sch, self.sch.now_us
+        sch = self.sch
         outermost, failed = not sch._running, None
         self._trace_top("run", {"limit": traceable(limit)})
         try:
@@ -131,7 +130,7 @@ class TracedPart(Part):
             failed = error
             raise
         finally:
-            self._trace_top("stop", _end_of_run(sch, begin, limit, failed))
+            self._trace_top("stop", _end_of_run(sch, failed))
         if outermost and sch.trace is not None:
             sch.trace.raise_failures()
 
@@ -165,13 +164,11 @@ class TracedPart(Part):
             trace.emit(self.sch.now_us, self._path, kind, {"part": name, "model": type(part).__name__, **particulars})
 
 
-def _end_of_run(sch: Scheduler, begin: int, limit: float | None, failed: BaseException | None) -> dict[str, Any]:
-    """Returns why a run that began at a time [us] has ended."""
-    if failed is not None and not isinstance(failed, EndOfRun):
+def _end_of_run(sch: Scheduler, failed: BaseException | None) -> dict[str, Any]:
+    """Returns why a run has ended."""
+    if failed is None:
+        return {"by": sch.ended_by}
+    if not isinstance(failed, EndOfRun):
         return {"by": "error", "error": type(failed).__name__}
-    until = None if sch.limits is None else sch.limits.until
-    if failed is None and limit is not None and sch.now_us >= begin + microseconds(limit):
-        return {"by": "limit"}
-    if until is not None and sch.now_us >= microseconds(until):
-        return {"by": "until"}
-    return {"by": "stop" if sch.stop_flag else "done"}
+    ended = sch.limits is not None and sch.limits.ended
+    return {"by": "until" if ended else "stop" if sch.stop_flag else "done"}

@@ -27,7 +27,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         SchedulerError: If it cannot be waited for: it is of no such kind, nothing is in it, or its delay is no time.
     """
     if isinstance(result, (int, float)):
-        sch.queue.push(sch.after(result, event), event, event.priority, result)
+        sch.put(event, result, event.priority)
     elif isinstance(result, dict):
         _wait_as(sch, event, cast("dict[str, Any]", result))
     elif isinstance(result, (Trigger, str)):
@@ -42,13 +42,13 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         sch.finish(event)
     elif isinstance(result, Event):
         if result.done:
-            sch.queue.push(sch.now_us, event, event.priority)
+            sch.put_now(event)
         else:
             result.parents.append(event)
     elif hasattr(result, "default_trigger"):
         wait(sch, event, result.default_trigger)
     elif isinstance(result, Real):  # a number of another kind, such as numpy's
-        sch.queue.push(sch.after(float(result), event), event, event.priority, float(result))
+        sch.put(event, float(result), event.priority)
     else:
         raise SchedulerError(
             f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
@@ -80,8 +80,7 @@ def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
     if not isinstance(priority, (int, float)):
         raise SchedulerError(f"{event.describe()}: a priority must be a number (got {priority!r})")
     event.priority = priority
-    delay = how.get("delay", 0)
-    sch.queue.push(sch.after(delay, event), event, priority, float(delay))
+    sch.put(event, how.get("delay", 0), priority)
 
 
 def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:

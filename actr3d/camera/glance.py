@@ -1,4 +1,4 @@
-"""What an eye sees, for who looks on: the mind's own labels stay as they are."""
+"""What an eye sees, for observers: the labels that the agent knows stay as they are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from actr3d.world.body import Body
 
 
 def glance(body: Body, parameters: CameraParameters | None = None) -> View:
-    """Returns what is visible now, with the labels that the mind knows; what it has not seen yet gets labels that it may see otherwise.
+    """Returns what is visible now, with the labels that the agent knows. What it has not seen yet may get other labels later.
 
     Args:
         body: Whose eye.
@@ -21,13 +21,12 @@ def glance(body: Body, parameters: CameraParameters | None = None) -> View:
     """
     if body.eye is None:
         raise CameraError(f"body '{body.name}' has no eye")
-    looked = [sense for sense in body.senses if isinstance(sense, Sight)]
-    own = next((sight for sight in looked if parameters is None or sight.parameters == parameters), None)
-    if own is None:
-        return Sight(body, parameters or CameraParameters()).look()
-    labels = own.state()
+    if parameters is None:
+        parameters = next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
+    eye = body.unused_sense(Sight, parameters)
+    labels = eye.state()
     try:
-        return own.look()
+        return eye.look()
     finally:
-        if own.state() != labels:
-            own.restore(labels)
+        if eye.state() != labels:
+            eye.restore(labels)

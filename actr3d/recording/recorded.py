@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+import hmac
 import json
 import sqlite3
 from array import array
 from collections.abc import Iterator
-from itertools import chain
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self, cast
 
 from actr3d.errors import RecordingError
-from actr3d.recording.form import FORM
+from actr3d.recording.checksums import Checksums
+from actr3d.recording.facts import LARGEST, check_facts
+from actr3d.recording.form import COLUMNS, FORM, LEFT, SCHEMA
+from actr3d.recording.key import is_sealed
+from actr3d.recording.opening import opened
 from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
+
+SHOWN = 80
+"""No more of what is wrong in it is quoted [characters]."""
+OPENING_STEPS = 100_000
+"""Opening a recording takes SQLite a few thousand steps; a file that makes it take more than these is none."""
 
 
 class RecordedCommand(NamedTuple):
@@ -28,60 +37,110 @@ class RecordedCommand(NamedTuple):
 
 
 class Recorded:
-    """Reads a recording, also one whose program was killed, or that is still being made.
+    """Reads a recording as it is now, also one whose program was killed, or that is still being made.
+
+    Nothing of what it holds is run. What comes later is not read: open it again.
 
     Args:
         path: The file.
 
     Raises:
-        RecordingError: If there is no such file, or it is no recording.
+        RecordingError: If there is no such file, or it is no recording of this form.
     """
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
-        if not self.path.is_file():
-            raise RecordingError(f"no recording '{path}'")
+        self._made_here: bool | None = None
+        self._file = opened(self.path)
         try:
-            # Where a killed program left a journal, reading the file takes writing it.
-            self._file = sqlite3.connect(self.path.absolute(), isolation_level=None)
-        except sqlite3.Error as error:
-            raise RecordingError(f"cannot open the recording '{path}': {error}") from None
-        try:
-            self.facts: dict[str, Any] = {name: json.loads(value) for name, value in self._file.execute("SELECT name, value FROM facts")}
-        except (sqlite3.Error, ValueError, TypeError) as error:
+            self._written_facts = self._begin()
+            self.facts: dict[str, Any] = {name: _parsed(value) for name, value in self._written_facts.items()}
+            check_facts(self.facts)
+        except (sqlite3.Error, ValueError, TypeError, RecursionError, RecordingError) as error:
             self._file.close()
-            raise RecordingError(f"'{path}' is no recording: {error}") from None
-        if self.facts.get("form") != FORM:
-            self._file.close()
-            raise RecordingError(f"'{path}' is no recording of this form: it says {self.facts.get('form')!r}, this version reads {FORM!r}")
+            raise RecordingError(f"'{path}' is no recording: {_words(error)}") from None
 
-        missing = {"kind", "versions"} - self.facts.keys()
-        if missing:
-            self._file.close()
-            raise RecordingError(f"'{path}' is no whole recording: it does not say its {' and '.join(sorted(missing))}")
+    def _begin(self) -> dict[str, str]:
+        """Begins to read, at one moment of a file that may be written meanwhile; returns the facts as they are written.
 
-    def check(self) -> None:
-        """Looks through the whole file for damage, which would otherwise look like a difference.
+        A file that only looks like a recording, as one with a view in place of a table, is not read: what it could make
+        SQLite do is not done.
 
         Raises:
-            RecordingError: If there is any.
+            RecordingError: If it is no recording of this form.
         """
-        try:
-            (found,) = self._file.execute("PRAGMA integrity_check(1)").fetchone()
-            for _ in chain(self.events(), self.states(), self.answers(), self.commands()):
-                pass
-        except (sqlite3.Error, ValueError, TypeError) as error:
-            found = str(error)
-        if found != "ok":
-            raise RecordingError(f"the recording '{self.path}' is damaged: {' '.join(found.split())}")
+        self._file.set_progress_handler(lambda: 1, OPENING_STEPS)
+        self._file.execute("BEGIN")
+        schema = self._file.execute("SELECT sql FROM sqlite_schema").fetchmany(100)
+        if (SCHEMA[0],) not in schema:
+            raise RecordingError("it has other tables than a recording")
+        facts: dict[str, str] = {}
+        for name, value in self._file.execute("SELECT name, value FROM facts"):
+            if type(name) is not str or type(value) is not str or (facts and name <= next(reversed(facts))):
+                raise RecordingError("its facts are damaged")
+            facts[name] = value
+        form = _parsed(facts["form"]) if "form" in facts else None
+        if form != FORM:
+            raise RecordingError(f"it has another form: it says {_short(form)}, this version reads {FORM!r}")
+        if sorted(schema) != sorted((table,) for table in SCHEMA):
+            raise RecordingError("it has other tables than a recording")
+        self._file.set_progress_handler(None, 0)
+        return facts
+
+    @property
+    def made_here(self) -> bool:
+        """Whether this installation recorded it, and nobody has changed it since; then the code in it was run here before.
+
+        All of it is read for that, once; nothing is run.
+
+        Raises:
+            RecordingError: If the file is damaged.
+        """
+        if self._made_here is None:
+            self.check()
+        return bool(self._made_here)
+
+    def check(self) -> None:
+        """Reads the whole file, and compares its checksums.
+
+        Raises:
+            RecordingError: If it is damaged, or was changed.
+        """
+        checksums = Checksums()
+        for name, value in self._written_facts.items():
+            checksums.fact(name, value)
+        with self._reading():
+            for things in (self.events(), self.states(), self.answers(), self.commands()):
+                for _ in things:
+                    pass
+            for table in COLUMNS:
+                last = self._file.execute(f"SELECT checksum FROM {table} ORDER BY first DESC LIMIT 1").fetchone()
+                checksums.begin(table, None if last is None else last[0])
+            seals = self._file.execute("SELECT * FROM seal LIMIT 2").fetchall()
+            if len(seals) != 1 or [type(value) for value in seals[0]] != [int, bytes, bytes]:
+                raise ValueError("it has no checksum")
+            _, checksum, seal = seals[0]
+            if not hmac.compare_digest(checksums.whole(), checksum):
+                raise ValueError("its facts or its last rows are not those that were written (wrong checksum)")
+            self._made_here = is_sealed(checksum, seal)
+
+    @property
+    def over(self) -> bool:
+        """Whether the run came to its end: it was neither left before, nor broken off."""
+        ended = self.facts.get("ended")
+        return ended is not None and ended["by"] != LEFT
+
+    @property
+    def closed(self) -> bool:
+        """Whether it ends where its run was over, or between two ticks; not in the midst of one, as where the run failed or was killed."""
+        return self.facts.get("ended") is not None or bool(self.facts.get("whole"))
 
     @property
     def ticks(self) -> int:
         """How many whole ticks it holds, of all runs together."""
         if self.facts["kind"] == "simulation":
             return max(0, self._count("states") - 1)  # one run, and its start: no state need be read
-        rows = self._file.execute("SELECT marks FROM states")
-        return sum(1 for (marks,) in rows for tick in array("q", marks)[1::4] if tick)
+        return sum(1 for state in self.states() if state.tick)
 
     @property
     def event_count(self) -> int:
@@ -94,31 +153,72 @@ class Recorded:
         return self._count("states")
 
     def _count(self, table: str) -> int:
-        (count,) = self._file.execute(f"SELECT max(first + count) FROM {table}").fetchone()
-        return count or 0
+        with self._reading():
+            last = self._file.execute(f"SELECT first, count FROM {table} ORDER BY first DESC LIMIT 1").fetchone()
+            return 0 if last is None else int(last[0]) + int(last[1])
 
     def events(self) -> Iterator[TraceEvent]:
-        """Yields every event."""
-        for (text,) in self._file.execute("SELECT data FROM events ORDER BY first"):
-            yield from (TraceEvent(*event) for event in json.loads(text))
+        """Yields every event.
 
-    def states(self) -> Iterator[State]:
-        """Yields the physics of each run at the start (tick 0), and at the end of each tick."""
-        for data, marks in self._file.execute("SELECT data, marks FROM states ORDER BY first"):
-            numbers, begin = iter(array("q", marks)), 0
-            for run, tick, events, size in zip(numbers, numbers, numbers, numbers, strict=True):
-                yield State(run, tick, data[begin : begin + size], events)
-                begin += size
-
-    def commands(self) -> Iterator[RecordedCommand]:
-        """Yields what users did."""
-        for run, tick, data in self._file.execute("SELECT run, tick, data FROM commands ORDER BY number"):
-            yield RecordedCommand(run, tick, json.loads(data))
+        Raises:
+            RecordingError: If the file is damaged, as all that reads its rows does.
+        """
+        return (TraceEvent(*thing) for thing in self._things("events", 4, (int, str, str, dict)))
 
     def answers(self) -> Iterator[Answer]:
         """Yields what the bodies answered; the values are plain."""
-        for (text,) in self._file.execute("SELECT data FROM answers ORDER BY first"):
-            yield from (Answer(*answer) for answer in json.loads(text))
+        return (Answer(*thing) for thing in self._things("answers", 5, (int, int, str, str)))
+
+    def states(self) -> Iterator[State]:
+        """Yields the physics of each run at the start (tick 0), and at the end of each tick."""
+        with self._reading():
+            for count, data, marks in self._rows("states"):
+                numbers = array("q", marks)
+                if len(numbers) != 4 * count or min(numbers) < 0 or sum(numbers[3::4]) != len(data):
+                    raise ValueError("the marks of its states do not fit them")
+                each, begin = iter(numbers), 0
+                for run, tick, events, size in zip(each, each, each, each, strict=True):
+                    yield State(run, tick, data[begin : begin + size], events)
+                    begin += size
+
+    def commands(self) -> Iterator[RecordedCommand]:
+        """Yields what users did."""
+        with self._reading():
+            for run, tick, text in self._rows("commands"):
+                data = _parsed(text)
+                if run < 1 or tick < 0 or not _is_command(data):
+                    raise ValueError(f"{_short(data)} is no command")
+                yield RecordedCommand(run, tick, data)
+
+    def _things(self, table: str, size: int, kinds: tuple[type, ...]) -> Iterator[list[Any]]:
+        """Yields the things that the rows of a table hold, each a list of so many values, the first of these types."""
+        with self._reading():
+            for count, text in self._rows(table):
+                things = _parsed(text)
+                if len(things) != count:
+                    raise ValueError(f"a row of its {table} has {len(things)} where it says {count}")
+                for thing in things:
+                    if len(thing) != size or _types(*thing[: len(kinds)]) != kinds or abs(thing[0]) >= LARGEST:
+                        raise ValueError(f"{_short(thing)} is none of its {table}")
+                    yield thing
+
+    def _rows(self, table: str) -> Iterator[tuple[Any, ...]]:
+        """Yields the rows of a table, without the numbers of their first things and their checksums: both are compared."""
+        checksums, due = Checksums(), 0
+        for row in self._file.execute(f"SELECT * FROM {table} ORDER BY first"):
+            first, *values, checksum = row
+            if _types(first, *values) != COLUMNS[table]:
+                raise ValueError(f"a row of its {table} has values of other types")
+            count = 1 if table == "commands" else values[0]
+            if first != due or count < 1:
+                raise ValueError(f"its {table} are not numbered in order")
+            if checksums.row(table, first, *values) != checksum:
+                raise ValueError(f"its {table} from {first:,} on are not those that were written (wrong checksum)")
+            due = first + count
+            yield tuple(values)
+
+    def _reading(self) -> _Reading:
+        return _Reading(self.path)
 
     def close(self) -> None:
         """Closes the file."""
@@ -129,3 +229,59 @@ class Recorded:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         self.close()
+
+
+class _Reading:
+    """Says in one way what is wrong with a file that is read inside the block."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        if isinstance(error, (sqlite3.Error, ValueError, TypeError, KeyError, IndexError, OverflowError, RecursionError)):
+            raise RecordingError(f"the recording '{self._path}' is damaged: {_words(error)}") from None
+
+
+def _parsed(text: str) -> Any:
+    """Returns what a JSON text says.
+
+    Raises:
+        ValueError: If it is none, or is nested too deeply.
+    """
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise ValueError("something in it is nested too deeply") from None
+
+
+def _is_command(data: Any) -> bool:
+    """Returns whether something is what `Command.to_data` gives."""
+    if not isinstance(data, dict):
+        return False
+    command = cast("dict[str, Any]", data)
+    given: Any = command.get("data")
+    if not isinstance(given, dict):
+        return False
+    values = cast("dict[str, Any]", given)
+    types = _types(command.get("command"), values.get("values"), values.get("named"))
+    return types == (str, list, dict) and "body" in values and isinstance(values["body"], (str, type(None)))
+
+
+def _types(*values: object) -> tuple[type, ...]:
+    return tuple(type(value) for value in values)
+
+
+def _short(value: Any) -> str:
+    """Returns a value as a text of moderate length."""
+    try:
+        text = repr(value)
+    except RecursionError:
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
+def _words(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

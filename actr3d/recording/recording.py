@@ -9,11 +9,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
+from actr3d.recording.facts import check_fact
 from actr3d.recording.form import FORM, versions
 from actr3d.recording.writer import Answer, Command, State, Writer
 from actr3d.trace import TraceEvent
 
+USUAL_PERIOD = 10_000
+"""How long a tick is where the recording does not say it [us]: that of a program, whose simulations may differ in it."""
 MOST_WAITING = 100_000
 """So many events may wait to be written; then the run waits for the disk."""
 
@@ -21,8 +25,8 @@ MOST_WAITING = 100_000
 class Recording:
     """Writes one run, or one program with all its runs, to one file: facts, then every event, state, command and answer as they come.
 
-    What has come is in the file a quarter of a second later, also where the program is killed then. All are counted;
-    after `cut`, the counting goes on from what was kept.
+    It is written a quarter of a second later at the latest, and after each second of simulated time; what is written outlives a
+    program that is killed. All are counted; after `cut`, the counting goes on from what was kept.
 
     Args:
         path: The file; it must not exist.
@@ -33,9 +37,11 @@ class Recording:
     """
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
-        told = {"form": FORM, "versions": versions(), **facts}
+        told: dict[str, Any] = {"form": FORM, "versions": versions(), **facts}
         self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in told.items()])
         self._append = self._writer.events.append
+        self._second = 0
+        self._ticks_a_second = max(1, MICROSECONDS // told.get("period_us", USUAL_PERIOD))
         self.events = self.answers = self.commands = self.states = 0
         """How many of each it has been given."""
         self.ending: Callable[[], None] | None = None
@@ -53,6 +59,10 @@ class Recording:
         """Writes an event."""
         self.events += 1
         self._append(event)
+        second = event.time_us // MICROSECONDS
+        if second != self._second:
+            self._second = second
+            self._writer.flush_soon()
 
     def event_alone(self, event: TraceEvent) -> None:
         """Writes an event of a program, which may tell of nothing else.
@@ -82,6 +92,8 @@ class Recording:
         self.states += 1
         writer = self._writer
         writer.states.append(State(run, tick, data, self.events))
+        if self.states % self._ticks_a_second == 0:
+            writer.flush_soon()
         if len(writer.states) > MOST_WAITING or len(writer.events) > MOST_WAITING or writer.failure is not None:
             self.check()
 
@@ -107,6 +119,21 @@ class Recording:
         self._writer.cut(ticks, events, answers, commands)
         self.check()
 
+    def copy_to(self, path: Path | str) -> None:
+        """Writes all that was recorded so far to a new file: a closed recording of a run that was left at this point.
+
+        The run and this recording go on; nothing is shared with the copy. Where the run was not over yet, the copy says
+        that it ended by «left».
+
+        Args:
+            path: The new file; it must not exist.
+
+        Raises:
+            RecordingError: If the file exists already or cannot be written (nothing is left of it then), or if this recording
+                could not be written before.
+        """
+        self._writer.copy_to(Path(path))
+
     def close(self) -> None:
         """Writes what is left, and closes the file.
 
@@ -130,6 +157,7 @@ class Recording:
 
 
 def _plain(name: str, value: Any) -> str:
+    check_fact(name, value)
     try:
         return json.dumps(value)
     except (TypeError, ValueError, RecursionError) as error:

@@ -7,19 +7,24 @@ import sqlite3
 from array import array
 from collections import deque
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
+from copy import deepcopy
 from pathlib import Path
 from threading import Event, Lock, Thread
 from typing import Any, NamedTuple
 
 from actr3d.actr.answers import plain_answer
 from actr3d.errors import RecordingError
-from actr3d.recording.form import SCHEMA
+from actr3d.recording.checksums import Checksums
+from actr3d.recording.form import COLUMNS, LEFT, SCHEMA
+from actr3d.recording.key import make_key, seal
 from actr3d.trace import TraceEvent
 from actr3d.values import plain_to_json
 
 INTERVAL = 0.25
 """How often what has come is written [s on the wall]; a run that is killed loses no more than what came since."""
+SPACING = 0.01
+"""It is not written more often than so [s on the wall], whatever comes."""
 BLOB = 1_000_000
 """About how many bytes of states are written as one row."""
 MOST_EVENTS = 10_000
@@ -81,8 +86,15 @@ class Writer:
         self.states: deque[State] = deque()
         self.commands: deque[Command] = deque()
         self.facts: deque[tuple[str, str]] = deque()
-        self._written = {"events": 0, "answers": 0, "states": 0, "commands": 0}
+        self._written = {"events": 0, "answers": 0, "states": 0, "ticks": 0, "commands": 0}
+        """How many of each are in the file, with those of the present transaction."""
+        self._safe = dict(self._written)
+        """How many of each are in the file for good."""
+        self._made = False
+        self._checksums = Checksums()
+        self._key = make_key()
         self._writing = Lock()
+        self._wake = Event()
         self._over = Event()
         self._attempt(self._create, facts)
         if self.failure is not None:
@@ -94,10 +106,37 @@ class Writer:
         """Writes what has come, now; also for a caller that puts things in faster than they are written."""
         self._attempt(self._write)
 
+    def flush_soon(self) -> None:
+        """Writes what has come in a moment; does not wait for it."""
+        self._wake.set()
+
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
         """Drops all but the first few of each: from there the run goes another way."""
         self.flush()
         self._attempt(self._cut, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
+
+    def copy_to(self, path: Path) -> None:
+        """Writes what has come, and a closed copy of all of it to a new file.
+
+        Raises:
+            RecordingError: If that file exists, or either cannot be written.
+        """
+        self.flush()
+        with self._writing:
+            if self.failure is not None:
+                raise self.failure
+            part = path.with_name(f".{path.name}.part")  # nobody finds an unfinished copy under its name
+            try:
+                if path.exists():
+                    raise FileExistsError
+                part.unlink(missing_ok=True)
+                self._file.execute("VACUUM INTO ?", (str(part.absolute()),))
+                with closing(sqlite3.connect(part.absolute())) as copy, copy:
+                    self._mark_as_left(copy)
+                part.rename(path)
+            except (sqlite3.Error, OSError, ValueError) as error:
+                _remove(part)
+                raise RecordingError(f"cannot write the recording '{path}': {_reason(error)}") from None
 
     def close(self) -> None:
         """Writes what is left and closes the file: one file then, without companions.
@@ -106,12 +145,15 @@ class Writer:
             RecordingError: If the file cannot be written.
         """
         self._over.set()
+        self._wake.set()
         self._thread.join()
         if self.failure is not None:
             raise self.failure
 
     def _run(self) -> None:
-        while not self._over.wait(INTERVAL):
+        while not self._over.wait(SPACING):
+            self._wake.wait(INTERVAL)
+            self._wake.clear()
             self.flush()
         self.flush()
         self._attempt(self._finish)
@@ -128,26 +170,40 @@ class Writer:
             try:
                 work(*args)
             except (sqlite3.Error, OSError, ValueError) as error:
-                self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}")
+                self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}{self._kept()}")
+
+    def _kept(self) -> str:
+        """Returns what is left of a recording that cannot be written any more; removes the file where nothing of the run is in it."""
+        if not self._made:
+            return ""
+        if any(self._safe.values()):
+            ticks, events = self._safe["ticks"], self._safe["events"]
+            some = f"{ticks:,} ticks and {events:,} events" if ticks else f"{events:,} events"
+            return f"; the first {some} of the run are kept, nothing of what came after"
+        with suppress(sqlite3.Error, AttributeError):  # it may not have been opened
+            self._file.close()
+        _remove(self.path)
+        return "; nothing of the run is kept"
 
     # -- the file
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
         self.path.open("xb").close()
+        self._made = True
         # The whole path, because SQLite has a meaning of its own for names such as `:memory:`.
         self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
-        try:
-            # Neither the beginning nor the end of a run waits for the disk, only for the system; the thread does meanwhile.
-            self._file.execute("PRAGMA synchronous=OFF")
-            # A reader may look while the run goes on, and what is committed outlives a killed program.
-            self._file.execute("PRAGMA journal_mode=WAL")
-            self._file.executescript(f"BEGIN; {SCHEMA}")
-            self._file.executemany("INSERT INTO facts VALUES (?, ?)", facts)
-            self._file.execute("COMMIT")
-            self._file.execute("PRAGMA synchronous=NORMAL")
-        except sqlite3.Error:
-            self._file.close()
-            raise
+        # Neither the beginning nor the end of a run waits for the disk, only for the system; the thread does meanwhile.
+        self._file.execute("PRAGMA synchronous=OFF")
+        # A reader may look while the run goes on, and what is committed outlives a killed program.
+        self._file.execute("PRAGMA journal_mode=WAL")
+        self._transact(self._begin, facts)
+        self._file.execute("PRAGMA synchronous=NORMAL")
+
+    def _begin(self, facts: Sequence[tuple[str, str]]) -> None:
+        for table in SCHEMA:
+            self._file.execute(table)
+        self._insert_facts(facts)
+        self._seal(self._file, self._checksums)
 
     def _write(self) -> None:
         """Writes what has come, as one transaction."""
@@ -157,9 +213,9 @@ class Writer:
         if not (states or facts or commands or answers or events):
             return
         rows = [(part, _events_text(part)) for part in _parts(events, MOST_EVENTS)]
-        self._transact(self._insert, rows, states, facts, commands, answers)
+        self._transact(self._insert_all, rows, states, facts, commands, answers)
 
-    def _insert(
+    def _insert_all(
         self,
         events: list[tuple[list[TraceEvent], str]],
         states: list[State],
@@ -167,61 +223,91 @@ class Writer:
         commands: list[Command],
         answers: list[Answer],
     ) -> None:
-        insert = self._file.execute
         for part, text in events:
-            insert("INSERT INTO events VALUES (?, ?, ?)", (self._next("events", len(part)), len(part), text))
+            self._insert("events", len(part), len(part), text)
         for some in _parts(answers, MOST_EVENTS):
-            text = json.dumps([plain_answer(answer) for answer in some])
-            insert("INSERT INTO answers VALUES (?, ?, ?)", (self._next("answers", len(some)), len(some), text))
+            self._insert("answers", len(some), len(some), json.dumps([plain_answer(answer) for answer in some]))
         for row in _parts(states, max(1, BLOB // len(states[0].data)) if states else 1):
             data = b"".join([state.data for state in row])
             marks = array("q", [mark for run, tick, state, events in row for mark in (run, tick, events, len(state))]).tobytes()
-            insert("INSERT INTO states VALUES (?, ?, ?, ?)", (self._next("states", len(row)), len(row), data, marks))
+            self._insert("states", len(row), len(row), data, marks)
+            self._written["ticks"] += sum(1 for state in row if state.tick)
         for command in commands:
-            insert("INSERT INTO commands VALUES (?, ?, ?, ?)", (self._next("commands", 1), *command))
-        for fact in facts:
-            insert("INSERT OR REPLACE INTO facts VALUES (?, ?)", fact)
+            self._insert("commands", 1, *command)
+        self._insert_facts(facts)
+        self._seal(self._file, self._checksums)
 
-    def _next(self, table: str, count: int) -> int:
-        """Returns the number of the next thing in a table, and counts so many."""
+    def _insert(self, table: str, count: int, *values: int | str | bytes) -> None:
+        """Writes the next row of a table, in which there are so many things."""
         first = self._written[table]
-        self._written[table] += count
-        return first
+        checksum = self._checksums.row(table, first, *values)
+        self._file.execute(f"INSERT INTO {table} VALUES (?{', ?' * len(COLUMNS[table])})", (first, *values, checksum))
+        self._written[table] = first + count
+
+    def _insert_facts(self, facts: Sequence[tuple[str, str]]) -> None:
+        for name, value in facts:
+            self._file.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
+            self._checksums.fact(name, value)
+
+    def _seal(self, file: sqlite3.Connection, checksums: Checksums) -> None:
+        """Writes the checksum of everything, and the seal of this installation."""
+        checksum = checksums.whole()
+        file.execute("INSERT OR REPLACE INTO seal VALUES (0, ?, ?)", (checksum, b"" if self._key is None else seal(self._key, checksum)))
 
     def _transact(self, work: Callable[..., None], *args: Any) -> None:
         self._file.execute("BEGIN")
         try:
             work(*args)
             self._file.execute("COMMIT")
+            self._safe = dict(self._written)
         except sqlite3.Error:
             if self._file.in_transaction:
                 self._file.execute("ROLLBACK")
             raise
 
     def _cut(self, kept: dict[str, int]) -> None:
-        self._transact(self._delete, kept)
-        self._written.update(kept)
+        self._transact(self._delete_all, kept)
 
-    def _delete(self, kept: dict[str, int]) -> None:
-        self._file.execute("DELETE FROM commands WHERE number >= ?", (kept["commands"],))
+    def _delete_all(self, kept: dict[str, int]) -> None:
         for table in ("events", "answers"):
-            last = self._delete_rows(table, kept[table])
+            last = self._delete(table, kept[table])
             if last is not None:
-                first, _, data = last
-                text = json.dumps(json.loads(data)[: kept[table] - first], ensure_ascii=False)
-                self._file.execute(f"UPDATE {table} SET count = ?, data = ? WHERE first = ?", (kept[table] - first, text, first))
-        last = self._delete_rows("states", kept["states"])
+                things = json.loads(last[2])[: kept[table] - last[0]]
+                self._insert(table, len(things), len(things), json.dumps(things, ensure_ascii=False))
+        last = self._delete("states", kept["states"])
         if last is not None:
-            first, _, data, marks = last
+            first, _, data, marks, _ = last
             left = kept["states"] - first
             marks = marks[: MARKS * left]
-            row = (left, data[: sum(array("q", marks)[3::4])], marks, first)
-            self._file.execute("UPDATE states SET count = ?, data = ?, marks = ? WHERE first = ?", row)
+            self._insert("states", left, left, data[: sum(array("q", marks)[3::4])], marks)
+        self._written["ticks"] = max(0, kept["states"] - 1)
+        self._delete("commands", kept["commands"])
+        self._seal(self._file, self._checksums)
 
-    def _delete_rows(self, table: str, kept: int) -> Any:
-        """Drops the rows beyond the first things of a table; returns the row of which only a part is to be kept, if any."""
-        self._file.execute(f"DELETE FROM {table} WHERE first >= ?", (kept,))
-        return self._file.execute(f"SELECT * FROM {table} WHERE first + count > ?", (kept,)).fetchone()
+    def _delete(self, table: str, kept: int) -> Any:
+        """Drops the rows beyond the first things of a table; returns the dropped row of which the first part is to be kept, if any."""
+        execute = self._file.execute
+        execute(f"DELETE FROM {table} WHERE first >= ?", (kept,))
+        last = execute(f"SELECT * FROM {table} ORDER BY first DESC LIMIT 1").fetchone()
+        if last is not None and table != "commands" and last[0] + last[1] > kept:
+            execute(f"DELETE FROM {table} WHERE first = ?", (last[0],))
+        else:
+            last = None
+        self._written[table] = kept if last is None else last[0]
+        before = execute(f"SELECT checksum FROM {table} ORDER BY first DESC LIMIT 1").fetchone()
+        self._checksums.begin(table, None if before is None else before[0])
+        return last
+
+    def _mark_as_left(self, copy: sqlite3.Connection) -> None:
+        """Writes into a copy that the run was left where it ends, unless it was over there."""
+        facts = dict(copy.execute("SELECT name, value FROM facts WHERE name IN ('ended', 'failed')"))
+        if any(value != "null" for value in facts.values()):
+            return
+        ended = json.dumps({"by": LEFT})
+        copy.execute("INSERT OR REPLACE INTO facts VALUES ('ended', ?)", (ended,))
+        checksums = deepcopy(self._checksums)
+        checksums.fact("ended", ended)
+        self._seal(copy, checksums)
 
     def _finish(self) -> None:
         # In the old way of keeping a journal a closed file stands alone, and can be read in a folder that is read-only.
@@ -234,14 +320,20 @@ class Writer:
                 raise
 
 
+def _remove(path: Path) -> None:
+    """Removes a file, and those that SQLite keeps beside it."""
+    for suffix in ("", "-journal", "-wal", "-shm"):
+        with suppress(OSError, ValueError):
+            path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
+
+
 def _reason(error: Exception) -> str:
     """Says why a file cannot be written."""
     if isinstance(error, FileExistsError):
         return "it exists already, and a recording does not replace what is there"
     if isinstance(error, OSError):
         return error.strerror or str(error)
-    reason = "the disk is full" if "full" in str(error) else str(error)
-    return f"{reason}; what was written before is kept"
+    return "the disk is full" if "full" in str(error) else str(error)
 
 
 def _all_of(queue: deque[Any]) -> list[Any]:

@@ -12,6 +12,7 @@ from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.loading import load_text
 from actr3d.errors import ConfigurationError, ModelFileError, SettingError, did_you_mean
 from actr3d.fields import Field, fields_of
+from actr3d.running.declared import RIGHT, check_build
 from actr3d.simulation import Simulation
 
 
@@ -30,17 +31,18 @@ class Blueprint:
     """
 
     def __init__(self, source: str, filename: str, folder: Path | None = None, helpers: HelperTexts | None = None) -> None:
+        check_build(source, filename)
         self._filename = filename
         self._module = load_text(source, filename, folder=folder, helpers=helpers)
         self._build: Any = self._module.build
         names = list(inspect.signature(self._build).parameters)
-        if len(names) > 1:
-            raise ModelFileError(f"{filename}: build takes one argument, its parameters (it takes {', '.join(names)})")
+        self._place = f"{filename}:{getattr(getattr(self._build, '__code__', None), 'co_firstlineno', 1)}"
         self._kind: type[Any] | None = None
         if names:
             self._kind = get_type_hints(self._build).get(names[0])
             if not isinstance(self._kind, type) or not is_dataclass(self._kind):
-                raise ModelFileError(f"{filename}: build({names[0]}) does not say which dataclass its parameters are of")
+                found = getattr(self._kind, "__name__", self._kind)
+                raise ModelFileError(f"{self._place}: build({names[0]}: {found}) takes what is no dataclass; it must be {RIGHT}")
         self.fields: tuple[Field, ...] = () if self._kind is None else fields_of(self._kind)
         """Its parameters."""
 
@@ -63,7 +65,7 @@ class Blueprint:
             raise SettingError(f"{self._filename}: build takes no parameters (given {', '.join(settings)})")
         simulation = self._build(*given)
         if not isinstance(simulation, Simulation):
-            raise ModelFileError(f"{self._filename}: build must return a Simulation (returned {simulation!r})")
+            raise ModelFileError(f"{self._place}: build must return a Simulation (returned {simulation!r})")
         vars(simulation)["_built_by"] = self._module  # its helper modules go with it, and those may be all that the minds are of
         return simulation, asdict(given[0]) if given else {}
 

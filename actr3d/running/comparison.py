@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from actr3d.actr.answers import plain_answer
 from actr3d.actr.limits import EndOfRun
+from actr3d.clock import seconds
 from actr3d.recording import Recorded
-from actr3d.recording.writer import State
 from actr3d.trace import TraceEvent, top_path
+
+Thing = TypeVar("Thing")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,16 +27,20 @@ class Comparison:
     events: int
     """How many events were compared."""
     difference: str | None
-    """Where it first differs; None where every byte agrees."""
+    """Where it first differs; None where every byte agrees, as far as the recording goes."""
+    broken_off: str | None = None
+    """How the recorded run ended before its end, and when; None where it was over, or was closed between two ticks."""
     unfinished: int = 0
-    """How many events the recording holds of a tick that never came to its end; they were not compared."""
+    """How many events of a tick that never came to its end the recording holds; they were not compared."""
 
     def __str__(self) -> str:
         if self.difference is not None:
             return f"differs: {self.difference}"
-        ticks = f"{self.ticks:,} ticks, " if self.ticks else ""
+        counts = f"{self.ticks:,} ticks, {self.events:,} events" if self.ticks else f"{self.events:,} events"
+        if self.broken_off is None:
+            return f"every byte agrees: {counts}"
         rest = f" ({self.unfinished:,} more events of a tick that did not end)" if self.unfinished else ""
-        return f"every byte agrees: {ticks}{self.events:,} events{rest}"
+        return f"agrees as far as it goes: {counts}{rest}; {self.broken_off}"
 
 
 class Differs(EndOfRun):
@@ -42,35 +48,35 @@ class Differs(EndOfRun):
 
 
 class Beside:
-    """Compares what a program tells with what is recorded of it, each kind of thing in its order.
+    """Takes what a run does in place of its recording, and compares it with what is recorded, each kind of thing in its order.
 
     Args:
         recorded: The recording.
+        open_end: Whether the run may do more than is recorded, because it was broken off.
     """
 
-    def __init__(self, recorded: Recorded) -> None:
-        self._over = "ended" in recorded.facts
-        self._recorded: dict[str, Iterator[Any]] = {
-            "event": recorded.events(),
-            "state": recorded.states(),
-            "answer": recorded.answers(),
-            "command": recorded.commands(),
-        }
-        self.counts = dict.fromkeys(self._recorded, 0)
-        self._last: Any = None
+    def __init__(self, recorded: Recorded, *, open_end: bool = False) -> None:
+        self._open_end = open_end
+        self._period: int | None = recorded.facts.get("period_us")
+        self._events, self._states = recorded.events(), recorded.states()
+        self._answers, self._commands = recorded.answers(), recorded.commands()
+        self.events = self.states = self.answers = self.commands = 0
+        """How many of each it has taken."""
         self.ticks = 0
         """How many ends of ticks were compared."""
-        self.broken_off = False
-        """Whether the recording was, at the point that the run has come to."""
+        self.ended_first = False
+        """Whether the recording was at its end before the run was, and may be."""
         self.difference: str | None = None
 
     def event(self, event: TraceEvent) -> None:
         """Takes one event of the new run.
 
         Raises:
-            Differs: If it is another than the recorded one, or the recording was broken off before.
+            Differs: If it is another than the recorded one, or the recording ends before.
         """
-        self._take("event", event.to_json(), TraceEvent.to_json, f" at {event.time:g} s")
+        then = self._next(self._events)
+        self.events += 1
+        self._compare(f"event {self.events} at {event.time:g} s", None if then is None else then.to_json(), event.to_json())
 
     def state(self, run: int, tick: int, data: bytes) -> None:
         """Takes the physics at the start of a run, or at the end of a tick.
@@ -78,14 +84,18 @@ class Beside:
         Raises:
             Differs: As `event` does.
         """
-        self._take("state", _moment(State(run, tick, data, 0)), _moment)
-        if self.difference is None and self._last is not None:
-            where = f"at the end of {_moment(self._last)}"
-            if self._last.data != data:
-                self._differ(f"the physics {where}: {first_number(self._last.data, data)}")
-            if self._last.events != self.counts["event"]:
-                self._differ(f"there were {self._last.events:,} events {where}, and are {self.counts['event']:,} now")
-            self.ticks += tick > 0
+        then = self._next(self._states)
+        self.states += 1
+        recorded = None if then is None else self._moment(then.run, then.tick)
+        moment = self._moment(run, tick)
+        self._compare(f"state {self.states}", recorded, moment)
+        if then is None:
+            return
+        if then.data != data:
+            self._differ(f"the physics at the end of {moment}: {first_number(then.data, data)}")
+        if then.events != self.events:
+            self._differ(f"there were {then.events:,} events at the end of {moment}, and are {self.events:,} now")
+        self.ticks += tick > 0
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
         """Takes what a body answered.
@@ -93,7 +103,10 @@ class Beside:
         Raises:
             Differs: As `event` does.
         """
-        self._take("answer", json.dumps(plain_answer((run, tick, body, word, value))), json.dumps)
+        then = self._next(self._answers)
+        self.answers += 1
+        now = json.dumps(plain_answer((run, tick, body, word, value)))
+        self._compare(f"answer {self.answers}", None if then is None else json.dumps(then), now)
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
         """Takes what a user did.
@@ -101,33 +114,43 @@ class Beside:
         Raises:
             Differs: As `event` does.
         """
-        self._take("command", json.dumps((run, tick, data)), json.dumps)
+        then = self._next(self._commands)
+        self.commands += 1
+        self._compare(f"command {self.commands}", None if then is None else json.dumps(then), json.dumps((run, tick, data)))
 
-    def _take(self, kind: str, now: str, text: Any, where: str = "") -> None:
-        """Compares one thing with the recorded one, both as text; keeps that in `_last`."""
-        if self.difference is not None:
-            return
-        then = self._last = next(self._recorded[kind], None)
-        if then is None and not self._over:
-            self.broken_off = True
+    def _next(self, things: Iterator[Thing]) -> Thing | None:
+        """Returns the next recorded thing of a kind; None where there is none.
+
+        Raises:
+            Differs: If there is none, and need not be; or if the run differed before.
+        """
+        if self.difference is not None or self.ended_first:
             raise Differs
-        self.counts[kind] += 1
-        line = "nothing" if then is None else text(then)
-        if line != now:
-            self._differ(f"{kind} {self.counts[kind]}{where}; recorded: {line}; now: {now}")
+        then = next(things, None)
+        if then is None and self._open_end:
+            self.ended_first = True
+            raise Differs
+        return then
+
+    def _compare(self, what: str, then: str | None, now: str) -> None:
+        if then != now:
+            self._differ(f"{what}; recorded: {then or 'nothing'}; now: {now}")
 
     def _differ(self, how: str) -> None:
         self.difference = how
         raise Differs
 
+    def _moment(self, run: int, tick: int) -> str:
+        where = top_path(run)
+        if self._period is None:
+            return f"tick {tick} of {where}"
+        return f"tick {tick} ({seconds(tick * self._period):g} s)" + (f" of {where}" if run != 1 else "")
+
     def rest(self) -> dict[str, int]:
         """Returns how many recorded things of each kind the new run has not come to; none of those it has."""
-        left = {kind: sum(1 for _ in things) for kind, things in self._recorded.items()}
+        things = {"event": self._events, "state": self._states, "answer": self._answers, "command": self._commands}
+        left = {kind: sum(1 for _ in more) for kind, more in things.items()}
         return {kind: count for kind, count in left.items() if count}
-
-
-def _moment(state: State) -> str:
-    return f"tick {state.tick} of {top_path(state.run)}"
 
 
 def first_number(then: bytes, now: bytes) -> str:

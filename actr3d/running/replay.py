@@ -2,58 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.loading import run_text
+from actr3d.actr.sealed import sealed
 from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, seconds
-from actr3d.errors import Actr3dError, RecordingError
+from actr3d.errors import Actr3dError, RecordingError, UntrustedError
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.recording.form import versions
 from actr3d.running.building import build
-from actr3d.running.comparison import Beside, Comparison, Differs, first_number
+from actr3d.running.comparison import Beside, Comparison, Differs
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.simulation import Command, Simulation
-from actr3d.trace import Trace, TraceEvent
-
-
-class _Events:
-    """Compares a simulation's events with recorded ones, in order.
-
-    Args:
-        recorded: The recording.
-    """
-
-    def __init__(self, recorded: Recorded) -> None:
-        self._recorded = recorded.events()
-        self.count = 0
-        self.difference: str | None = None
-
-    def take(self, event: TraceEvent) -> None:
-        """Takes one event of the new run.
-
-        Raises:
-            Differs: If it is another than the recorded one.
-        """
-        if self.difference is not None:
-            return
-        then = next(self._recorded, None)
-        line = None if then is None else then.to_json()
-        now = event.to_json()
-        self.count += 1
-        if line != now:
-            self.difference = f"event {self.count} at {event.time:g} s; recorded: {line or 'nothing'}; now: {now}"
-            raise Differs
-
-    def rest(self) -> int:
-        """Returns how many recorded events the new run has not come to."""
-        return sum(1 for _ in self._recorded)
-
+from actr3d.trace import Trace
 
 Progress = Callable[[float], object]
 """Is told which share of a recording has been run again, from 0 to 1."""
@@ -63,27 +31,42 @@ def replay(
     recorded: Recorded,
     make: Callable[[], Simulation] | None = None,
     *,
+    trust: bool = False,
     any_version: bool = False,
     progress: Progress = lambda _: None,
 ) -> Comparison:
     """Runs again what a recording holds, and compares every event, and every state at the end of a tick.
 
-    What the model prints is not shown.
+    What the model prints is not shown. Unless `make` is given, the code that the recording holds is run, as any program that
+    you start: with your files and your rights. Of modules, it gets those that are recorded, the standard library and
+    installed packages, none from the folder where its file was or is.
 
     Args:
         recorded: The recording.
         make: Makes the simulation; None for what the recorded model file builds, or for a recorded program.
+        trust: Whether code may be run of a recording that this installation did not make; see `Recorded.made_here`.
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
         progress: Is told again and again which share has been run: of the ticks, or of a program's events.
 
     Raises:
+        UntrustedError: If the recording was made elsewhere, and is not to be trusted.
         RecordingError: If the file is damaged, versions differ, or the recording does not say how the simulation was made, or
             it cannot be made so any more.
         Exception: What `make` raises.
     """
     recorded.check()
+    _check_facts(recorded)
     if not any_version:
         _check_versions(recorded.facts["versions"])
+    if not (recorded.closed or recorded.state_count or recorded.event_count):
+        raise RecordingError(
+            f"the recording '{recorded.path}' holds nothing to compare: its run was broken off before anything was written"
+        )
+    if make is None and not (trust or recorded.made_here):
+        raise UntrustedError(
+            f"'{recorded.path}' was not made by this installation, and a replay runs the code that it holds: "
+            "replay(recorded, trust=True) runs it all the same"
+        )
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
             return _replay_program(recorded, progress)
@@ -93,10 +76,33 @@ def replay(
         with RunLimits(seed=seed), shared_random(seed):
             if make is not None:
                 return _replay_simulation(recorded, make(), progress)
-            with BuiltOutput() as output:
-                simulation = _built(recorded)
+            with _sealed(recorded) as helpers, BuiltOutput() as output:
+                simulation = _built(recorded, helpers)
                 output.lead_to(simulation)
                 return _replay_simulation(recorded, simulation, progress)
+
+
+_NEEDED = {
+    "program": ("file", "sources", "seed", "until"),
+    "simulation": ("seed", "period_us", "timestep_us", "scene"),
+    "built": ("file", "sources", "parameters"),
+}
+"""Facts without which a run cannot be run again; of simulations that a model file builds, those below «built», too."""
+
+
+def _check_facts(recorded: Recorded) -> None:
+    """Raises an error where the recording lacks what a replay needs.
+
+    Raises:
+        RecordingError: If it does.
+    """
+    facts = recorded.facts
+    needed = _NEEDED[facts["kind"]] + (_NEEDED["built"] if facts.get("built") else ())
+    missing = [f"'{name}'" for name in needed if name not in facts]
+    if not missing and "file" in needed and facts["file"] not in facts["sources"]:
+        missing = [f"the source of '{facts['file']}'"]
+    if missing:
+        raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
 
 
 def _check_versions(then: dict[str, str]) -> None:
@@ -106,96 +112,129 @@ def _check_versions(then: dict[str, str]) -> None:
         raise RecordingError(f"the recording was made with other versions, and may not agree for that alone: {'; '.join(different)}")
 
 
-def _built(recorded: Recorded) -> Simulation:
+def _built(recorded: Recorded, helpers: HelperTexts) -> Simulation:
     facts = recorded.facts
     file = facts["file"]
     try:
-        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent, _helpers(facts))
+        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent, helpers)
     except Actr3dError:
         raise
-    except (Exception, SystemExit) as error:  # it did build something when it was recorded
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # it did build something when it was recorded
         raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {_told(error)}") from error
     return simulation
 
 
-def _helpers(facts: Mapping[str, Any]) -> HelperTexts:
-    """Returns the helper modules as they were, wherever their files are now."""
-    return HelperTexts(facts.get("helpers"))
+def _sealed(recorded: Recorded) -> AbstractContextManager[HelperTexts]:
+    """Lets nothing be imported but what the recording holds, the standard library and installed packages."""
+    facts = recorded.facts
+    return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}))
+
+
+def _run_source(recorded: Recorded, limits: RunLimits) -> None:
+    """Runs the source of a program.
+
+    Raises:
+        Exception: Whatever it raises.
+    """
+    facts = recorded.facts
+    file = facts["file"]
+    with _sealed(recorded) as helpers:
+        run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=helpers)
 
 
 def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
     facts = recorded.facts
-    beside = Beside(recorded)
+    beside = Beside(recorded, open_end=not recorded.over)
     trace = Trace("all", keep=False)
     trace.listen(beside.event)
     whole = max(1, recorded.event_count)
-    trace.listen(lambda _: progress(min(1.0, beside.counts["event"] / whole)))
+    trace.listen(lambda _: progress(min(1.0, beside.events / whole)))
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace, recorder=beside)
-    file = facts["file"]
     trouble = ""
     try:
         with ProgramOutput(limits) as output:
             try:
-                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=_helpers(facts))
+                _run_source(recorded, limits)
             except SystemExit as error:
                 trouble = f" ({_told(error)})"
-            if "ended" in facts:
+            if recorded.over:
                 output.finish()
     except Differs:  # in the last line of a log, when the program itself was over
         pass
-    except Exception as error:  # noqa: BLE001 - the recorded run may have ended so, too
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # noqa: BLE001 - the recorded run may have ended so, too
         trouble = f" ({_told(error)})"
-    left, difference, unfinished = beside.rest(), beside.difference, 0
-    if beside.broken_off:
-        unfinished = left.pop("event", 0)
-    if difference is None and left:
-        more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
-        difference = f"the run ended{trouble} after {beside.counts['event']:,} events; the recording holds {more} more"
-    return Comparison(ticks=beside.ticks, events=beside.counts["event"], difference=difference, unfinished=unfinished)
+    return _compared(recorded, beside, f"the run ended{trouble}")
 
 
 def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Progress) -> Comparison:
     """Runs a simulation beside its recording."""
-    events = _Events(recorded)
-    period = recorded.facts["period_us"]
-    if round(simulation.period * MICROSECONDS) != period or simulation.seed != recorded.facts["seed"]:
-        was = f"period {seconds(period):g} s, seed {recorded.facts['seed']}"
-        return Comparison(ticks=0, events=0, difference=f"recorded: {was}; now: period {simulation.period:g} s, seed {simulation.seed}")
-    simulation._journal.raise_level("all")
-    simulation._journal.listen(events.take)
-    simulation.plan([Command.from_data(command.tick, command.data) for command in recorded.commands()])
-    scene = "" if recorded.facts["scene"] == simulation.world.fingerprint else "; it compiles to another scene than then"
-    difference: str | None = None
-    begun = False
-    whole = max(1, recorded.ticks)
+    facts, world, journal = recorded.facts, simulation.world, simulation._journal
+    then = facts["period_us"], facts["timestep_us"], facts["seed"]
+    now = round(simulation.period * MICROSECONDS), world.scene.timestep_us, simulation.seed
+    if then != now:
+        return Comparison(ticks=0, events=0, difference=f"recorded: {_beginning(*then)}; now: {_beginning(*now)}")
+    beside = Beside(recorded)
+    journal.record(cast("Any", beside))
+    commands = [Command.from_data(command.tick, command.data) for command in recorded.commands()]
+    simulation.plan(commands)
+    ticks, trouble = recorded.ticks, "the run ended"
     try:
-        for _, tick, state, count in recorded.states():
-            begun = True
-            if tick:
-                simulation.step()
-                progress(tick / whole)
-            now = simulation.world.state_bytes()
-            where = f"at the end of tick {tick} ({seconds(tick * period):g} s)"
-            if now != state:
-                difference = f"the physics {where}: {first_number(state, now)}{scene}"
-                break
-            if tick and count != events.count:
-                difference = f"there were {count:,} events {where}, and are {events.count:,} now"
-                break
-        else:
-            if begun:
-                simulation._course.repeat_commands()
-            if recorded.facts.get("ended") is not None:  # it may have gone another way from before its end
-                simulation.conclude()
-            if "whole" in recorded.facts:
-                simulation._journal.voice.finish()
-            simulation._journal.check()
+        for tick in range(1, ticks + 1):
+            simulation.step()
+            progress(tick / ticks)
+        simulation._course.repeat_commands()
+        if recorded.over:
+            simulation.conclude()
+        if recorded.closed:
+            journal.voice.finish()
+        journal.check()
+        for command in commands[: simulation._course.lockstep.commands]:
+            beside.command(1, command.tick, command.to_data())
     except Differs:
         pass
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - what is recorded went on beyond that
-        difference = f"the run failed after {seconds(simulation.ticks * period):g} s ({_told(error)})"
-    left = events.rest()
-    return Comparison(ticks=simulation.ticks, events=events.count, difference=events.difference or difference, unfinished=left)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # noqa: BLE001 - what is recorded went on beyond that
+        beside.difference = f"the run failed after {seconds(simulation.ticks * facts['period_us']):g} s ({_told(error)})"
+    if world.fingerprint != facts["scene"]:
+        if beside.difference is None:
+            beside.difference = "the scene compiles to another than then, though the physics agrees"
+        elif beside.difference.startswith("the physics"):
+            beside.difference += "; it compiles to another scene than then"
+    return _compared(recorded, beside, trouble)
+
+
+def _beginning(period: int, timestep: int, seed: Any) -> str:
+    return f"period {seconds(period):g} s, timestep {seconds(timestep):g} s, seed {seed}"
+
+
+def _compared(recorded: Recorded, beside: Beside, ended: str) -> Comparison:
+    """Returns what came of a comparison whose run is over; what is recorded beyond that is a difference, unless it was broken off there."""
+    left, difference, broken_off, unfinished = beside.rest(), beside.difference, None, 0
+    if not recorded.closed:
+        broken_off = _broken_off(recorded)
+        unfinished = left.pop("event", 0)
+        left = {kind: count for kind, count in left.items() if kind == "state"}  # the rest may be of the tick that did not end
+    if difference is None and left:
+        more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
+        difference = f"{ended} after {beside.events:,} events; the recording holds {more} more"
+    return Comparison(ticks=beside.ticks, events=beside.events, difference=difference, broken_off=broken_off, unfinished=unfinished)
+
+
+def _broken_off(recorded: Recorded) -> str:
+    """Says how a run ended that did not come to its end, and when."""
+    period = recorded.facts.get("period_us")
+    last = 0
+    if period is None:
+        for event in recorded.events():
+            last = event.time_us
+    at = seconds(last if period is None else recorded.ticks * period)
+    failed = recorded.facts.get("failed")
+    return f"the run was broken off at {at:g} s" if failed is None else f"the run failed after {at:g} s ({failed})"
 
 
 def _told(error: BaseException) -> str:

@@ -2,36 +2,27 @@
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.reading import read_source
 from actr3d.actr.shared_random import shared_random
-from actr3d.actr.sources import syntax_tree
-from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
+from actr3d.recording import Recording
+from actr3d.running.declared import check_build, has_build
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.trace import Trace
 
-
-def has_build(source: str) -> bool:
-    """Tells whether a model's text has a function `build` that says it returns a `Simulation`."""
-    return any(
-        isinstance(node, ast.FunctionDef)
-        and node.name == "build"
-        and node.returns is not None
-        and ast.unparse(node.returns).strip("'\"").rpartition(".")[2] == "Simulation"
-        for node in syntax_tree(source).body
-    )
-
+if TYPE_CHECKING:
+    from actr3d.simulation import Simulation
+    from actr3d.simulation.pace import Ending
 
 Settings = Callable[[Sequence[Field]], Mapping[str, Any]]
 """Gives values to parameters, by name, of those that there are."""
@@ -44,7 +35,7 @@ def run_model(
 
     Args:
         path: The file.
-        limits: Its seed, end and trace. What is built ends with the last whole tick before the end.
+        limits: Its seed, end and trace. What is built is cut after the last whole tick that fits.
         settings: Values of the parameters of what it builds, or what gives them.
         record: Where the run is to be recorded, if it is; a new file.
 
@@ -52,7 +43,7 @@ def run_model(
         The result of the run, where what it builds is measured; None otherwise.
 
     Raises:
-        ModelFileError: If there is no such file, or it is no Python 3.
+        ModelFileError: If there is no such file, it is no Python 3, or its `build` is not what it should be.
         SettingError: If parameters are given to a program, or are not what the model takes.
         ParameterError: If a trace of less than everything is to be recorded.
         RecordingError: If the recording cannot be made or written.
@@ -60,6 +51,7 @@ def run_model(
     """
     path = Path(path)
     source = read_source(path)
+    check_build(source, str(path))
     if limits.seed is None and record is not None:
         limits.seed = fresh_seed()
     if has_build(source):
@@ -81,27 +73,30 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | 
         blueprint = Blueprint(source, str(path), path.parent, helpers)
         simulation, parameters = blueprint.build(settings(blueprint.fields) if callable(settings) else settings)
         output.lead_to(simulation)
-        end = None
-        if limits.until is not None:  # down to the end of a tick
-            period = microseconds(simulation.period)
-            end = seconds(microseconds(limits.until) // period * period)
         if record is None:
-            simulation.run(end)
+            _run_to_end(simulation)
             return simulation.conclude()
         facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
         facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
         with simulation.record(record, **facts) as recording:
             helpers.heard = partial(recording.fact, "helpers")  # a mind may import one later
-            report = simulation.run(end)
-            result = simulation.conclude()
-            recording.fact("ended", {"by": report.ended_by})
+            with _telling_failure(recording):
+                ended_by = _run_to_end(simulation)
+                result = simulation.conclude()
+            recording.fact("ended", {"by": ended_by})
             return result
     return None  # every run ended with the program's limits
 
 
-def _record_program(path: Path, source: str, limits: RunLimits, record: Path | str) -> None:
-    from actr3d.recording import Recording
+def _run_to_end(simulation: Simulation) -> Ending:
+    """Runs a simulation until it ends by itself or is cut; returns what ended it."""
+    try:
+        return simulation.run().ended_by
+    except EndOfRun:  # there is no time for a single tick
+        return "limits"
 
+
+def _record_program(path: Path, source: str, limits: RunLimits, record: Path | str) -> None:
     if limits.trace is None:
         limits.trace = Trace("all", keep=False)
     elif limits.trace.level != "all":
@@ -112,7 +107,7 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         helpers.heard = partial(recording.fact, "helpers")
         limits.recorder = recording
         limits.trace.listen(recording.event_alone)
-        with ProgramOutput(limits) as output:
+        with _telling_failure(recording), ProgramOutput(limits) as output:
             try:
                 run_text(source, str(path), limits=limits, folder=path.parent, helpers=helpers)
             except SystemExit:
@@ -121,3 +116,15 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
                 raise
             output.finish()
         recording.fact("ended", {"by": "end"})
+
+
+@contextmanager
+def _telling_failure(recording: Recording) -> Generator[None]:
+    """Writes into a recording what its run fails with, where it does."""
+    try:
+        yield
+    except (EndOfRun, SystemExit, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        recording.fact("failed", f"{type(error).__name__}: {error}")
+        raise

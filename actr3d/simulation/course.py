@@ -82,7 +82,7 @@ class Course:
         lockstep, history = self.lockstep, self._history
         answers = lockstep.tock()
         ticks = lockstep.ticks
-        if ticks > history.ticks:
+        if ticks > history.lived:
             history.add_tick(ticks, answers)
             if history.wants(ticks):
                 history.keep(ticks, self._world.state())
@@ -108,9 +108,14 @@ class Course:
 
     # -- what is known of it
 
-    def plan(self, commands: Sequence[Command]) -> None:
-        """Lets commands of an earlier run be known of this one, which has not begun."""
+    def plan(self, commands: Sequence[Command], ticks: int) -> None:
+        """Takes the commands of an earlier run, and how far that came; this one has not begun."""
         self._history.commands[:] = commands
+        self._history.ticks = ticks
+
+    def forget_ahead(self) -> None:
+        """Forgets that the run has been further than it is now; commands that were planned stay."""
+        self._history.cut(self.ticks, len(self._history.commands))
 
     def repeat_commands(self) -> None:
         """Repeats the commands that are known of this moment, without going on.

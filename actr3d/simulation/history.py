@@ -26,7 +26,9 @@ class History:
     def __init__(self, start: WorldState) -> None:
         self.commands: list[Command] = []
         self.ticks = 0
-        """How far the run has come."""
+        """How far the run has come, also in an earlier life of it that is only known from a recording."""
+        self.lived = 0
+        """How far it has come here: up to this tick states are kept."""
         self.answered = 0
         """Up to which tick every answer is kept."""
         self._answers: dict[int, tuple[Any, ...]] = {}
@@ -47,7 +49,8 @@ class History:
 
     def add_tick(self, tick: int, answers: tuple[Any, ...]) -> None:
         """Takes in one more tick, and what the bodies answered at its end."""
-        self.ticks = tick
+        self.lived = tick
+        self.ticks = max(self.ticks, tick)
         if self.answered == tick - 1 and self._kept + len(answers) <= MOST_ANSWERS:
             self.answered = tick
             if answers:
@@ -67,6 +70,7 @@ class History:
         """Forgets what was after a tick, and all commands but the first few."""
         del self.commands[commands:]
         self.ticks = tick
+        self.lived = min(self.lived, tick)
         self.answered = min(self.answered, tick)
         self._states = {known: state for known, state in self._states.items() if known <= tick}
         for known in [known for known in self._answers if known > tick]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Protocol
 from weakref import ref
 
 from actr3d.actr.limits import Recorder
@@ -19,6 +19,18 @@ from actr3d.trace import Run, Trace, TraceEvent
 from actr3d.world import World
 
 Listener = Callable[[TraceEvent], object]
+
+
+class Keeper(Protocol):
+    """Keeps the states of a run for those who look at it, and changes nothing."""
+
+    def keep(self, tick: int, world: World) -> None:
+        """Takes the start of the run (tick 0) or the end of a tick, also of one that is gone through again."""
+        ...
+
+    def cut(self, tick: int) -> None:
+        """Forgets what came after a tick: the run goes another way."""
+        ...
 
 
 class Journal:
@@ -45,8 +57,8 @@ class Journal:
         """Whether the past is being gone through again on the way to another time, which no listener is to hear."""
         self.trace: Trace | None = None
         """The trace of the run up to now; one that begins anew takes its place where the run goes back."""
-        self.keeper: Callable[[int, World], object] | None = None
-        """Called at the start of the run and at the end of each tick, also of those that are gone through again; changes nothing."""
+        self.keeper: Keeper | None = None
+        """Who keeps the states, if anybody does."""
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
         self._preface: list[str] = []
@@ -193,7 +205,7 @@ class Journal:
     def state(self, tick: int, world: World) -> None:
         """Takes the end of a tick."""
         if self.keeper is not None:
-            self.keeper(tick, world)
+            self.keeper.keep(tick, world)
         if self._recording is not None and tick == self._recording.states:
             self._recording.state(1, tick, world.state_bytes())
         if self._program is not None and not self.silent:
@@ -209,5 +221,7 @@ class Journal:
     def cut(self, tick: int, commands: int) -> None:
         """Lets the recording end here, because from here the run goes another way."""
         self.voice.cut()
+        if self.keeper is not None:
+            self.keeper.cut(tick)
         if self._recording is not None:
             self._recording.cut(tick, self._events, self._answers, commands)

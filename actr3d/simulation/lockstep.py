@@ -63,14 +63,28 @@ class Lockstep:
 
     # -- one tick
 
+    def may_tick(self) -> bool:
+        """Returns whether the limits of the program leave time for another tick.
+
+        Raises:
+            EndOfRun: If an earlier run was cut short by them.
+        """
+        return self.minds.may_run((self.ticks + 1) * self._period_us)
+
+    def cut(self) -> None:
+        """Notes that the limits of the program have cut the run short, for lack of time for another tick."""
+        self.minds.cut((self.ticks + 1) * self._period_us)
+
     def tick(self) -> None:
-        """Lets the minds think for one period.
+        """Runs the agents for one period.
 
         Raises:
             SimulationError: If the last tick has had no tock, or has failed.
-            Exception: What a mind raises.
+            EndOfRun: If the limits of the program leave no time for a whole tick; then nothing has happened.
+            Exception: What an agent raises.
         """
         self._expect("ready", "tick")
+        self.minds.claim((self.ticks + 1) * self._period_us)
         self._phase = "failed"
         with self._voice:
             self.minds.run(self._period, (self.ticks + 1) * self._period_us)

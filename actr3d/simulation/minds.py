@@ -60,6 +60,7 @@ class Minds:
             self.environment._ensure_converted()
         self._sch = self.environment.sch
         self._sch.limits = outer
+        self._sch.in_lockstep = True
         if outer is not None:
             outer.clock = lambda: self._sch.now_us
         if trace is not None:
@@ -75,8 +76,33 @@ class Minds:
         """Whether no mind has anything left to do, now or ever."""
         return not (self._sch.queue.heap or self._sch._incoming or self.outbox)
 
+    def may_run(self, end: int) -> bool:
+        """Returns whether the limits of the program leave time until `end` [us].
+
+        Raises:
+            EndOfRun: If an earlier run was cut short by them.
+        """
+        limits = self._sch.limits
+        last = None if limits is None else limits.clip(self._sch.now_us)
+        return last is None or end <= last
+
+    def claim(self, end: int) -> None:
+        """Makes sure that the limits of the program leave time until `end` [us].
+
+        Raises:
+            EndOfRun: If they do not.
+        """
+        limits = self._sch.limits
+        if limits is not None and not self.may_run(end):
+            limits.refuse(self._sch.now_us, end)
+
+    def cut(self, end: int) -> None:
+        """Notes that the limits of the program leave no time until `end` [us], and have cut the run short for that."""
+        if self._sch.limits is not None:
+            self._sch.limits.cut(self._sch.now_us, end)
+
     def run(self, period: float, end: int) -> None:
-        """Lets the minds think for a period [s], until `end` [us]; also to its end where one of them says stop."""
+        """Runs the agents for a period [s], until `end` [us]; to its end even where one of them calls `stop`."""
         sch = self._sch
         sch.run(period)
         self.stopped = sch.stop_flag

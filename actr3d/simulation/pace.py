@@ -8,7 +8,7 @@ from typing import Literal
 
 from actr3d.clock import seconds
 
-Ending = Literal["seconds", "until", "stop", "done"]
+Ending = Literal["seconds", "until", "stop", "done", "limits"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +16,8 @@ class RunReport:
     """How a call of `run` went. Nothing of it enters the run's results."""
 
     ended_by: Ending
-    """`seconds` have passed; `until` came true; a mind said `stop`; the minds were `done`, with nothing left to do."""
+    """`seconds` have passed; `until` came true; an agent called `stop`; the agents were `done`, with nothing left to do; the
+    `limits` of the program (`--until`) left no time for another tick."""
     ticks: int
     """How many ticks it went."""
     simulated: float

@@ -62,7 +62,7 @@ class Simulation(LookedOn):
         seed: int | str | None = None,
         trace: str = "none",
     ) -> None:
-        limits = RunLimits.current()
+        self._limits = limits = RunLimits.current()
         self.seed: int | str = seed_of(seed) if seed is not None else fresh_seed() if limits is None else limits.next_seed()
         self._minds = named_minds(minds, "Simulation.minds")
         self._bodiless = named_minds(bodiless, "Simulation.bodiless")
@@ -136,6 +136,8 @@ class Simulation(LookedOn):
         self._enter()
         if self._submitted:
             self.carry_out_submitted()
+        if not self.ticks:
+            self._pass(0)
         with self._random:
             self._course.tick()
 
@@ -151,6 +153,13 @@ class Simulation(LookedOn):
         self._course.tock()
         self._onlookers.show(self._glimpse)
         self._journal.check()
+        self._pass(self._period)
+
+    def _pass(self, time: int) -> None:
+        """Lets the limits of the program know that time has passed [us]; they may hold it up here."""
+        if self._limits is not None and self._limits.ticked is not None:
+            with self._random.aside():
+                self._limits.ticked(self, time)
 
     def step(self, n: int = 1) -> None:
         """Goes on by a number of ticks, each with its tock.
@@ -170,7 +179,8 @@ class Simulation(LookedOn):
         """Goes on until a time has passed, something has come true, a mind says `stop`, or no mind has anything left to do.
 
         The last of these ends a run only where neither a time nor a condition is given. A mind that says `stop` ends the
-        run after the present tick and its tock.
+        run after the present tick and its tock. The limits of the program (`actr3d run --until`) cut a run after the last
+        whole tick that they leave time for.
 
         Args:
             seconds: How long [s from now]; a whole number of ticks.
@@ -183,22 +193,28 @@ class Simulation(LookedOn):
         Raises:
             SimulationError: If the time is no whole number of ticks, the factor is not above 0, or `until` is no function; and
                 as `tick` does.
+            EndOfRun: If the limits of the program leave no time for any tick.
             Exception: As `tick` and `tock` do.
         """
         factor = factor_of(real_time, "run(real_time)")
         if until is not None and not callable(until):
             raise SimulationError(f"run(until): must be a function that takes a Glimpse (got {until!r})")
         end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
-        pace = Pace(self._period, factor)
+        held = self._limits is not None and self._limits.ticked is not None
+        pace = Pace(self._period, None if held else factor)  # who holds the program up says how fast it goes
         with self._random:
             return pace.report(self._go_on(pace, end, until, open_end=end is None and until is None))
 
     def _go_on(self, pace: Pace, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> Ending:
         """Goes on until something ends the run; says what."""
-        minds = self._course.lockstep.minds
+        lockstep = self._course.lockstep
+        minds, begin = lockstep.minds, self.ticks
         while end is None or self.ticks < end:
             if open_end and self.done:
                 return "done"
+            if self.ticks > begin and not lockstep.may_tick():
+                lockstep.cut()
+                return "limits"
             self.tick()
             self.tock()
             pace.tick()
@@ -241,15 +257,23 @@ class Simulation(LookedOn):
             self._course.command(word, values, named, body)
         self._journal.check()
 
-    def plan(self, commands: Sequence[Command]) -> None:
+    def plan(self, commands: Sequence[Command], ticks: int = 0) -> None:
         """Lets the commands of an earlier run be done again, each after its tick, as if this run had gone back to its start.
+
+        Args:
+            commands: What users did.
+            ticks: How far the earlier run came: this one can go to any time up to there.
 
         Raises:
             SimulationError: If the run has begun already.
         """
         if self._course.begun:
             raise SimulationError("commands are planned before the run begins, and this one has begun already")
-        self._course.plan(commands)
+        self._course.plan(commands, ticks)
+
+    def forget_ahead(self) -> None:
+        """Forgets that the run has been further than it is now, as where it does not do again what an earlier run did."""
+        self._course.forget_ahead()
 
     def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
         """Asks for a command from any thread; it is carried out before the next tick.

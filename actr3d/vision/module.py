@@ -32,10 +32,10 @@ BITS = 64
 class Vision(WithParameters, Searching):
     """Looks for features with a body's eye, and brings one of those it notices to a buffer, as a chunk.
 
-    The view is private: a mind gets features only, with opaque labels and no names. A request is answered from what is visible at
-    the end of the tick in which it is made; the chunk comes `delay` after the request, or when that tick ends, if later, and tells
-    what was seen then, also where that has changed meanwhile. Where nothing is found, the buffer is cleared and `error` set. A
-    further request before that takes the place of this one.
+    The view is private to this module: an agent gets features only, with opaque labels and no names. A request is answered from
+    what is visible at the end of the tick in which it is made; the chunk comes `delay` after the request, or when that tick ends, if
+    later, and tells what was seen then, also where that has changed meanwhile. Where nothing is found, the buffer is cleared and
+    `error` set. A further request before that takes the place of this one.
 
     Bottom-up requests (`bottom_up=True`) wait until a top-down one is done. A top-down one never waits: a bottom-up search that is
     under way is given up, and begins anew with a new look when the top-down one is done. Bottom-up searches that find nothing leave
@@ -60,6 +60,8 @@ class Vision(WithParameters, Searching):
             attention; or `emma`, or an `Emma`, by which it takes the longer the farther off the line of sight it is.
         saccades: Whether the eye turns to what a top-down request has found, as far as it can; the chunk then does not come before.
             Without it, EMMA's times are as if the eye turned there and back.
+        private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`). With False they get it:
+            the agent then steps outside what vision gives, and the trace says so.
         camera: The fields of `CameraParameters`: `rows=50`, `horizontal_fov=2.0`.
 
     Raises:
@@ -87,6 +89,7 @@ class Vision(WithParameters, Searching):
         distance_noise: float = 0.0,
         encoding: Any = 0.0,
         saccades: bool = False,
+        private_view: bool = True,
         **camera: Any,
     ) -> None:
         self._buffer = buffer
@@ -104,6 +107,7 @@ class Vision(WithParameters, Searching):
         self.edge_noise = edge_noise
         self.distance_noise = distance_noise
         self.saccades = saccades
+        self.private_view = private_view
         check_numbers(vars(self))
         check_camera(camera, sorted(self._settable() - {"camera", "busy", "error", "watching"}))
         self._detectors = dict(DETECTORS)
@@ -223,6 +227,9 @@ class Vision(WithParameters, Searching):
         search.due = self.sch.after(delay)
         self._ask_for_view(search)
         return search
+
+    def _kept_private(self, word: str) -> str | None:
+        return "Vision(private_view=False)" if word == "view" and self.private_view else None
 
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")

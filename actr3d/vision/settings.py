@@ -38,8 +38,9 @@ def check_numbers(given: Mapping[str, Any]) -> None:
             raise ParameterError(f"Vision.{name}: must be at least 0 (got {value!r})")
         if number > MOST:
             raise ParameterError(f"Vision.{name}: must be at most {MOST:g} (got {value!r})")
-    if not isinstance(given["saccades"], bool):
-        raise ParameterError(f"Vision.saccades: must be True or False (got {given['saccades']!r})")
+    for name in ("saccades", "private_view"):
+        if not isinstance(given[name], bool):
+            raise ParameterError(f"Vision.{name}: must be True or False (got {given[name]!r})")
     if not 0 <= _number(given["error_rate"]) <= 1:
         raise ParameterError(f"Vision.error_rate: must be a probability, 0 to 1 (got {given['error_rate']!r})")
     if not isinstance(given["rule"], str) or given["rule"] not in RULES:

@@ -111,6 +111,9 @@ class Body:
         self.touched: tuple[Touch, ...] | None = None
         """What the skin has felt in the last tick; None before anyone asks."""
         self._senses: dict[Any, Sense] = {}
+        """All that have been made."""
+        self._used: list[Any] = []
+        """The keys of those that the agent has used up to the present, in the order in which it first did."""
         self.noise = Noise(world.seed, self.name)
         self.extent = Extent(world.mj_model, world.mj_data, self.geoms)
         self.actuators: tuple[str, ...] = tuple(name for name, word in ACTUATORS.items() if word.fits(self))
@@ -179,7 +182,7 @@ class Body:
     def state(self) -> BodyState:
         """Returns what is not in the physics state: commands on their way, noise, what hands hold."""
         held = tuple((side, hand.held) for side, hand in self.hands.items() if hand.held is not None)
-        senses = tuple((key, sense.state()) for key, sense in self._senses.items())
+        senses = tuple((key, self._senses[key].state()) for key in self._used)
         return BodyState(
             running=self.running.state(),
             holding=self.holding.state(),
@@ -198,6 +201,7 @@ class Body:
         remembered = dict(state.senses)
         for make, parameters in remembered:
             self.sense(make, parameters)
+        self._used = list(remembered)
         for key, sense in self._senses.items():
             sense.restore(remembered.get(key))
         held = dict(state.held)
@@ -206,16 +210,22 @@ class Body:
 
     @property
     def senses(self) -> tuple[Sense, ...]:
-        """Its senses that remember something, in the order in which they were first used."""
-        return tuple(self._senses.values())
+        """The senses that the agent has used up to the present and that remember something, in the order in which it first did."""
+        return tuple(self._senses[key] for key in self._used)
 
     def sense(self, make: Callable[[Body, P], S], parameters: P) -> S:
-        """Returns the one sense of its kind and parameters, which is made when it is first asked for.
+        """Returns the one sense of its kind and parameters, for the agent's own use.
 
         Args:
             make: Makes it, of the body and the parameters.
-            parameters: What tells senses of one kind apart; hashable.
+            parameters: What distinguishes senses of one kind; hashable.
         """
+        if (make, parameters) not in self._used:
+            self._used.append((make, parameters))
+        return self.unused_sense(make, parameters)
+
+    def unused_sense(self, make: Callable[[Body, P], S], parameters: P) -> S:
+        """Returns the same sense for an observer, who leaves it as it is: the agent does not count as having used it."""
         key = make, parameters
         if key not in self._senses:
             self._senses[key] = make(self, parameters)

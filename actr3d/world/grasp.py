@@ -30,7 +30,7 @@ class Held:
 class Hand:
     """One hand: a weld equality of the compiled model, which is inactive while it is empty.
 
-    Whether it is active is part of the physics state. What it ties is not: it stands in the model, and in `held`.
+    Whether it is active is part of the physics state; what it ties stands in the compiled model. See `World.state` for both.
 
     Args:
         world: Where it is.
@@ -60,9 +60,13 @@ class Hand:
         back, quaternion = np.zeros(4), np.zeros(4)
         mujoco.mju_negQuat(back, data.xquat[self._segment])
         mujoco.mju_mulQuat(quaternion, back, data.xquat[object])
-        self.restore(Held(object=object, pose=(*position.tolist(), *quaternion.tolist())))
-        data.eq_active[self._weld] = 1
+        held = Held(object=object, pose=(*position.tolist(), *quaternion.tolist()))
+        self.restore(held)
         model: Any = self._world.mj_model
+        model.eq_obj2id[self._weld] = object
+        model.eq_data[self._weld, :3] = 0
+        model.eq_data[self._weld, 3:10] = held.pose
+        data.eq_active[self._weld] = 1
         data.xfrc_applied[object, :3] = -model.opt.gravity * model.body_mass[object]
 
     def release(self) -> None:
@@ -76,14 +80,9 @@ class Hand:
         self.restore(None)
 
     def restore(self, held: Held | None) -> None:
-        """Brings the model's weld in line with what is held; the physics state says whether it is active."""
-        model: Any = self._world.mj_model
+        """Notes what is held; the weld itself is part of the world's state."""
         self.held = held
-        self.geoms = () if held is None else _geoms_of(model, held.object)
-        if held is not None:
-            model.eq_obj2id[self._weld] = held.object
-            model.eq_data[self._weld, :3] = 0
-            model.eq_data[self._weld, 3:10] = held.pose
+        self.geoms = () if held is None else _geoms_of(self._world.mj_model, held.object)
 
     def carry(self) -> None:
         """Puts what it holds where the hand is, at rest, after the body was put elsewhere; positions must be up to date."""

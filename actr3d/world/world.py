@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from hashlib import blake2b
 from typing import Any
 
 import mujoco
@@ -16,6 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
+from actr3d.world.compiled import Changes, Compiled
 from actr3d.world.pace import Pace
 from actr3d.world.parts import Aperture
 from actr3d.world.running import Running
@@ -48,6 +48,9 @@ class WorldState:
 
     bodies: tuple[tuple[str, BodyState], ...] = ()
     """Of each body, what the physics does not hold: commands on their way, noise, what hands hold."""
+
+    compiled: Changes = ()
+    """What is not as it was compiled; see `Compiled`."""
 
 
 class World:
@@ -93,14 +96,18 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self, part) for part in described}
-        self.fingerprint = _fingerprint(self.mj_model)
-        """Two worlds have the same one where their scenes are compiled to the same bytes."""
+        self._compiled = Compiled(self.mj_model)
         self._pace = Pace(self, list(self.bodies.values()))
         self.watchers: list[Callable[[], None]] = []
         """Who looks at every physics step, or part of one, and changes nothing: called after each. The geometry, contacts and forces
         of `mj_data` are those of its beginning then, `time` and `opt.timestep` tell when it ended and how long it was."""
         self.drawing: Any = None
         """What draws pictures, once one has been asked for."""
+
+    @property
+    def fingerprint(self) -> str:
+        """Two worlds have the same one where their scenes are compiled to the same bytes."""
+        return self._compiled.fingerprint
 
     @property
     def time(self) -> int:
@@ -176,17 +183,20 @@ class World:
         """
         if self._scratch is None:
             self._scratch = MjData(self.mj_model)
-        mj_state = self.state().mj_state
-        mujoco.mj_setState(self.mj_model, self._scratch, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        mujoco.mj_setState(self.mj_model, self._scratch, self._integration(), mujoco.mjtState.mjSTATE_INTEGRATION)
         mujoco.mj_step(self.mj_model, self._scratch)
         return (self._scratch.qvel - self.mj_data.qvel) / self.mj_model.opt.timestep
 
     def state(self) -> WorldState:
         """Returns the present state, apart from the world: later steps do not change it."""
-        mj_state = np.empty(self._state_size)
-        mujoco.mj_getState(self.mj_model, self.mj_data, mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         bodies = tuple((name, body.state()) for name, body in self.bodies.items())
-        return WorldState(steps=self._steps, scene=self.fingerprint, mj_state=mj_state, bodies=bodies)
+        compiled = self._compiled.changes()
+        return WorldState(steps=self._steps, scene=self.fingerprint, mj_state=self._integration(), bodies=bodies, compiled=compiled)
+
+    def _integration(self) -> NDArray[np.float64]:
+        numbers = np.empty(self._state_size)
+        mujoco.mj_getState(self.mj_model, self.mj_data, numbers, mujoco.mjtState.mjSTATE_INTEGRATION)
+        return numbers
 
     def state_bytes(self) -> bytes:
         """Returns the numbers of the present state, which are all but how many steps it took, as a recording keeps them."""
@@ -203,6 +213,7 @@ class World:
             raise WorldError(f"a state of this world has {self._state_size} numbers (got {state.mj_state.size}): is it of another scene?")
         if state.scene != self.fingerprint:
             raise WorldError(f"the state is of another scene: that one compiles to {state.scene}, this one to {self.fingerprint}")
+        self._compiled.restore(state.compiled)
         mujoco.mj_setState(self.mj_model, self.mj_data, state.mj_state, mujoco.mjtState.mjSTATE_INTEGRATION)
         self._warnings[:] = 0
         self._steps = state.steps
@@ -294,10 +305,3 @@ class World:
     def _mocap(self, name: str) -> int:
         body: Any = self.mj_model.body(name)
         return int(self.mj_model.body_mocapid[body.id])
-
-
-def _fingerprint(mj_model: MjModel) -> str:
-    """Returns a hash of a compiled scene: of all its numbers and names."""
-    image = np.empty(mujoco.mj_sizeModel(mj_model), np.uint8)
-    mujoco.mj_saveModel(mj_model, None, image)
-    return blake2b(image.tobytes(), digest_size=8).hexdigest()

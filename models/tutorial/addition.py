@@ -1,21 +1,24 @@
 """Addition by counting up, as children do it on their fingers.
 
-What is modelled: 5 + 3 is found by counting 6, 7, 8 while the fingers show 1, 2, 3. The only knowledge
-is what comes after each number.
+5 + 3 is found by counting 6, 7, 8 while the fingers show 1, 2, 3. The only knowledge is what comes after each
+number.
 
-Mechanism: the goal buffer as a working memory. Its slots change step by step, and what they hold decides
-which production is next: `fingers:!?b` asks for fingers that do not show the second number yet,
-`fingers:?b` for just that number.
+The goal buffer is the working memory. Its slots change step by step, and what they hold decides which
+production is next: `fingers:!?b` asks for fingers that do not show the second number yet, `fingers:?b` for just
+that number.
 
-What to expect: each step takes 0.25 s: three productions of 0.05 s and two retrievals of 0.05 s
-(F exp(-A) with F = 0.05 s and A = 0). With 0.05 s to begin and 0.05 s to answer, a + b takes
-0.1 + 0.25 b s, here 0.850 s: the time grows with the second number alone. People who first choose the
-larger number show times that grow with the smaller one instead (the «min» model of Groen & Parkman 1972,
-Psychological Review 79).
+What to expect
+--------------
+Each step takes 0.25 s: three productions of 0.05 s and two retrievals of 0.05 s (`F exp(-A)` with F = 0.05 s and
+A = 0). With 0.05 s to begin and 0.05 s to answer, a + b takes 0.1 + 0.25 b s, here 0.850 s: the time grows with
+the second number alone. People who first choose the larger number show times that grow with the smaller one
+instead (the «min» model of Groen & Parkman 1972, Psychological Review 79).
 
-Try: swapping the numbers; facts on which number is larger, and a production that swaps the numbers
-first; a stored answer (`memory.add("a:5 b:3 sum:8")`), and a production that looks for one before it
-counts.
+What to try
+-----------
+- `a = 3, b = 5`: the same sum takes longer.
+- In the tab *Editor*: facts on which number is larger, and a production that swaps the numbers first.
+- Or a stored answer (`memory.add("a:5 b:3 sum:8")`), and a production that looks for one before it counts.
 """
 
 a = 5

@@ -1,19 +1,24 @@
 """Blending: an estimate from all that was experienced.
 
-What is modelled: how long will the bus take to come? Nobody remembers one particular morning for that;
-all waits that were ever experienced add to the estimate, recent ones more than old ones.
+How long will the bus take to come? Nobody remembers one particular morning for that; all waits that were ever
+experienced add to the estimate, recent ones more than old ones.
 
-Mechanism: a `BlendingMemory` does not retrieve the most active chunk, but a mixture of all that match.
-Numbers in their slots become a mean, in which each chunk counts with the weight exp(A).
+A `BlendingMemory` does not retrieve the most active chunk, but a mixture of all that match. Numbers in their slots
+become a mean, in which each chunk counts with the weight `exp(A)`.
 
-What to expect: the blend is sum p_i v_i, p_i = exp(A_i) / sum exp(A_j), with the temperature 1 of Python
-ACT-R (Lebiere 1999, Kognitionswissenschaft 8). With base-level learning, a chunk that was experienced
-once, t seconds ago, has A = ln t^-d, so that exp(A) is just t^-d. Right after a wait of 20 minutes the
-estimate is high; as time passes, all experiences become equally old, and it moves towards their plain
-mean, 11 minutes. The table shows the estimates beside that equation.
+What to expect
+--------------
+The blend is `sum p_i v_i`, `p_i = exp(A_i) / sum exp(A_j)`, with the temperature 1 of Python ACT-R (Lebiere 1999,
+Kognitionswissenschaft 8). With base-level learning, a chunk that was experienced once, t seconds ago, has
+`A = ln t^-d`, so that exp(A) is just `t^-d`. Right after a wait of 20 minutes the estimate is high; as time
+passes, all experiences become equally old, and it moves towards their plain mean, 11 minutes. The table in the
+*Console* shows the estimates beside that equation.
 
-Try: `decay = 0` (the plain mean, always), `decay = 1` (the last experience nearly alone), another wait
-in WAITS.
+What to try
+-----------
+- `decay = 0`: the plain mean, always.
+- `decay = 1`: the last experience nearly alone.
+- Another wait in `WAITS`, in the tab *Editor*.
 """
 
 decay = 0.5

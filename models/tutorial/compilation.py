@@ -1,20 +1,23 @@
 """Production compilation: from remembering to knowing how.
 
-What is modelled: translating words. At first each word must be remembered: ask, wait for the answer, say
-it. With practice the memory is no longer needed: seeing the word is enough to say it.
+Words are translated. At first each word must be remembered: ask, wait for the answer, say it. With practice the
+memory is no longer needed: seeing the word is enough to say it.
 
-Mechanism: `PMCompile` watches for a production that makes a request, followed by one that uses the
-answer. Of the two it makes one new production, with the answer built in, which needs no retrieval: one
-for each word.
+`PMCompile` watches for a production that makes a request, followed by one that uses the answer. Of the two it makes
+one new production, with the answer built in, which needs no retrieval: one for each word.
 
-What to expect: remembering takes 0.15 s: two productions of 0.05 s, and a retrieval of F exp(-A) =
-0.05 s between them. The compiled production takes 0.05 s. In Python ACT-R it begins with a utility of 0;
-as `ask` has -1, it is used at once, and each word is remembered just once. (In ACT-R 7 a compiled
-production comes to its parents' utility step by step, each time it is compiled again: Taatgen & Anderson
-2002, Cognition 86.)
+What to expect
+--------------
+Remembering takes 0.15 s: two productions of 0.05 s, and a retrieval of `F exp(-A)` = 0.05 s between them. The
+compiled production takes 0.05 s. In Python ACT-R it begins with a utility of 0; as `ask` has -1, it is used at
+once, and each word is remembered just once. (In ACT-R 7 a compiled production comes to its parents' utility step by
+step, each time it is compiled again: Taatgen & Anderson 2002, Cognition 86.) The tab *Productions* lists the new
+productions.
 
-Try: `utility_of_asking = 0` (a draw: either way is taken half the time), or 1 (the new production is
-never used).
+What to try
+-----------
+- `utility_of_asking = 0`: a draw, so that either way is taken half the time.
+- `utility_of_asking = 1`: the new production is never used.
 """
 
 utility_of_asking = -1

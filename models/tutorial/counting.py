@@ -1,19 +1,24 @@
 """Counting, step by step: how long a thought takes.
 
-What is modelled: counting from one number to another, with nothing but remembered facts of the form
-«after 3 comes 4».
+The agent counts from one number to another, with nothing but remembered facts of the form «after 3 comes 4».
 
-Mechanism: the cycle of productions and retrievals. A production asks declarative memory for a fact
+It runs through the cycle of productions and retrievals. A production asks declarative memory for a fact
 (`memory.request`); the fact arrives in the retrieval buffer a little later; its arrival is what the next
 production waits for.
 
-What to expect: a production takes 0.05 s. A retrieval takes F exp(-A) (Anderson & Lebiere 1998, chapter
-3), with F = 0.05 s here, and A = 0 as the memory has no activation modules: 0.05 s too. So the first
-number comes after 0.05 + 0.05 + 0.05 = 0.150 s, and each further one 0.1 s later; the last one needs no
-fact, so it is said 0.05 s after the one before.
+What to expect
+--------------
+A production takes 0.05 s. A retrieval takes `F exp(-A)` (Anderson & Lebiere 1998, chapter 3), with F = 0.05 s here,
+and A = 0 as the memory has no activation modules: 0.05 s too. So the first number comes after
+0.05 + 0.05 + 0.05 = 0.150 s, and each further one 0.1 s later; the last one needs no fact, so it is said 0.05 s
+after the one before.
 
-Try: other numbers; `latency_factor = 0.5`; counting from 5 to 2. Or run with `--trace buffer` and watch
-the buffers.
+What to try
+-----------
+- `first = 3, last = 9`: other numbers.
+- `latency_factor = 0.5`: a slow memory.
+- `first = 5, last = 2`: where does it stop?
+- Step from production to production (key C), and watch the buffers.
 """
 
 first = 2

@@ -1,20 +1,24 @@
 """The fan effect: the more we know of something, the longer each fact about it takes to remember.
 
-What is modelled: facts of the form «the miller is in the harbour» have been learned, and now some of
-them are recognised. Of some people and places only one fact is known, of others two or three: that
-number is their fan.
+Facts of the form «the miller is in the harbour» have been learned, and now some of them are recognised. Of some
+people and places only one fact is known, of others two or three: that number is their fan.
 
-Mechanism: spreading activation. What is in the goal buffer sends activation to the facts in memory that
-share it, and the more facts share it, the less each of them gets.
+The mechanism is spreading activation. What is in the goal buffer sends activation to the facts in memory that share
+it, and the more facts share it, the less each of them gets.
 
-What to expect: the activation of a fact is A = sum W_j S_j over the person and the place in the goal,
-where W_j is the weight of each (here 0.5) and S_j = S - ln(fan_j + 1) (Anderson & Lebiere 1998, chapter
-3; Anderson & Reder 1999, Journal of Experimental Psychology: General 128). It is retrieved after
-F exp(-A). The table shows the time of each retrieval beside that equation. What grows is the time; it
-does so with the fan of the person and that of the place alike, and more slowly for each further fact.
+What to expect
+--------------
+The activation of a fact is `A = sum W_j S_j` over the person and the place in the goal, where W_j is the weight of
+each (here 0.5) and `S_j = S - ln(fan_j + 1)` (Anderson & Lebiere 1998, chapter 3; Anderson & Reder 1999, Journal of
+Experimental Psychology: General 128). It is retrieved after `F exp(-A)`. The table in the *Console* shows the time
+of each retrieval beside that equation. What grows is the time; it does so with the fan of the person and that of
+the place alike, and more slowly for each further fact.
 
-Try: strength = 2, which makes everything faster; attention = 0, which takes the effect away; a fourth
-fact on the miller.
+What to try
+-----------
+- `strength = 2`: everything becomes faster.
+- `attention = 0`: the effect disappears.
+- A fourth fact on the miller, in the tab *Editor*.
 """
 
 strength = 1.6

@@ -1,21 +1,24 @@
 """The imaginal module: holding a thought in mind takes time.
 
-What is modelled: mental arithmetic with an intermediate result: start at 3, add 4, add 2. The running
-total is held in mind while the goal says what to do.
+The agent does mental arithmetic with an intermediate result: start at 3, add 4, add 2. The running total is held
+in mind while the goal says what to do.
 
-Mechanism: an imaginal buffer, which is filled and changed through the `ImaginalModule`. Unlike a change
-of the goal, which costs nothing, each change of what is imagined takes 0.2 s. Meanwhile the module is
-busy, and productions can wait until it is not (`imagine="busy:False"`): a request to a busy module is
-lost.
+An imaginal buffer is filled and changed through the `ImaginalModule`. Unlike a change of the goal, which costs
+nothing, each change of what is imagined takes 0.2 s. Meanwhile the module is busy, and productions can wait until
+it is not (`imagine="busy:False"`): a request to a busy module is lost.
 
-What to expect: imagining the first number takes 0.05 s for the production and 0.2 s for the module
-(ACT-R's imaginal delay). Each addition takes two productions of 0.05 s, a retrieval of F exp(-A) =
-0.05 s, and 0.2 s: 0.35 s. Saying the result takes 0.05 s: 0.25 + 0.35 n + 0.05 s for n additions, here
-1.000 s.
+What to expect
+--------------
+Imagining the first number takes 0.05 s for the production and 0.2 s for the module (ACT-R's imaginal delay). Each
+addition takes two productions of 0.05 s, a retrieval of `F exp(-A)` = 0.05 s, and 0.2 s: 0.35 s. Saying the result
+takes 0.05 s: 0.25 + 0.35 n + 0.05 s for n additions, here 1.000 s.
 
-Try: `imaginal_delay = 0.4`; more numbers; taking `imagine="busy:False"` away from `hear`. It then adds 2
-to the old total, and as the module is still busy with the first sum, it does not take the second: the
-result is 7.
+What to try
+-----------
+- `imaginal_delay = 0.4`: how much longer does the sum take?
+- More numbers, in the tab *Editor*.
+- Take `imagine="busy:False"` away from `hear`. It then adds 2 to the old total, and as the module is still busy with
+  the first sum, it does not take the second: the result is 7.
 """
 
 imaginal_delay = 0.2

@@ -1,20 +1,24 @@
 """A parallel production system: a quick eye beside a slow mind.
 
-What is modelled: a cook stirs a soup, and minds the stove. Stirring is thinking, step by step. Watching
-goes on all the time beside it, faster than any thought, but all it can do is to raise an alarm.
+A cook stirs a soup, and minds the stove. Stirring is thinking, step by step. Watching goes on all the time beside
+it, faster than any thought, but all it can do is to raise an alarm.
 
-Mechanism: a `ProductionSystem` inside an agent has productions and a cycle time of its own, and sees the
-agent's buffers by name. The two run at the same time, and meet in a buffer. (Python ACT-R's way of
-putting simple, automatic processes beside the central one: Stewart & West 2007, Cognitive Systems
-Research 8.)
+A `ProductionSystem` inside an agent has productions and a cycle time of its own, and sees the agent's buffers by
+name. The two run at the same time, and meet in a buffer. (Python ACT-R's way of putting simple, automatic processes
+beside the central one: Stewart & West 2007, Cognitive Systems Research 8.)
 
-What to expect: smoke rises at 0.33 s. The watch takes 0.01 s, and raises the alarm at 0.34 s. At that
-time the mind has decided on a stir that is done at 0.35 s. Only then does it match again: it decides for
-the alarm, as that has the higher utility, and turns the stove off at 0.40 s. Cognition reacts to an
-alarm after 0.05 to 0.10 s, whatever the moment.
+What to expect
+--------------
+Smoke rises at 0.33 s. The watch takes 0.01 s, and raises the alarm at 0.34 s. At that time the cook has decided on a
+stir that is done at 0.35 s. Only then the central system matches again: it chooses the alarm, as that has the
+higher utility, and turns the stove off at 0.40 s. Cognition reacts to an alarm after 0.05 to 0.10 s, whatever the
+moment.
 
-Try: another `smoke_time`; `watch_time = 0.1`; `utility=1` for `stir` (the cook stirs on, though the
-alarm is there).
+What to try
+-----------
+- `smoke_time = 0.36`: another moment within the stir.
+- `watch_time = 0.1`: a slow watch.
+- `utility=1` for `stir`, in the tab *Editor*: the cook stirs on, though the alarm is there.
 """
 
 smoke_time = 0.33

@@ -1,21 +1,26 @@
 """Partial matching: remembering the wrong thing because it is similar.
 
-What is modelled: each letter stands for a word. Asked for the word of b, one sometimes says that of d,
-less often does m bring up the word of n, and hardly ever c that of g.
+Each letter stands for a word. Asked for the word of b, one sometimes says that of d; less often m brings up the
+word of n; hardly ever c that of g.
 
-Mechanism: with a `Partial`, a request also finds chunks that are only similar to what was asked for.
-Each mismatch adds MP M to their activation, where M is the similarity (0 for the same, less for less
-similar) and MP the penalty (Anderson & Lebiere 1998, chapter 3). Noise in activation then now and again
-lifts the wrong chunk above the right one.
+With a `Partial`, a request also finds chunks that are only similar to what was asked for. Each mismatch adds `MP M`
+to their activation, where M is the similarity (0 for the same, less for less similar) and MP the penalty (Anderson
+& Lebiere 1998, chapter 3). Noise in activation then now and again lifts the wrong chunk above the right one.
 
-What to expect: the right chunk is ahead by d = -MP M. Each has logistic noise of scale s, so that the
-wrong one wins with probability p = ((x - 1) exp(-x) + exp(-2x)) / (1 - exp(-x))^2, x = d / s: the
-difference of two such noises is larger than d. The table shows the share of errors beside this, and
-beside the usual approximation 1 / (1 + exp(d / t)), t = sqrt(2) s (Anderson & Lebiere 1998, chapter 3).
-Of n trials, the share differs from p by about sqrt(p (1 - p) / n).
+What to expect
+--------------
+The right chunk is ahead by `d = -MP M`. Each has logistic noise of scale s, so that the wrong one wins with
+probability `p = ((x - 1) exp(-x) + exp(-2x)) / (1 - exp(-x))^2`, x = d / s: the difference of two such noises is
+larger than d. The table in the *Console* shows the share of errors beside this, and beside the usual approximation
+`1 / (1 + exp(d / t))`, t = sqrt(2) s (Anderson & Lebiere 1998, chapter 3). Of n trials, the share differs from p by
+about `sqrt(p (1 - p) / n)`.
 
-Try: `trials = 5000`; `noise = 0.6` (more errors); `penalty = 20` (fewer); a similarity of -0.1 between b
-and g.
+What to try
+-----------
+- `trials = 5000`: shares that lie nearer to the equation.
+- `noise = 0.6`: more errors.
+- `penalty = 20`: fewer errors.
+- A similarity of -0.1 between b and g, in the tab *Editor*.
 """
 
 penalty = 10.0

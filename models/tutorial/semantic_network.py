@@ -1,21 +1,23 @@
 """A semantic network: is a heron an animal?
 
-What is modelled: knowledge of kinds as a network, in which each thing is only linked to the next more
-general one: a heron is a bird, a bird is an animal. Whether a heron is an animal is found by walking
-from link to link.
+Knowledge of kinds is a network, in which each thing is only linked to the next more general one: a heron is a bird,
+a bird is an animal. Whether a heron is an animal is found by walking from link to link.
 
-Mechanism: chains of retrievals, and what happens when memory finds nothing: the memory's `error` becomes
+The model makes chains of retrievals, and shows what happens when memory finds nothing: the memory's `error` becomes
 True, which a production can match like anything else (`memory="error:True"`).
 
-What to expect: each link takes 0.15 s: two productions of 0.05 s, and a retrieval of F exp(-A) = 0.05 s.
-Yes is said after 0.05 + 0.15 n s for n links: by the same amount later for each level, as Collins &
-Quillian (1969, Journal of Verbal Learning and Verbal Behavior 8) found. No is said where the network
-ends and a retrieval fails, which takes F exp(-threshold), with the threshold of 0 also 0.05 s: no heron
-is a fish after 0.15 * 3 + 0.15 = 0.600 s.
+What to expect
+--------------
+Each link takes 0.15 s: two productions of 0.05 s, and a retrieval of `F exp(-A)` = 0.05 s. Yes is said after
+0.05 + 0.15 n s for n links: by the same amount later for each level, as Collins & Quillian (1969, Journal of Verbal
+Learning and Verbal Behavior 8) found. No is said where the network ends and a retrieval fails, which takes
+`F exp(-threshold)`, with the threshold of 0 also 0.05 s: no heron is a fish after 0.15 * 3 + 0.15 = 0.600 s.
 
-Try: further kinds; a direct link from a heron to an animal (what happens to the time, and what to the
-search where two links lead on?); `threshold = -1`, which makes the memory search longer before it gives
-up.
+What to try
+-----------
+- `threshold = -1`: the memory searches longer before it gives up.
+- Further kinds, in the tab *Editor*.
+- A direct link from a heron to an animal: what happens to the time, and what to the search where two links lead on?
 """
 
 threshold = 0

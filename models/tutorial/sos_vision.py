@@ -1,18 +1,24 @@
 """SOS vision: seeing what catches the eye.
 
-What is modelled: somebody glances at a crossing again and again, looking for a lamp. The red lamp
-catches the eye more often than the green one, and now and again neither does.
+Somebody glances at a crossing again and again, looking for a lamp. The red lamp catches the eye more often than the
+green one, and now and again neither does.
 
-Mechanism: `SOSVision` finds things in the agent's environment that match a pattern. Each is noticed with
-a probability of its own, its `salience`; one of those that are noticed comes to the buffer, at random.
-Where none is, the buffer is emptied and the module's `error` becomes True, which a production can match.
+`SOSVision` finds things in the agent's environment that match a pattern. Each is noticed with a probability of its
+own, its `salience`; one of those that are noticed comes to the buffer, at random. Where none is, the buffer is
+emptied and the module's `error` becomes True, which a production can match.
 
-What to expect: with saliences r and g, the red lamp is seen with probability r (1 - g) + r g / 2, the
-green one with g (1 - r) + r g / 2, and neither with (1 - r) (1 - g) (West & Emond 2002). For r = 0.9 and
-g = 0.4: 0.72, 0.22 and 0.06. The tree does not match, so that its salience does not matter. Of n
-glances, shares differ from this by about sqrt(p (1 - p) / n).
+What to expect
+--------------
+With saliences r and g, the red lamp is seen with probability `r (1 - g) + r g / 2`, the green one with
+`g (1 - r) + r g / 2`, and neither with `(1 - r) (1 - g)` (West & Emond 2002). For r = 0.9 and g = 0.4: 0.72, 0.22
+and 0.06. The tree does not match, so its salience does not matter. Of n glances, shares differ from this by about
+`sqrt(p (1 - p) / n)`.
 
-Try: `red_salience = 0.4`; a third lamp; a lamp with `visible = False`; asking for `colour:red` alone.
+What to try
+-----------
+- `red_salience = 0.4`: both lamps are seen equally often.
+- `glances = 1000`: shares that lie nearer to the equation.
+- In the tab *Editor*: a third lamp; a lamp with `visible = False`; asking for `colour:red` alone.
 """
 
 red_salience = 0.9

@@ -1,18 +1,22 @@
 """Two agents in one environment: taking turns.
 
-What is modelled: two people count aloud together, each saying the number after the one the other has
-said.
+Two people count aloud together, each saying the number after the one the other has said.
 
-Mechanism: agents that share an environment share its clock, and run side by side. An agent matches and
-changes things of its environment as it does its own buffers: here a board on the wall
-(`board="turn:?me"`). Even the agent itself can be matched: `self="me:?me"` binds its attribute `me`.
+Agents that share an environment share its clock, and run side by side. An agent matches and changes things of its
+environment as it does its own buffers: here a board on the wall (`board="turn:?me"`). Even the agent itself can be
+matched: `self="me:?me"` binds its attribute `me`.
 
-What to expect: an agent whose turn it is takes 0.05 s to notice and to ask its memory, 0.05 s until it
-remembers (F exp(-A) with F = 0.05 s, A = 0), and 0.05 s to write: a number every 0.15 s, from the two
-agents in turn. While it waits, an agent costs nothing: it is woken when the board changes.
+What to expect
+--------------
+An agent whose turn it is takes 0.05 s to notice and to ask its memory, 0.05 s until it remembers (`F exp(-A)` with
+F = 0.05 s, A = 0), and 0.05 s to write: a number every 0.15 s, from the two agents in turn. While it waits, an agent
+costs nothing: it is woken when the board changes.
 
-Try: another `last`; a third player; `production_time = 0.1` in one of two classes (who is slow?);
-players who do not wait for their turn (take the pattern's `turn:?me` away).
+What to try
+-----------
+- `last = 12`: count further.
+- In the tab *Editor*: a third player; `production_time = 0.1` in one of two classes (who is slow?); players who do not
+  wait for their turn (take the pattern's `turn:?me` away).
 """
 
 last = 6

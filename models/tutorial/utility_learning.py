@@ -1,22 +1,26 @@
 """Utility learning: how a habit comes from what actions bring.
 
-What is modelled: every morning somebody goes to work, by bus or on foot. Both bring the same reward, but
-walking takes longer. Nobody says which is better: that is learned from trying.
+Every morning somebody goes to work, by bus or on foot. Both bring the same reward, but walking takes longer. Nobody
+says which is better: that is learned from trying.
 
-Mechanism: of the productions that match, the one with the highest utility fires. `PMNew` learns
-utilities from rewards, `PMNoise` adds noise, so that the second best is tried now and again.
+Of the productions that match, the one with the highest utility fires. `PMNew` learns utilities from rewards,
+`PMNoise` adds noise, so that the second best is tried now and again.
 
-What to expect: at each reward R, every production chosen since the last one changes by
-U += alpha (R - dt - U), where dt is the time from its choice to the reward (Anderson 2007, How can the
-human mind occur in the physical universe?). So U comes near R - dt. With a reward of 2, and 0.1 s for
-the two productions on the way, that is 2 - 2.1 for the bus and 2 - 3.1 on foot. Both begin at 0, and are
-chosen equally often at first. In the end the better one, ahead by d = 1, is chosen with probability
-p = 1 - ((x - 1) exp(-x) + exp(-2x)) / (1 - exp(-x))^2, x = d / s, where s is the scale of the logistic
-noise on both: 0.846 for s = 0.4.
+What to expect
+--------------
+At each reward R, every production chosen since the last one changes by `U += alpha (R - dt - U)`, where dt is the
+time from its choice to the reward (Anderson 2007, How can the human mind occur in the physical universe?). So U
+comes near R - dt. With a reward of 2, and 0.1 s for the two productions on the way, that is 2 - 2.1 for the bus and
+2 - 3.1 on foot. Both begin at 0, and are chosen equally often at first. In the end the better one, ahead by d = 1,
+is chosen with probability `p = 1 - ((x - 1) exp(-x) + exp(-2x)) / (1 - exp(-x))^2`, x = d / s, where s is the scale
+of the logistic noise on both: 0.846 for s = 0.4.
 
-Try: `noise = 0.1` (hardly ever walks), `alpha = 0.02` (learns slowly), `walk_time = 2`. With
-`reward = 10` it stays with whatever it tried first: that has been rewarded, and what was never tried is
-still worth 0.
+What to try
+-----------
+- `noise = 0.1`: hardly ever walks.
+- `alpha = 0.02`: learns slowly.
+- `walk_time = 2`: which one becomes the habit?
+- `reward = 10`: stays with whatever it tried first. That has been rewarded, and what was never tried is still worth 0.
 """
 
 alpha = 0.1

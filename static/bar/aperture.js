@@ -1,25 +1,61 @@
-// The aperture's free width: live, in cm and in shoulder widths (A/S).
+// The aperture's free width, in cm and in shoulder widths (A/S). A drag, or keys held down, are one change: the one where they end.
 
-import { computed, html } from "../vendor/preact.js";
+import { computed, html, signal } from "../vendor/preact.js";
 import { settable } from "../parts/settable.js";
 import { session, state } from "../store.js";
+import { orderChange } from "./branch.js";
+
+const MOVES = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", "PageUp", "PageDown"]; // keys that move a slider
 
 const name = computed(() => Object.keys(state.value?.apertures ?? {})[0]);
 /** The free width [cm]. */
 const width = settable(
   () => 100 * (state.value?.apertures[name.value] ?? 0),
   (cm) => ({ type: "aperture", width: cm / 100, name: name.peek() }),
+  orderChange,
 );
+/** Where the slider is held [cm]; null where it is not. */
+const held = signal(null);
+let holding = false;
+
+function move(cm) {
+  held.value = cm;
+  if (!holding) release();
+}
+
+function release() {
+  holding = false;
+  const cm = held.peek();
+  held.value = null;
+  if (cm !== null && cm !== Math.round(width.value.peek())) width.set(cm);
+}
 
 export function Aperture() {
   if (name.value === undefined) return null;
-  const cm = width.value.value;
+  const cm = held.value ?? width.value.value;
   const { bodies = {}, widths = {} } = session.value?.world ?? {};
   const shoulders = Object.values(bodies).find((body) => body.shoulders)?.shoulders;
-  const [least, most] = widths[name.value] ?? [0, Math.round(cm)];
+  const told = html`<output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>`;
+  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway; a program takes no commands while it runs"><span>${name}</span> ${told}</span>`;
+  const [least, most] = widths[name.value];
   return html`<label class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
     <span>${name}</span>
-    <input id="aperture" type="range" min=${least} max=${most} step="1" value=${Math.round(cm)} disabled=${!session.value?.alive} onInput=${(event) => width.set(Number(event.currentTarget.value))} />
-    <output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>
+    <input
+      id="aperture"
+      type="range"
+      min=${least}
+      max=${most}
+      step="1"
+      value=${Math.round(cm)}
+      disabled=${!session.value?.alive}
+      onInput=${(event) => move(Number(event.currentTarget.value))}
+      onPointerDown=${() => (holding = true)}
+      onPointerUp=${release}
+      onPointerCancel=${release}
+      onKeyDown=${(event) => (holding ||= MOVES.includes(event.key))}
+      onKeyUp=${release}
+      onBlur=${release}
+    />
+    ${told}
   </label>`;
 }

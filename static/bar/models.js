@@ -1,7 +1,8 @@
-// Which model is shown: choosing one shows the session with it, or begins one.
+// Which model or recording is shown: choosing one shows the session with it, or begins one; the address of the page says which.
 
-import { html, signal, useLayoutEffect } from "../vendor/preact.js";
-import { call, say, showModel } from "../server.js";
+import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
+import { call, say, showModel, showRecording } from "../server.js";
+import { withTrust } from "../runs/trust.js";
 import { complain, connected, session } from "../store.js";
 
 /** The model files of the folder: {path, title, kind}. */
@@ -35,9 +36,25 @@ export async function choose(path) {
   }
 }
 
+/** Shows a recording, whose address is its own: «back» of the browser leads to what was shown before. */
+export async function chooseRecording(id) {
+  const left = session.peek();
+  if ((await openRecording(id)) === null) return;
+  if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
+  goToAddress("recording", id);
+}
+
+/** Shows a recording, after asking where its code comes from elsewhere; returns null where the user does not agree. */
+function openRecording(id) {
+  return withTrust(id, "Opening it", (trust) => showRecording(id, trust));
+}
+
+/** What was shown before a recording, so that one can return to it; null for nothing. */
+export const before = signal(null);
+
 /** Runs a model from its start, as its file is now; throws an Error that says why not. */
 export async function runModel(path) {
-  if (session.value?.model === path && connected.value) {
+  if (session.value?.model === path && session.value.recorded === null && connected.value) {
     await say({ type: "restart", run: true });
     return;
   }
@@ -49,8 +66,37 @@ export async function runModel(path) {
 export function note(path) {
   model.value = path;
   sessionStorage.setItem("model", path);
-  history.replaceState(null, "", `?model=${encodeURIComponent(path)}`);
+  goToAddress("model", path);
 }
+
+function addressed(kind) {
+  return new URLSearchParams(location.search).get(kind);
+}
+
+/** Puts into the address of the page what is shown. Between a recording and a model one can go with «back» and «forward». */
+function goToAddress(kind, name) {
+  if (addressed(kind) === name) return;
+  const other = kind === "recording" || addressed("recording") !== null;
+  history[other ? "pushState" : "replaceState"](null, "", `?${kind}=${encodeURIComponent(name)}`);
+}
+
+/** Shows what the address says, after «back» or «forward». */
+function follow() {
+  const [recording, path] = [addressed("recording"), addressed("model")];
+  if (recording !== null) chooseRecording(recording).catch((error) => complain(error.message));
+  else if (path !== null) choose(path);
+}
+
+addEventListener("popstate", follow);
+
+/** A recording that is begun as a new run is no recording any more: its address is that of the model then. */
+let shown = { id: null, recorded: null };
+effect(() => {
+  const { id = null, recorded = null, model: path } = session.value ?? {};
+  const isNew = id !== null && id === shown.id && shown.recorded !== null && recorded === null;
+  shown = { id, recorded };
+  if (isNew) note(path);
+});
 
 async function begin() {
   try {
@@ -65,13 +111,24 @@ async function begin() {
     return;
   }
   if (model.value !== null) return; // the user has chosen one already
-  const wanted = [new URLSearchParams(location.search).get("model"), sessionStorage.getItem("model"), ...FIRST];
+  const recording = addressed("recording");
+  let problem = null;
+  if (recording !== null) {
+    try {
+      if ((await openRecording(recording)) !== null) return;
+    } catch (error) {
+      problem = `The recording «${recording}» cannot be opened: ${error.message}`;
+    }
+  }
+  const wanted = [addressed("model"), sessionStorage.getItem("model"), ...FIRST];
   await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
+  if (problem !== null) complain(problem); // now, for what was said before is forgotten with what was shown before
 }
 
 export function ModelChoice() {
   useLayoutEffect(() => void begin(), []);
-  const shown = session.value?.model ?? model.value ?? "";
+  const recorded = session.value?.recorded ?? null;
+  const shown = recorded !== null ? "" : session.value?.model ?? model.value ?? "";
   const gone = shown && models.value.length > 0 && !models.value.some(({ path }) => path === shown);
   const folders = Map.groupBy(models.value, ({ path }) => path.split("/").slice(0, -1).join("/"));
   const option = ({ path, title }) => html`<option key=${path} value=${path} title=${title}>${path.split("/").at(-1)}</option>`;
@@ -83,6 +140,7 @@ export function ModelChoice() {
     onChange=${(event) => choose(event.currentTarget.value)}
   >
     ${models.value.length === 0 ? html`<option value="">no models</option>` : null}
+    ${recorded !== null ? html`<option value="">recording of ${session.value.model.split("/").at(-1)}</option>` : null}
     ${gone ? html`<option value=${shown}>${shown} (not in the folder)</option>` : null}
     ${[...folders].map(([folder, list]) => (folder ? html`<optgroup key=${folder} label=${folder}>${list.map(option)}</optgroup>` : list.map(option)))}
   </select>`;

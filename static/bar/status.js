@@ -2,23 +2,37 @@
 
 import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
+import { Branch } from "./branch.js";
 import { Former } from "../editor/running.js";
+import { Hint } from "./pace.js";
 import { standing } from "../standing.js";
-import { connected, session, state } from "../store.js";
+import { connected, me, session, state } from "../store.js";
 
-const BAD = ["busy", "failed", "lost", "unloadable"];
+const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
+
+/** Says how many watch, which of them this one is, and who has said something last. */
+function browsers(watching, control) {
+  const who = control === me.value ? "you control" : control ? `${control} controls` : "nobody has control";
+  return `${watching.length} browsers: you are ${me.value}, ${who}`;
+}
+
+function browsersInFull(watching) {
+  return `${watching.map((name) => (name === me.value ? `${name} (this one)` : name)).join(", ")}\nAll can control the run; the last to do something is named.`;
+}
 
 export function StatusLine() {
   const { seed, watching = [], controlled_by: control, recording } = session.value ?? {};
   const { is, line } = standing.value;
   return html`<footer class="status-line">
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
+    <${Hint} />
     <span class="stretch"></span>
+    <${Branch} />
     <${Former} />
     ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
     ${seed !== null && seed !== undefined ? html`<span title="The seed of the run">seed ${String(seed)}</span>` : null}
     <span>${counted(state.value?.events ?? 0, "event")}</span>
-    ${watching.length > 1 ? html`<span title=${watching.join(", ")}>${watching.length} browsers${control ? `, controlled by ${control}` : ""}</span>` : null}
+    ${watching.length > 1 ? html`<span id="browsers" title=${browsersInFull(watching)}>${browsers(watching, control)}</span>` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
       ${connected.value === false ? "connection lost; trying again …" : connected.value ? "connected" : "connecting …"}
     </span>

@@ -8,6 +8,8 @@ import { order } from "../server.js";
 import { isOver } from "../standing.js";
 import { running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
+import { bindFaster, speedIsKnown } from "./pace.js";
+import { SeedField } from "./seed.js";
 import { runUntil } from "./until.js";
 
 /** Speeds as [text, times real time]; null for as fast as possible. */
@@ -22,8 +24,15 @@ function isDone() {
 function toggle() {
   if (isIdle("run")) return;
   if (running.value) order({ type: "pause" });
+  else if (isDone() && session.value.recorded !== null && session.value.alive) runAgain();
   else if (isDone()) order({ type: "restart", run: true });
   else orderThere({ type: "run" });
+}
+
+/** Runs a recording from its start: as it was, where a new run would be one of the model as it is now. */
+async function runAgain() {
+  await order({ type: "seek", time: 0 });
+  order({ type: "run" });
 }
 
 const BUTTONS = [
@@ -65,9 +74,16 @@ function speedNumber() {
   return at < 0 ? SPEEDS.length - 1 : at;
 }
 
-function changeSpeed(by) {
-  if (session.value) speed.set(SPEEDS[Math.max(0, Math.min(SPEEDS.length - 1, speedNumber() + by))][1]);
+function setSpeed(number) {
+  speedIsKnown.value = true;
+  speed.set(SPEEDS[number][1]);
 }
+
+function changeSpeed(by) {
+  if (session.value) setSpeed(Math.max(0, Math.min(SPEEDS.length - 1, speedNumber() + by)));
+}
+
+bindFaster(() => changeSpeed(1));
 
 export function Transport() {
   const goes = running.value;
@@ -87,10 +103,10 @@ export function Transport() {
         onClick=${() => press(button)}
       >
         <${Icon} name=${button.icon ?? button.id} />
-      </button>`,
+      </button>${button.id === "new-seed" ? html`<${SeedField} />` : null}`,
     )}
     <button id="until" class="bare" disabled=${isIdle("until")} title="Run until … (U)" aria-label="Run until" onClick=${runUntil}><${Icon} name="until" /></button>
-    <select aria-label="Speed" title="How fast it goes at most, in times real time (+ and -)" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => speed.set(SPEEDS[event.currentTarget.value][1])}>
+    <select aria-label="Speed" title="How fast it goes at most, in times real time (+ and -)" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => setSpeed(Number(event.currentTarget.value))}>
       ${SPEEDS.map(([text], n) => html`<option value=${String(n)}>${text}</option>`)}
     </select>
   </div>`;

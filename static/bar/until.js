@@ -2,6 +2,7 @@
 
 import { html, signal, useId } from "../vendor/preact.js";
 import { dialog } from "../parts/dialog.js";
+import { agentsOf, nameIn } from "../mind/agents.js";
 import { breakpoints, toggleBreakpoint } from "../mind/breakpoints.js";
 import { isLeft } from "../server.js";
 import { session, state } from "../store.js";
@@ -31,7 +32,7 @@ function missing() {
   const text = time.value.trim();
   if (kind.value === "time" && (text === "" || !(Number(text) >= 0) || Number(text) >= 1e9)) return "a number of seconds is wanted, such as 1.5";
   if (kind.value === "production" && !production.value) return "the name of a production is wanted";
-  return kind.value === "buffer" && !buffer.value ? "the path of a buffer is wanted" : "";
+  return kind.value === "buffer" && !buffer.value ? "the name of a buffer is wanted" : "";
 }
 
 function wanted() {
@@ -53,8 +54,11 @@ function isLost(name) {
   return names.length > 0 && !names.includes(name);
 }
 
-function bufferPaths() {
-  return partsThat((part) => part.is === "buffer").map(([path]) => path);
+/** Returns the names of the buffers as the panel Buffers shows them; with the name of the agent before where there are several agents. */
+function bufferNames() {
+  const agents = agentsOf(state.value?.parts);
+  const paths = partsThat((part) => part.is === "buffer").map(([path]) => path);
+  return agents.length === 1 ? paths.map((path) => nameIn(agents[0], path)) : paths;
 }
 
 function bodies() {
@@ -73,10 +77,16 @@ function Line({ id, text, children }) {
   </div>`;
 }
 
+/** Whether what is wrong is said of this field: of a buffer's line, its name or its pattern. */
+function isWrong(of) {
+  if (!problem.value || { time, production, contact: body }[kind.value] === of) return Boolean(problem.value);
+  return kind.value === "buffer" && of === (/\bbuffers? |name of a buffer/.test(problem.value) ? buffer : pattern);
+}
+
 /** A name that can be written, too: of a program that has not begun none is known yet. */
 function Name({ of, among, label, otherwise, first }) {
   const id = useId();
-  return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck="false" placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
+  return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck="false" aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
     <datalist id=${id}>${among.map((name) => html`<option key=${name} value=${name} />`)}</datalist>`;
 }
 
@@ -85,12 +95,12 @@ function Body() {
   const stops = breakpoints.value;
   return html`
     <${Line} id="time" text=${texts.time}>
-      <input aria-label="Time [s]" autofocus=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
+      <input aria-label="Time [s]" aria-invalid=${isWrong(time)} autofocus=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
     <${Line} id="production" text=${texts.production}><${Name} of=${production} among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
     <${Line} id="buffer" text=${texts.buffer}>
-      <${Name} of=${buffer} among=${bufferPaths()} label="Buffer" first=${kind.value === "buffer"} otherwise="its path" />
-      <input aria-label="Pattern" class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
+      <${Name} of=${buffer} among=${bufferNames()} label="Buffer" first=${kind.value === "buffer"} otherwise="its name" />
+      <input aria-label="Pattern" aria-invalid=${isWrong(pattern)} class="mono" placeholder="slot:value slot:?x" value=${pattern.value} onInput=${(event) => (pattern.value = event.currentTarget.value)} />
     <//>
     ${bodies().length ? html`<${Line} id="contact" text=${texts.contact}><${Name} of=${body} among=${bodies()} label="Body" first=${kind.value === "contact"} otherwise="by any body" /><//>` : null}
     <h3>Breakpoints</h3>

@@ -7,7 +7,7 @@ import { nameOf, whenText } from "../runs/words.js";
 
 /** The colours of the two, in plots and heads. */
 export const COLOURS = ["series-1", "series-2"];
-const MOST = 2000; // moments a curve
+const MOST = 20_000; // moments a curve: every tick of a run of up to 200 s
 const AT_FIRST = 3; // so many curves are shown before the user has chosen any
 const SIDES = ["first", "second"];
 const DASHES = [null, [6, 3]];

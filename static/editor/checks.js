@@ -4,6 +4,7 @@ import { effect, untracked } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { call } from "../server.js";
 import { complain, notices, session } from "../store.js";
+import { reveal } from "./code.js";
 import { documents, LARGEST, watching } from "./documents.js";
 import { markAt, marking, withMarks } from "./marks.js";
 
@@ -35,7 +36,7 @@ export async function checkByLoading(document) {
   document.note.value = "being loaded …";
   try {
     const { problems, listing } = await call("POST", "/api/check", { path: document.path, text: doc.toString(), load: true });
-    mark(document, doc, problems);
+    mark(document, doc, problems, { reveals: true });
     const fine = listing.kind === "simulation" ? "it loads, and nothing is wrong" : "nothing is wrong as far as can be told without a run";
     document.note.value = problems.length === 0 && document.state.doc === doc ? fine : "";
   } catch (error) {
@@ -44,12 +45,13 @@ export async function checkByLoading(document) {
   }
 }
 
-/** Shows what a check said, where the text still is what was checked. */
-function mark(document, doc, problems) {
+/** Shows what a check said, where the text still is what was checked; where the user has asked for it, with the first error in view. */
+function mark(document, doc, problems, { reveals = false } = {}) {
   if (document.state.doc !== doc) return;
   checked.set(document, doc);
   const marks = problems.map((problem) => markAt(doc, "check", problem));
   document.change(withMarks(document.state, "check", marks));
+  if (reveals) revealFirst(document, marks);
 }
 
 // -- what a run says
@@ -81,11 +83,20 @@ function take(document, told, attempt) {
   if (fresh.length === 0) return;
   taken.set(document, fresh.at(-1).number);
   const marks = document.state.field(marking).filter(({ origin }) => origin === "run");
+  const known = marks.length;
   for (const notice of fresh) {
     const found = markOf(document, notice);
     if (found && !marks.some((other) => other.from === found.from && other.message === found.message)) marks.push(found);
   }
-  if (marks.length > 0) document.change(withMarks(document.state, "run", marks));
+  if (marks.length === known) return;
+  document.change(withMarks(document.state, "run", marks));
+  revealFirst(document, marks.slice(known));
+}
+
+/** Scrolls the first error of some marks into view. */
+function revealFirst(document, marks) {
+  const found = marks.find(({ level, from }) => level === "error" && from !== null);
+  if (found) reveal(document, found.from);
 }
 
 /** Returns the line of a file that a notice is about, or from which that was called; null where it has nothing to do with it. */

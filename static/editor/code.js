@@ -91,6 +91,19 @@ export const watchText = {
   },
 };
 
+/** Scrolls a place of a text into view, and leaves the cursor and the focus where they are; of a text that is out of sight, when it is
+ * shown again. */
+export function reveal(document, at) {
+  document.revealed = at;
+  if (inView === document && view?.dom.isConnected && view.dom.offsetHeight > 0) scrollToRevealed();
+}
+
+function scrollToRevealed() {
+  const at = Math.min(inView.revealed, view.state.doc.length);
+  inView.revealed = null;
+  view.dispatch({ effects: EditorView.scrollIntoView(at, { y: "center" }) });
+}
+
 /** Shows a text in a place of the page. */
 export function showText(place, document) {
   view ??= new EditorView({ state: document.state, dispatchTransactions: taken });
@@ -104,6 +117,7 @@ export function showText(place, document) {
   if (view.dom.parentNode !== place) place.append(view.dom);
   view.requestMeasure();
   view.scrollDOM.scrollTop = document.scroll;
+  if (document.revealed !== null) scrollToRevealed();
 }
 
 /** Keeps where a text was scrolled to, before it goes out of sight. */

@@ -38,6 +38,8 @@ class Document {
     /** How the text came from `base`, so that lines of the file are found in it. */
     this.since = this.state.changes([]);
     this.scroll = 0;
+    /** A place that is to be scrolled into view as soon as the text is in sight; null for none. */
+    this.revealed = null;
     this.saving = signal(false);
     /** Whether the save that was begun last has come to its end. */
     this.saved = Promise.resolve(true);

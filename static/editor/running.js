@@ -18,7 +18,7 @@ export async function saveAndRun(document) {
 /** What to say of the run that is shown, where it is not that of the file: {text, failed, gone, path}; null where all is well. */
 export const former = computed(() => {
   const told = session.value;
-  if (!told) return null;
+  if (!told || told.recorded !== null) return null; // a recording is a run of the text of its time
   if (told.gone) return { text: "The file of this run is gone from the folder: the run can go on, but not begin again.", gone: true, path: told.model };
   if (told.loading) return null;
   if (!told.stale) return null;

@@ -1,19 +1,18 @@
 // Draws what an eye sees: extents by row, coloured by label, paler with distance.
 
 import { scaled } from "../parts/surface.js";
+import { channels, labelColour } from "../scene/palette.js";
 import { colour } from "../theme.js";
 
 const FAR = 12; // from here on nothing gets any paler [m]
+const PALEST = 0.6; // so much of the background there is in the colour of what is far away
+const GROUNDS = { light: 255, dark: 24 };
 
-/** Returns a hue for a label; hues of labels that follow each other lie far apart. */
-export function hueOf(label) {
-  return (label * 137.508) % 360;
-}
-
-/** Returns the colour of a label at a distance [m]. */
+/** Returns the colour of a label at a distance [m]: that of its edges in the scene, paler with distance. */
 export function shadeOf(label, distance, dark) {
-  const far = Math.min(1, distance / FAR);
-  return dark ? `hsl(${hueOf(label)} ${65 - 40 * far}% ${68 - 40 * far}%)` : `hsl(${hueOf(label)} ${70 - 40 * far}% ${38 + 46 * far}%)`;
+  const far = PALEST * Math.min(1, distance / FAR);
+  const mixed = channels(labelColour(label)).map((part) => Math.round(part * (1 - far) + GROUNDS[dark ? "dark" : "light"] * far));
+  return `rgb(${mixed.join(" ")})`;
 }
 
 /** Draws a view ({rows, extents}: each [row, label, y, x1, x2, d1, d2, a1, a2]); `chosen` is a label to be framed. */

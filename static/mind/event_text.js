@@ -1,6 +1,7 @@
 // Events as one reads them: which belong together, and each as a line.
 
 import { chunkText, valueText } from "../parts/chunk.js";
+import { commandText } from "../timeline/commands.js";
 
 /** Which events can be chosen for the trace: {id, text, kinds, first: whether it shows them at first}. */
 export const GROUPS = [
@@ -27,7 +28,7 @@ const TEXTS = {
   output: (data) => ["prints", data.text],
   reward: (data) => ["reward", valueText(data.value)],
   compile: (data) => ["compiled", `${data.production} from ${(data.parents ?? []).join(" and ")}`],
-  command: (data) => ["user", `${data.command} ${pairs(data.data)}`],
+  command: (_data, event) => ["user", commandText(event).join(" ")],
   contact: ({ force, lasts }) => ["touch", `begins: ${(1000 * lasts).toFixed(0)} ms, with up to ${force.toFixed(0)} N`],
   result: (data) => ["result", pairs(data)],
   planning_unit: (data) => ["plan", `${data.name} ${data.what}${data.by ? ` by ${data.by}` : ""}`],
@@ -50,9 +51,10 @@ const TEXTS = {
 };
 
 /** Returns [what happened, with what particulars] of an event; a firing is said by its production alone. */
-export function eventText([, , kind, data]) {
+export function eventText(event) {
+  const [, , kind, data] = event;
   if (kind === "fire") return [data.production, pairs(data.bound)];
-  return (TEXTS[kind] ?? ((all) => [kind, pairs(all)]))(data ?? {});
+  return (TEXTS[kind] ?? ((all) => [kind, pairs(all)]))(data ?? {}, event);
 }
 
 /** Says names with their values in one line. */

@@ -1,13 +1,18 @@
 // A memory as a table: chunks with their activations and the parts of these, sorted as the user likes.
 
 import { html, useMemo, useState } from "../vendor/preact.js";
-import { valueText } from "../parts/chunk.js";
+import { Chunk, chunkText, valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
 
+/** Returns the slots of a row that are shown, in the order in which the model wrote them: what tells chunks apart mostly comes first. */
+function shownSlots({ slots }) {
+  return Object.fromEntries(Object.entries(slots).filter(([name]) => !name.startsWith("_")));
+}
+
 /** Returns rows in order; what is not known comes last. */
 export function sorted(rows, { by, down }) {
-  const value = (row) => (by === "chunk" ? row.chunk : by === "activation" ? row.activation : row.parts[by]);
+  const value = (row) => (by === "chunk" ? chunkText(shownSlots(row)) : by === "activation" ? row.activation : row.parts[by]);
   const isKnown = (row) => value(row) !== null && value(row) !== undefined;
   const known = rows.filter(isKnown);
   const unknown = rows.filter((row) => !isKnown(row));
@@ -49,8 +54,8 @@ export function MemoryTable({ answer, words }) {
   const under = ({ activation }) => threshold !== null && activation !== null && activation < threshold;
   const mark = sort.by === "activation" ? all.findIndex((row, n) => n > 0 && under(row) !== under(all[n - 1]) && row.activation !== null && all[n - 1].activation !== null) : -1;
 
-  const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${all[n].chunk} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
-    <td class="mono">${all[n].chunk}</td>
+  const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${chunkText(shownSlots(all[n]))} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
+    <td><${Chunk} chunk=${shownSlots(all[n])} /></td>
     <td class="number">${all[n].activation === null ? html`<span class="quiet" title="One of its parts is known at a retrieval only">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
     ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${all[n].parts[name]} /></td>`)}
   </tr>`;

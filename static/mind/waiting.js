@@ -7,7 +7,7 @@ import { isGone, standing } from "../standing.js";
 export function Waiting({ told }) {
   const { is, text } = standing.value;
   if (isGone.value) return html`<p class="empty">${text}</p>`;
-  if (is === "busy") return html`<p class="late" role="status">${text}</p>`;
+  if (is === "busy" || is === "halted") return html`<p class="late" role="status">${text}</p>`;
   if (told.error) return html`<p class="trouble" role="alert">${told.error}</p>`;
   return told.waiting ? html`<p class="late" role="status">Asking the run …</p>` : null;
 }

@@ -1,6 +1,6 @@
 // What the mind holds: every buffer with its chunk, every module with its state, agent by agent; and the result of a run.
 
-import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { agentOf, agentsOf, nameIn } from "../mind/agents.js";
 import { Flash } from "../mind/flash.js";
 import { Module, Plain, useRequests } from "../mind/modules.js";
@@ -8,30 +8,37 @@ import { Result } from "../mind/result.js";
 import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf } from "../parts/chunk.js";
 import { nothing } from "../standing.js";
-import { session, state } from "../store.js";
+import { running, session, state } from "../store.js";
 
 const LINES = 3; // so much of a chunk is shown, unless more is asked for
+const KEPT = 1000; // while the run goes on, a row stays as high as it was for so long [ms]
 
-/** How many lines a box has, up to those that are shown, and whether there are more. Lines that were needed are kept, so that what
- * is below does not jump. */
+/** Returns how many lines a row needs, up to those that are shown, and whether there are more. A row that needs fewer lines shrinks:
+ * at once where the run stands; while it goes on only after a moment, so that what is below does not jump with each retrieval. */
 function useLines(text, open) {
   const box = useRef(null);
-  const [known, setKnown] = useState({ lines: 1, more: false });
+  const content = useRef(null);
+  const [needed, setNeeded] = useState({ lines: 1, more: false });
+  const [kept, setKept] = useState(1);
   useLayoutEffect(() => {
-    const { scrollHeight: whole } = box.current;
-    const there = Math.round(whole / parseFloat(getComputedStyle(box.current).lineHeight));
-    const lines = Math.max(known.lines, Math.min(there, LINES));
-    const more = there > LINES;
-    if (lines !== known.lines || more !== known.more) setKnown({ lines, more });
+    const there = Math.round(content.current.offsetHeight / parseFloat(getComputedStyle(box.current).lineHeight));
+    const news = { lines: Math.max(1, Math.min(there, LINES)), more: there > LINES };
+    if (news.lines !== needed.lines || news.more !== needed.more) setNeeded(news);
+    if (news.lines > kept) setKept(news.lines);
   }, [text, open]);
-  return { box, ...known };
+  useEffect(() => {
+    if (needed.lines >= kept) return undefined;
+    const timer = setTimeout(() => setKept(needed.lines), running.value ? KEPT : 0);
+    return () => clearTimeout(timer);
+  }, [needed.lines, kept, running.value]);
+  return { box, content, lines: running.value ? kept : needed.lines, more: needed.more };
 }
 
 /** A buffer: some lines of its chunk at most, unless all of it is asked for. */
 function Buffer({ path, name, chunk }) {
   const [open, setOpen] = useState(false);
   const slots = slotsOf(chunk);
-  const { box, lines, more } = useLines(chunkText(chunk), open);
+  const { box, content, lines, more } = useLines(chunkText(chunk), open);
   return html`<tr data-path=${path}>
     <th scope="row" class="mono" title=${path}>${name}</th>
     <td>
@@ -39,8 +46,10 @@ function Buffer({ path, name, chunk }) {
         ? html`<button class="bare" aria-expanded=${open} aria-label="All of ${name}" title=${open ? "A few lines only" : "All of it"} onClick=${() => setOpen(!open)}><${Icon} name="down" /></button>`
         : null}
       <div class="chunk" ref=${box} style=${{ minHeight: `calc(${lines} * var(--row))`, maxHeight: open ? "none" : `calc(${LINES} * var(--row))` }}>
-        <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
-        ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
+        <div ref=${content}>
+          <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
+          ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
+        </div>
       </div>
     </td>
   </tr>`;

@@ -5,10 +5,9 @@ import { shadeOf } from "../eye/drawing.js";
 import { Retina } from "../eye/retina.js";
 import { Waiting } from "../mind/waiting.js";
 import { useAnswer } from "../parts/answer.js";
-import { counted } from "../parts/count.js";
-import { Icon } from "../parts/icon.js";
+import { CopyButton } from "../parts/copy.js";
 import { isGone, nothing } from "../standing.js";
-import { complain, session } from "../store.js";
+import { session } from "../store.js";
 import { dark } from "../theme.js";
 
 const MOST_ROWS = 400;
@@ -57,27 +56,34 @@ function Objects({ view }) {
   </table>`;
 }
 
+const DIGITS = { m: 2, "°": 1 }; // after the point, by unit
+
+/** What a column of edges is called, with its unit. */
+function fieldText({ name, unit }) {
+  return unit ? `${name} [${unit}]` : name;
+}
+
+/** What the columns of edges mean, as the camera documents its fields. */
+function Legend({ fields }) {
+  return html`<details class="legend">
+    <summary>What the columns mean</summary>
+    <dl>${fields.map((field) => html`<div key=${field.name}><dt class="mono">${fieldText(field)}</dt><dd><b>${field.title}</b>: ${field.about}</dd></div>`)}</dl>
+  </details>`;
+}
+
 function Edges({ view }) {
-  const units = { d1: " [m]", d2: " [m]", a1: " [°]", a2: " [°]" };
-  const digits = { row: 0, label: 0, d1: 2, d2: 2, a1: 1, a2: 1 };
+  const text = (value, at) => (Number.isInteger(value) && at < 2 ? String(value) : value.toFixed(DIGITS[view.fields[at].unit] ?? 3));
   const rest = view.extents.length - MOST_ROWS;
-  return html`<table>
-      <thead><tr>${view.fields.map((field) => html`<th class="number" key=${field}>${field}${units[field] ?? ""}</th>`)}</tr></thead>
+  return html`<${Legend} fields=${view.fields} />
+    <table aria-label="Edges">
+      <thead><tr>${view.fields.map((field) => html`<th class="number" key=${field.name} title="${field.title}: ${field.about}${field.unit ? ` [${field.unit}]` : ""}">${fieldText(field)}</th>`)}</tr></thead>
       <tbody>
-        ${view.extents.slice(0, MOST_ROWS).map((extent, n) => html`<tr key=${n}>${extent.map((value, at) => html`<td class="number">${value.toFixed(digits[view.fields[at]] ?? 3)}</td>`)}</tr>`)}
+        ${view.extents.slice(0, MOST_ROWS).map((extent, n) => html`<tr key=${n}>${extent.map((value, at) => html`<td class="number">${text(value, at)}</td>`)}</tr>`)}
       </tbody>
     </table>
     ${rest > 0 ? html`<p class="empty">${rest} more; «Copy as JSON» has all.</p>` : null}`;
 }
 
-async function copy(view) {
-  try {
-    await navigator.clipboard.writeText(JSON.stringify(view));
-    complain(`${counted(view.extents.length, "extent is", "extents are")} on the clipboard.`, "info");
-  } catch {
-    complain("The browser does not let the page write to the clipboard.");
-  }
-}
 
 function Eye() {
   const bodies = seeing();
@@ -93,7 +99,7 @@ function Eye() {
       ${bodies.length > 1 ? html`<select aria-label="Whose eye" value=${of} onChange=${(event) => (body.value = event.currentTarget.value)}>${bodies.map((name) => html`<option>${name}</option>`)}</select>` : html`<b>eye of ${of}</b>`}
       <span class="stretch"></span>
       ${KINDS.map(([id, text]) => html`<button key=${id} aria-pressed=${kind.value === id} onClick=${() => (kind.value = id)}>${text}</button>`)}
-      <button disabled=${!answer} onClick=${() => copy(answer)}><${Icon} name="copy" />Copy as JSON</button>
+      <${CopyButton} text="Copy as JSON" disabled=${!answer} copied=${() => JSON.stringify(answer)} />
     </div>
     <${Waiting} told=${told} />
     ${isGone.value && !answer ? null : html`<${Retina} view=${answer} />`}

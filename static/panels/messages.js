@@ -1,31 +1,25 @@
 // What the user is told: errors with their lines, warnings, what the model's process prints.
 
-import { computed, html, signal, useEffect } from "../vendor/preact.js";
+import { computed, html, useEffect } from "../vendor/preact.js";
 import { hasMore } from "../editor/marks.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../remembered.js";
-import { notices, session } from "../store.js";
+import { isSettled, notices, settle } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
 const MOST = 300; // more are not drawn
 
 const hidden = remembered("messages hidden", []);
-const seen = signal(0); // how many errors had been told when the tab was last open
-/** The messages that the user has cleared away on this page. */
-const cleared = signal(new Set());
+/** The messages that the user has not cleared away. */
+const kept = computed(() => notices.value.filter((notice) => !isSettled(notice, "cleared")));
 
-const kept = computed(() => notices.value.filter(({ number }) => !cleared.value.has(key(number))));
-
-function key(number) {
-  return `${session.value?.id} ${number}`;
-}
-
-function errors() {
-  return kept.value.filter(({ level }) => level === "error").length;
+/** The errors that were told since the tab was last open. */
+function unseen() {
+  return kept.value.filter((notice) => notice.level === "error" && !isSettled(notice, "seen")).length;
 }
 
 function clear() {
-  cleared.value = new Set(notices.value.map(({ number }) => key(number)));
+  settle("cleared");
 }
 
 function toggle(level) {
@@ -55,7 +49,7 @@ function Message({ notice: { level, text, file, line, detail } }) {
 }
 
 function Messages() {
-  useEffect(() => void (seen.value = errors()));
+  useEffect(() => settle("seen"), [notices.value]);
   const all = kept.value;
   const list = all.filter(({ level }) => !hidden.value.includes(level)).toReversed();
   const none = all.length === 0 ? "No messages. What goes wrong in a model is told here, with its line." : "All messages are filtered out.";
@@ -73,5 +67,5 @@ export const messages = {
   id: "messages",
   title: "Messages",
   View: Messages,
-  badge: () => (errors() > seen.value ? { text: errors() - seen.value > 99 ? "99+" : String(errors() - seen.value), level: "bad" } : null),
+  badge: () => (unseen() > 0 ? { text: unseen() > 99 ? "99+" : String(unseen()), level: "bad" } : null),
 };

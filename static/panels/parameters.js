@@ -1,6 +1,8 @@
 // The model's parameters, as its class declares them: live ones act at once, the others with the next run.
 
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
+import { change } from "../bar/branch.js";
+import { seedProblem } from "../bar/seed.js";
 import { boundsText, read, written } from "../parameters/values.js";
 import { call, isLeft, order, say } from "../server.js";
 import { standing } from "../standing.js";
@@ -79,8 +81,8 @@ async function write(parameter, text, whole) {
   if (!parameter.live || problem || !whole || holds || !session.value?.alive) return;
   const run = of;
   try {
-    await say({ type: "set", name, value });
-    if (run === of) told.value = { ...told.value, [name]: value };
+    const sent = await change({ type: "set", name, value });
+    if (run === of && sent) told.value = { ...told.value, [name]: value };
     if (run === of && drafts.value[name] === text) drop(name); // else more was written meanwhile
   } catch (error) {
     if (!isLeft(error)) complain(error.message);
@@ -102,7 +104,7 @@ function restart(event) {
     if (value !== parameter.default) settings[parameter.name] = value;
   }
   const wanted = seed.value.trim();
-  order({ type: "restart", settings, ...(wanted ? { seed: Number(wanted) } : {}) });
+  order({ type: "restart", settings, ...(wanted ? { seed: wanted } : {}) });
 }
 
 function reset() {
@@ -148,7 +150,7 @@ function Parameters() {
   const fields = known();
   const changed = waiting().length;
   const former = forgotten();
-  const problem = seed.value.trim() !== "" && !/^\d{1,15}$/.test(seed.value.trim());
+  const problem = seed.value.trim() === "" ? null : seedProblem(seed.value);
   return html`<form class="parameters" onSubmit=${restart}>
     ${shown.stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
     ${shown.stale && former.length
@@ -159,12 +161,12 @@ function Parameters() {
     ${fields.map((parameter) => html`<${Field} key=${parameter.name} parameter=${parameter} />`)}
     <div class="parameter">
       <label for="parameter-seed-of-run">seed</label>
-      <span class="control"><input id="parameter-seed-of-run" aria-invalid=${problem} inputmode="numeric" placeholder=${String(shown.seed ?? "")} value=${seed.value} onInput=${(event) => (seed.value = event.currentTarget.value)} /></span>
+      <span class="control"><input id="parameter-seed-of-run" aria-invalid=${Boolean(problem)} inputmode="numeric" placeholder=${String(shown.seed ?? "")} value=${seed.value} onInput=${(event) => (seed.value = event.currentTarget.value)} /></span>
       <span class="mark"></span>
-      <p class="help">${problem ? html`<span class="bad" role="alert">a whole number is wanted </span>` : null}What all chance comes from; empty: as in the present run.</p>
+      <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}What all chance comes from; empty: as in the present run.</p>
     </div>
     <footer>
-      <button class="primary" disabled=${problems() || problem || (shown.loading && state.value === null)}>Restart with these</button>
+      <button class="primary" disabled=${problems() || Boolean(problem) || (shown.loading && state.value === null)}>Restart with these</button>
       <button type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults</button>
       <button type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo</button>
     </footer>

@@ -1,25 +1,25 @@
-// The 3D view: viser's page in a frame that never moves, for moving it would load it again; and a strip of switches on its edge.
+// The 3D view: viser's page in a frame that never moves, for moving it would load it again; and the switches on its edge.
 
-import { html, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { RetinaInset } from "../eye/inset.js";
+import { bindKey, hearKeys, noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { settable } from "../parts/settable.js";
 import { remembered } from "../remembered.js";
 import { rest } from "../rest.js";
+import { VIEWS } from "../scene/stage.js";
 import { standing } from "../standing.js";
 import { running, session, state } from "../store.js";
 
-const open = remembered("scene switches", innerWidth >= 1100); // in a small window they would hide the scene
-const CAMERAS = { free: "free", follow: "with the body", eye: "through the eye", top: "from above" };
+const open = remembered("overlays open", false);
+const view = remembered("view", "follow");
+if (!(view.value in VIEWS)) view.value = "follow";
+const resets = signal(0); // how often the view was reset
 const BETWEEN = 250; // between two looks at what time the 3D view shows [ms]
 const LATE = 0.5; // what it shows may be so old before that is said [s]
 const NO_WEBGL =
   "This browser cannot draw in 3D, for its WebGL is off or missing: switch on hardware acceleration in its settings, or take another browser. All else works without it.";
 
-const camera = settable(
-  () => session.value?.camera,
-  (view) => ({ type: "camera", view }),
-);
 const overlays = new Map();
 
 /** The switch of an overlay. */
@@ -31,24 +31,39 @@ function overlay(name) {
   return overlays.get(name);
 }
 
-/** The switches of what is drawn over the scene, and from where it is seen; the same for all who watch. */
-function Switches() {
-  const { overlays, cameras } = session.value;
-  if (!open.value) return html`<button class="switches-closed" title="What is drawn over the scene" onClick=${() => (open.value = true)}>Overlays</button>`;
-  return html`<div class="switches" role="toolbar" aria-label="3D view">
-    <label>Camera
-      <select value=${camera.value.value} onChange=${(event) => camera.set(event.currentTarget.value)}>
-        ${cameras.map((view) => html`<option key=${view} value=${view}>${CAMERAS[view] ?? view}</option>`)}
+/** From where this browser sees the scene, and what is drawn over it for all who watch. */
+function ViewBar() {
+  return html`<div class="view-bar" role="toolbar" aria-label="3D view">
+      <select aria-label="Camera" title="From where the scene is seen (V)" value=${view.value} onChange=${(event) => (view.value = event.currentTarget.value)}>
+        ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
-    </label>
-    ${overlays.map(
-      ({ name, title }) => html`<label key=${name}>
-        <input type="checkbox" checked=${overlay(name).value.value} onChange=${(event) => overlay(name).set(event.currentTarget.checked)} />${title}
-      </label>`,
-    )}
-    <button class="bare" aria-label="Hide the switches" title="Hide" onClick=${() => (open.value = false)}><${Icon} name="close" /></button>
-  </div>`;
+      <button aria-label="Reset view" title="Reset view (Shift V)" onClick=${resetView}><${Icon} name="restart" /></button>
+      <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
+    </div>
+    ${open.value &&
+    html`<div class="overlay-list" role="group" aria-label="Overlays">
+      ${session.value.overlays.map(
+        ({ name, title }) => html`<label key=${name}>
+          <input type="checkbox" checked=${overlay(name).value.value} onChange=${(event) => overlay(name).set(event.currentTarget.checked)} />${title}
+        </label>`,
+      )}
+    </div>`}`;
 }
+
+/** Puts the camera back to where the chosen view begins. */
+function resetView() {
+  resets.value += 1;
+}
+
+/** Chooses the next view. */
+function nextView() {
+  const views = Object.keys(VIEWS);
+  view.value = views[(views.indexOf(view.value) + 1) % views.length];
+}
+
+bindKey("v", "Next view: with the body, free, from the side, from above, through the eye", nextView, "3D view");
+bindKey("Shift+v", "Reset view", resetView, "3D view");
+noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
 
 /** Says what time the 3D view shows, where it cannot keep up with the run. */
 function Lag({ frame }) {
@@ -96,9 +111,18 @@ export function Scene() {
   }, []);
   if (shown) address.current = `/viser/${told.id}/?panel=hidden`;
   const lacks = missing(pictured.value.of === address.current ? pictured.value.drawn : null);
+  const loads = useSignal(0);
+  useEffect(() => {
+    frame.current.contentWindow?.scene?.choose(view.value);
+  }, [view.value, resets.value, loads.value]);
+  function begin({ currentTarget: { contentWindow: inner } }) {
+    inner?.restWith?.(rest);
+    if (shown && inner) hearKeys(inner);
+    loads.value += 1;
+  }
   return html`<section id="scene" class="scene" aria-label="3D view">
-    <iframe ref=${frame} onLoad=${(event) => event.currentTarget.contentWindow?.restWith?.(rest)} title="3D view" src=${address.current} hidden=${!shown}></iframe>
-    ${lacks ? html`<${Cover} text=${lacks[0]} awaited=${lacks[1]} />` : html`<${Switches} /><${Lag} frame=${frame} />`}
+    <iframe ref=${frame} onLoad=${begin} title="3D view" src=${address.current} hidden=${!shown}></iframe>
+    ${lacks ? html`<${Cover} text=${lacks[0]} awaited=${lacks[1]} />` : html`<${ViewBar} /><${Lag} frame=${frame} />`}
     <${RetinaInset} />
   </section>`;
 }

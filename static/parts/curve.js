@@ -5,6 +5,7 @@ import { cut, widthOf } from "./surface.js";
 
 export const COLOURS = 6;
 const LEAST_RANGE = 0.01; // what differs by less is drawn as a line, not as what numerical noise makes of it
+const DOT = 2; // so wide is a value that stands alone [px]
 const EDGE = 6; // so far from the ends of an axis its first and last text keep [px]
 
 /** Returns the name of the colour of the nth curve. */
@@ -67,7 +68,19 @@ function pointsOf(times, values, span, box, yOf) {
     }
   }
   flush();
-  return points;
+  return withDots(points);
+}
+
+/** Returns points of which none is alone between two gaps: a line through one point would not be seen. */
+function withDots(points) {
+  const made = [];
+  for (let n = 0; n < points.length; n += 2) {
+    const [x, y] = [points[n], points[n + 1]];
+    const alone = !Number.isNaN(y) && [points[n - 1], points[n + 3]].every((other) => other === undefined || Number.isNaN(other));
+    if (alone) made.push(x - DOT / 2, y, x + DOT / 2, y);
+    else made.push(x, y);
+  }
+  return made;
 }
 
 /** Returns the values that a scale names: at least two, for one alone tells of no size; otherwise no more than there is room for. */

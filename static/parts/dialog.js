@@ -32,7 +32,8 @@ export function Dialogs() {
   useLayoutEffect(() => {
     if (!shown) return;
     box.current.showModal();
-    line.current?.select();
+    const { activeElement } = document;
+    if (activeElement.matches("input:not([type=radio], [type=checkbox])")) activeElement.select(); // what is written now takes its place
   }, [shown]);
   if (!shown) return null;
 
@@ -60,7 +61,7 @@ export function Dialogs() {
     ${shown.ask
       ? html`<label class="field">
           ${shown.ask.label}
-          <input ref=${line} value=${shown.ask.value} spellcheck="false" aria-invalid=${Boolean(shown.ask.problem)} />
+          <input ref=${line} autofocus value=${shown.ask.value} spellcheck="false" aria-invalid=${Boolean(shown.ask.problem)} />
           ${shown.ask.problem ? html`<span class="bad" role="alert">${shown.ask.problem}</span>` : null}
         </label>`
       : null}

@@ -10,8 +10,9 @@ import { session } from "../store.js";
  *
  * @param told Returns the value that the run is known to have.
  * @param command Returns the command that sets a value.
+ * @param send Sends it, and shows what is wrong.
  */
-export function settable(told, command) {
+export function settable(told, command, send = order) {
   const wanted = signal(null); // {value}; null where the run has what was set
   let saying = false;
 
@@ -20,7 +21,7 @@ export function settable(told, command) {
     const { id } = session.peek() ?? {};
     for (let said = null; said !== wanted.peek() && id === session.peek()?.id; ) {
       said = wanted.peek();
-      await order(command(said.value));
+      await send(command(said.value));
     }
     saying = false;
     wanted.value = null;

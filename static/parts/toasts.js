@@ -1,21 +1,21 @@
 // What has just gone wrong, shown for a while over the page; all of it stays in the tab Messages.
 
-import { html, signal, useEffect, useRef } from "../vendor/preact.js";
-import { notices } from "../store.js";
+import { html, signal, useEffect } from "../vendor/preact.js";
+import { isSettled, notices, session, settle } from "../store.js";
 import { openTab } from "../tabs.js";
 
 const SHOWN = 8000; // [ms]
 const toast = signal(null);
 
 export function Toasts() {
-  const seen = useRef(new Set());
   const list = notices.value;
   useEffect(() => {
-    const fresh = list.filter(({ number, level }) => level === "error" && !seen.current.has(number));
-    seen.current = new Set(list.map(({ number }) => number));
-    if (fresh.length === 0 || openTab.peek() === "messages") return undefined;
-    toast.value = fresh.at(-1);
-    return undefined;
+    if (list.length === 0) return;
+    // What an attempt before the newest has told is settled by that.
+    const isOpen = ({ level, attempt }) => level === "error" && (attempt === undefined || attempt === session.peek()?.attempt);
+    const fresh = list.filter((notice) => isOpen(notice) && !isSettled(notice, "shown"));
+    settle("shown");
+    if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [list]);
   const shown = toast.value; // of another run that was shown before it is no matter any more
   useEffect(() => {

@@ -4,7 +4,8 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
 import { compareRuns } from "../compare/compare.js";
-import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays, takeHtml } from "./doing.js";
+import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./doing.js";
+import { download, Downloads } from "./downloads.js";
 import { present } from "./list.js";
 import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./words.js";
 
@@ -12,16 +13,15 @@ const FORMS = [
   ["sqlite", "SQLite", "The recording as it is"],
   ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
   ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
-  ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick"],
+  ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick; columns have the names of joints"],
 ];
 
-function Downloads({ run }) {
+function Forms({ run }) {
   const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => (form !== "replay.html" || run.kind === "simulation") && (form !== "states.csv" || run.states > 0));
-  const address = (form) => `/api/recordings/${run.id}/file?form=${form}`;
-  const make = (event) => (event.preventDefault(), takeHtml(run, address("replay.html")));
+  const get = (event, form, text) => (event.preventDefault(), download(run, form, text));
   return html`<span class="downloads">
     <${Icon} name="download" />
-    ${forms.map(([form, text, title]) => html`<a key=${form} href=${address(form)} download title=${title} onClick=${form === "replay.html" ? make : undefined}>${text}</a>`)}
+    ${forms.map(([form, text, title]) => html`<a key=${form} href=${`/api/recordings/${run.id}/file?form=${form}`} download title=${title} onClick=${(event) => get(event, form, text)}>${text}</a>`)}
   </span>`;
 }
 
@@ -82,7 +82,7 @@ function One({ run }) {
       <span class="stretch"></span>
       <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>
     </div>
-    <${Downloads} run=${run} />
+    <${Forms} run=${run} />
     <${Replayed} run=${run} key=${run.id} />
     ${run.problem ? html`<p class="problem bad">This recording cannot be opened: ${run.problem}</p>` : html`<${Facts} run=${run} />`}
   `;
@@ -108,6 +108,7 @@ export function Chosen({ list }) {
   const doing = busy.value;
   return html`<section class="runs-chosen" aria-label="Chosen">
     ${doing ? html`<div class="replayed" role="status"><progress value=${doing.done} max=${doing.of} aria-label=${doing.text}></progress> ${doing.text}${doing.of ? ` ${doing.done} of ${doing.of}` : ""}</div>` : null}
+    <${Downloads} />
     ${list.length === 0 ? html`<p class="empty">Choose a run to open, replay or download it; two to compare them.</p>` : null}
     ${list.length === 1 ? html`<${One} run=${list[0]} />` : null}
     ${list.length > 1 ? html`<${Many} list=${list} />` : null}

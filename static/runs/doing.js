@@ -1,13 +1,14 @@
 // What can be done with recordings: open, run again, delete. What goes on and what came of it is known here.
 
+import { chooseRecording } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
-import { saveFile } from "../parts/picture.js";
-import { call, show, wish } from "../server.js";
+import { call } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
+import { withTrust } from "./trust.js";
 import { whenText } from "./words.js";
 
 /** By their ids, what came of running recordings again: {since, share} while that goes on, then {agrees, text}. */
@@ -22,26 +23,20 @@ const cancels = new Map();
 export async function openRun(run) {
   if (busy.value || run.problem) return;
   busy.value = { text: "Opening …" };
-  const wanted = wish();
   try {
     await leaveUnwatched();
-    const { id } = await call("POST", `/api/recordings/${run.id}/open`, {});
-    relived.add(id);
-    if (wanted()) show(id);
+    await chooseRecording(run.id);
   } catch (error) {
     complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
   }
   busy.value = null;
 }
 
-const relived = new Set();
-
-/** Ends the sessions that this page began to look at recordings, and that nobody looks at any more. */
+/** Ends the sessions that show recordings at which nobody looks any more: they can be opened again. */
 async function leaveUnwatched() {
   const { sessions } = await call("GET", "/api/sessions");
-  const left = sessions.filter(({ id, watching }) => relived.has(id) && id !== session.value?.id && watching.length === 0);
+  const left = sessions.filter(({ id, recorded, watching }) => recorded !== null && id !== session.value?.id && watching.length === 0);
   for (const { id } of left) {
-    relived.delete(id);
     await call("POST", `/api/sessions/${id}/close`, {}).catch(() => null); // another page may have closed it
   }
 }
@@ -62,26 +57,13 @@ export async function replayRun(run) {
     if (since && told?.share) note(run.id, { since, share: told.share });
   }, LOOK);
   try {
-    note(run.id, await call("POST", path, {}, cancel.signal));
+    const told = await withTrust(run.id, "Replaying it", (trust) => call("POST", path, { trust }, cancel.signal));
+    note(run.id, told ?? { agrees: null, text: "cancelled" });
   } catch (error) {
     note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }
   clearInterval(look);
   cancels.delete(run.id);
-}
-
-/** Has the HTML replay of a recording made, which takes a while, and hands it to the user. */
-export async function takeHtml(run, address) {
-  if (busy.value) return;
-  busy.value = { text: "Making the HTML replay …" };
-  try {
-    const response = await fetch(address);
-    if (!response.ok) throw new Error((await response.json()).error);
-    saveFile(`${run.id}.replay.html`, await response.blob());
-  } catch (error) {
-    complain(`The HTML replay of ${run.model} cannot be made: ${error.message}`);
-  }
-  busy.value = null;
 }
 
 export function cancelReplay(id) {

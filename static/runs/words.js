@@ -7,6 +7,7 @@ const ENDED = {
   done: "no mind had anything left to do",
   end: "the program was over",
   exit: "the program ended itself",
+  left: "kept where it had come to",
   time: "its time was over",
 };
 
@@ -93,6 +94,6 @@ export function measureText(name, value) {
 
 /** Returns all that a search looks at. */
 export function textOf(run) {
-  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), whenText(run.made)];
+  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), run.branched === null ? "" : "branch", whenText(run.made)];
   return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();
 }

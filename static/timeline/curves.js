@@ -1,22 +1,25 @@
-// The curves that are plotted below the lanes: asked of the run as it goes on, never twice the same.
+// The curves that are plotted below the lanes. While the run goes on its newest stretch is asked for, coarsely where it goes fast; what
+// was left out is asked for when it stands: first the stretch that is shown, then the rest, until each tick is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
 import { isLeft, say } from "../server.js";
-import { alive, complain, events, running, session, whichRun } from "../store.js";
-import { rangeOf } from "../parts/curve.js";
+import { alive, complain, hurried, running, session, way } from "../store.js";
+import { firstFrom, rangeOf } from "../parts/curve.js";
 import { furthest } from "./seek.js";
+import { span } from "./view.js";
 
 const PAUSE = 400; // between two questions while the run goes on [ms]: to answer costs it time
 const AT_ONCE = 150; // so many moments are asked for at a time while it goes on
-const MOST = 3000; // and so many for all of a run that stands
+const OVERVIEW = 1500; // so many of a whole run of which nothing is known yet
+const PIECE = 1000; // so many ticks of a run that stands: longer stretches would let commands wait
 
 /** All curves there are: [{name, unit, group}]. */
 export const names = signal([]);
 /** Counts the changes of what is known. */
 export const curvesVersion = signal(0);
-/** What is known: moments [s] and values by name. */
-export const known = { times: [], values: new Map() };
+/** What is known: moments [s], ascending, values by name, and the stretches [from, to] of which no moment is left out. */
+export const known = { times: [], values: new Map(), whole: [] };
 
 const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed"]; // in the order in which they are plotted
 const TITLES = { joint: "joints", contact: "contact force", "joint speed": "joint speeds" };
@@ -81,27 +84,66 @@ export const contacts = computed(() => {
   return bands.sort((one, other) => one.from - other.from);
 });
 
-let asked = ""; // of which run, and for which curves, what is known is
-let thinned = false; // whether moments were left out
+let asked = ""; // of which way of which run, and for which curves, what is known is
 let busy = false;
 let again = false;
-let cuts = 0;
+let newer = false; // whether the newest stretch was asked for last, while the run goes on
+
+const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart are the same [s]
 
 function forget(key) {
   asked = key;
-  known.times = [];
-  known.values = new Map();
-  thinned = false;
+  Object.assign(known, { times: [], values: new Map(), whole: [] });
   curvesVersion.value = curvesVersion.peek() + 1;
 }
 
-function take({ times, curves }) {
-  known.times.push(...times);
-  for (const [name, values] of Object.entries(curves)) {
-    if (!known.values.has(name)) known.values.set(name, []);
-    known.values.get(name).push(...values);
-  }
+/** Puts what is told of a stretch in the place of what was known of it. */
+function put(names, { from, to, whole }, { times, curves }) {
+  const [begin, end] = [firstFrom(known.times, from - near()), firstFrom(known.times, to + near())];
+  const placed = (list, news) => [...list.slice(0, begin), ...news, ...list.slice(end)];
+  for (const name of names) known.values.set(name, placed(known.values.get(name) ?? [], curves[name] ?? times.map(() => null)));
+  known.times = placed(known.times, times);
+  if (whole) known.whole = joined([...known.whole, [from, to]]);
   curvesVersion.value = curvesVersion.peek() + 1;
+}
+
+/** Joins stretches that overlap or follow each other. */
+function joined(stretches) {
+  const found = [];
+  for (const [from, to] of stretches.toSorted(([one], [other]) => one - other)) {
+    const last = found.at(-1);
+    if (last && from <= last[1] + near()) last[1] = Math.max(last[1], to);
+    else found.push([from, to]);
+  }
+  return found;
+}
+
+/** Returns the first stretch between two moments of which some were left out; null where there is none. */
+function gap(begin, end) {
+  let from = begin;
+  for (const [first, last] of known.whole) {
+    if (first > from + near()) break;
+    from = Math.max(from, last);
+  }
+  if (from > end - near()) return null;
+  const beyond = known.whole.find(([first]) => first > from)?.[0] ?? end;
+  return { from, to: Math.min(beyond, end) };
+}
+
+/** Returns the stretch that is asked for next, {from, to, most, whole}; null where all is known that is to be known now. */
+function next() {
+  const end = furthest.peek();
+  const tick = session.peek()?.period || 0.01;
+  const last = known.times.at(-1);
+  const newest = (from, most) => ({ from, to: end, most, whole: (end - from) / tick < most - 2 });
+  if (last === undefined) return newest(0, OVERVIEW);
+  const { from, to } = span.peek();
+  const missing = hurried.peek() ? null : (gap(Math.max(0, from), Math.min(to, end)) ?? gap(0, end));
+  // While the run goes on there is always something new: it takes turns with what was left out.
+  newer = running.peek() && (!newer || !missing);
+  if (newer) return end > last + near() ? newest(last, AT_ONCE) : null;
+  const ticks = running.peek() ? AT_ONCE : PIECE;
+  return missing && { from: missing.from, to: Math.min(missing.to, missing.from + ticks * tick), most: ticks + 3, whole: true };
 }
 
 async function ask() {
@@ -124,48 +166,32 @@ async function ask() {
   }, running.peek() ? PAUSE : 0);
 }
 
-/** Tells runs, and ways that a run has gone, from others. */
-const whoseNow = () => `${whichRun()} ${cuts}`;
-
-/** Asks for what is not known yet, if there is anything; tells whether there may be more. */
+/** Asks for what is not known yet, if there is anything; tells whether there may be more. What is told of another way is left. */
 async function askOnce() {
   const { world } = session.peek() ?? {};
-  const whose = whoseNow();
+  const whose = `${way.peek()} ${Boolean(world)}`; // a program may make its world later
   if (!asked.startsWith(`${whose} `)) {
     forget(`${whose} `);
     const told = world ? await say({ type: "curves", names: [] }) : { names: [] };
-    if (whose !== whoseNow()) return true;
+    if (!whose.startsWith(`${way.peek()} `)) return true;
     names.value = told.names;
   }
-  const wanted = names.peek().filter(({ name, group }) => group === "contact" || chosen.peek().includes(name));
-  const list = wanted.map(({ name }) => name);
+  const list = names.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
   const key = `${whose} ${JSON.stringify(list)}`;
-  if (asked !== key || (thinned && !running.peek())) forget(key);
-  const last = known.times.at(-1);
-  const end = furthest.peek();
-  if (list.length === 0 || (last !== undefined && end <= last + 1e-6)) return false;
-  const most = running.peek() && last !== undefined ? AT_ONCE : MOST;
-  const period = session.peek()?.period ?? 0.01;
-  const told = await say({ type: "curves", names: list, first: last === undefined ? 0 : last + period / 2, most });
-  if (asked !== key || whose !== whoseNow()) return true;
-  const count = Math.round((end - (last ?? -period)) / period);
-  thinned ||= running.peek() && told.times.length < count;
-  take(told);
-  return running.peek();
+  if (asked !== key) forget(key);
+  const stretch = list.length > 0 ? next() : null;
+  if (!stretch) return false;
+  const told = await say({ type: "curves", names: list, first: Math.max(0, stretch.from - near()), last: stretch.to + near(), most: stretch.most });
+  if (asked !== key || !whose.startsWith(`${way.peek()} `)) return true;
+  if (told.names.length !== names.peek().length) names.value = told.names; // one more world
+  put(list, stretch, told);
+  return known.times.length > 0;
 }
 
 document.addEventListener("visibilitychange", () => alive.peek() && ask());
 
 effect(() => {
-  if (events.value.cut) cuts += 1;
-});
-
-effect(() => {
-  furthest.value;
-  running.value;
-  chosen.value;
-  session.value;
-  events.value.cut;
+  for (const one of [furthest, running, chosen, session, way, span]) one.value;
   if (alive.value) ask();
   else if (!session.value && names.peek().length > 0) names.value = [];
 });

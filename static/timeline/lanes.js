@@ -1,6 +1,7 @@
 // Lanes made of a run's events as they come: a row for each thing that lasts, with a band for each of its states.
 
 import { chunkText } from "../parts/chunk.js";
+import { Widths } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./takers.js";
 
@@ -83,6 +84,7 @@ export class Lanes {
     this.tones = new Map();
     this.clocks = new Map();
     this.asked = new Map();
+    this.widths = new Widths();
     this.now = 0;
     this.begin = null;
   }
@@ -101,7 +103,8 @@ export class Lanes {
   }
 
   /** Takes in one event: [time in us, source, kind, data]. */
-  take([time, source, kind, data]) {
+  take(event) {
+    const [time, source, kind, data] = event;
     // Of a program that makes one run after another, each one's time begins anew; on the axis they follow each other.
     const run = source.startsWith("top#") ? source.slice(0, source.indexOf(".") < 0 ? undefined : source.indexOf(".")) : "top";
     const before = this.clocks.get(run) ?? 0;
@@ -111,7 +114,7 @@ export class Lanes {
     }
     const now = this.now / 1e6;
     this.begin ??= now;
-    TAKERS[kind]?.(this, now, source, data);
+    TAKERS[kind]?.(this, now, source, data, event);
   }
 
   /** Forgets what was over before a time [s]. */

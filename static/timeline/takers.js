@@ -1,6 +1,7 @@
 // What each kind of event (`actr3d/kinds.py`) means for the lanes.
 
 import { valueText } from "../parts/chunk.js";
+import { commandText, setTheSame } from "./commands.js";
 
 const LEVELS = { planning_unit: "planning unit", unit_task: "unit task", method: "method", operator: "operator" };
 const BEGINS = new Set(["begun", "resumed", "going on"]);
@@ -105,9 +106,14 @@ function output(lanes, time, _source, { text }) {
   lanes.lane("said", "marks", "printed").mark(time, { text: String(text), tone: "text" });
 }
 
-function command(lanes, time, _source, { command: word, data }) {
-  const values = [...(data?.values ?? []), ...Object.entries(data?.named ?? {}).map(([name, value]) => `${name}: ${valueText(value)}`)];
-  lanes.lane("commands", "marks", "commands").mark(time, { text: [word, ...values.map(valueText)].join(" "), tone: "accent" });
+/** Of changes of the same at the same moment only the last has an effect: they are one. */
+function command(lanes, time, _source, _data, event) {
+  lanes.widths.take(event);
+  const lane = lanes.lane("commands", "marks", "commands");
+  const last = lane.bands.at(-1);
+  const first = last?.from === time && setTheSame(event, last.first) ? last.first : event;
+  if (first !== event) lane.bands.pop();
+  lane.mark(time, { text: commandText(event, first).join(" "), tone: "accent", first });
 }
 
 function reward(lanes, time, source, { value }) {

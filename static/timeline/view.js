@@ -11,9 +11,10 @@ export const span = signal({ from: 0, to: 1 });
 /** "fit": all of the run; "follow": the present stays in view; "free": as the user has left it. */
 export const mode = signal("fit");
 
-/** Returns how far an axis goes on which a whole run fits [s]: it grows in steps, so that what is on it does not move all the time. */
-export function fitEnd(furthest) {
-  const wanted = Math.max(1, furthest * 1.01);
+/** Returns how far an axis goes on which a whole run fits [s]: it grows in steps, so that what is on it does not move all the time;
+ * of a run that stands at its start, a second. */
+export function fitEnd(furthest, least = LEAST) {
+  const wanted = furthest > 0 ? Math.max(least, furthest * 1.01) : 1;
   const power = 10 ** Math.floor(Math.log10(wanted));
   return power * LADDER.find((step) => step * power >= wanted);
 }
@@ -25,7 +26,7 @@ function show(from, to) {
 /** Brings the view to where the run is; while it goes on it does not wait until that is at the edge. */
 export function settle(present, furthest, running) {
   const { from, to } = span.peek();
-  if (mode.value === "fit") show(0, fitEnd(furthest));
+  if (mode.value === "fit") show(0, fitEnd(furthest, running ? 1 : LEAST)); // a run that begins would make it move at once
   else if (mode.value === "follow") {
     const width = to - from;
     if (present > to - (running ? AHEAD * width : 0)) show(present - (1 - AHEAD) * width, present + AHEAD * width);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -10,6 +11,9 @@ from playwright.sync_api import Browser, Page
 
 from tests.browser.looking import PATIENCE, chromium
 from tests.server.serving import Served, served
+
+REFUSED = re.compile("Failed to load resource: the server responded with a status of 40[0-9]")
+"""What Chromium writes to its console of an answer that says why something is not done."""
 
 
 @pytest.fixture(scope="session")
@@ -27,9 +31,11 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
-    """Opens pages of a new user, whose browser remembers nothing; whatever their consoles complain of fails the test.
+    """Opens pages of a new user, whose browser remembers nothing but which tab is open: `tab`, or None for that of a first visit.
 
-    The sessions of tests before are closed.
+    Runs go as fast as they can, so that nobody waits for them; with `paced` as they do for users, at real time where there is a body.
+    Whatever their consoles complain of fails the test; with `refusals` not that the server
+    has refused something. The sessions of tests before are closed.
     """
     for session in workbench.get("/api/sessions").json()["sessions"]:
         workbench.post(f"/api/sessions/{session['id']}/close")
@@ -44,12 +50,23 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
 
     contexts: list[Any] = []
 
-    def opened(model: str = "doorway.py", width: int = 1280, height: int = 800, theme: Any = "light") -> Page:
+    def opened(
+        model: str = "doorway.py",
+        width: int = 1280,
+        height: int = 800,
+        theme: Any = "light",
+        tab: str | None = "buffers",
+        paced: bool = False,
+    ) -> Page:
         contexts.append(browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme))
+        if tab is not None:
+            contexts[-1].add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
         page = contexts[-1].new_page()
         page.set_default_timeout(PATIENCE)
         page.on("console", note)
         page.on("pageerror", fault)
+        if not paced and not any(one["model"] == model for one in workbench.get("/api/sessions").json()["sessions"]):
+            workbench.post("/api/sessions", {"model": model})
         page.goto(f"{workbench.address}&model={model}")
         assert "token" not in page.url
         return page

@@ -111,11 +111,17 @@ def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     expect(labels).to_have_text(["1", "2"])
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="Copy as JSON").click()
+    expect(page.locator(".copy").get_by_role("status")).to_have_text("Copied")
     until(page, lambda: page.evaluate("navigator.clipboard.readText()").startswith("{"))
     view = json.loads(page.evaluate("navigator.clipboard.readText()"))
     assert {extent[1] for extent in view["extents"]} == {1, 2}
     page.get_by_role("button", name="Edges").click()
     expect(page.locator(".eye tbody tr")).to_have_count(len(view["extents"]))
+    head = page.get_by_role("table", name="Edges").get_by_role("columnheader")
+    expect(head).to_have_text([f"{field['name']}{' [' + field['unit'] + ']' if field['unit'] else ''}" for field in view["fields"]])
+    expect(head.nth(10)).to_have_attribute("title", "nearest distance: how far that nearest point is from the eye [m]")
+    page.get_by_text("What the columns mean").click()
+    expect(page.locator(".legend dl")).to_contain_text("a1 [°]left angle: the angle between the line of sight")
     box = page.locator(".eye canvas").bounding_box()
     assert box is not None
     row, _, _, left, right, *_ = view["extents"][0]

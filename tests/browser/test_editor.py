@@ -140,6 +140,28 @@ def test_what_a_run_says_is_marked_at_its_lines(pages: Callable[..., Page], writ
     shows(page, ".problems", "No problems")
 
 
+def test_an_error_scrolls_its_line_into_view_and_leaves_the_cursor_where_it_is(
+    pages: Callable[..., Page], written: Callable[[str, str], Path]
+) -> None:
+    written("far.py", "x = 1\n" * 150 + "raise ValueError('here')\n" + "y = 2\n" * 150)
+    page = pages("far.py")
+    edit(page, "far.py")
+    wrong = page.locator(".cm-line", has_text="raise ValueError")
+    expect(wrong).to_have_count(0)
+    page.locator(CODE).focus()
+    page.keyboard.press("Control+Enter")
+    expect(wrong).to_be_in_viewport()
+    assert page.evaluate("document.activeElement.classList.contains('cm-content')")
+    page.keyboard.type("z")  # the cursor is where it was
+    expect(page.locator(".cm-activeLine")).to_have_text("zx = 1")
+    page.keyboard.press("Control+z")
+    open_tab(page, "Buffers")
+    page.get_by_role("button", name="Run again").click()
+    shows(page, "#status", "failed")
+    open_tab(page, "Editor")  # what went wrong meanwhile is in view, too
+    expect(wrong).to_be_in_viewport()
+
+
 def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     path = written("shared.py", "a = 1\nb = 2\n")
     page = pages("counting.py")

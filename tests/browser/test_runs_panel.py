@@ -13,7 +13,8 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from actr3d.recording import Recording
-from tests.browser.looking import open_tab
+from tests.browser.looking import open_tab, until
+from tests.forging import forge
 from tests.server.serving import Served
 
 
@@ -141,6 +142,61 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(page.get_by_text("No recording has all these words.")).to_be_visible()
     assert not any((recordings / f"{name}.sqlite").exists() for name in spare)
+
+
+def test_several_downloads_at_once_arrive_whole_and_one_that_fails_is_told(
+    pages: Callable[..., Page], workbench: Served, recordings: Path, two: list[str]
+) -> None:
+    page = pages(refusals=True)
+    forms = {"SQLite": "sqlite", "HTML replay": "replay.html", "CSV of events": "events.csv", "CSV of states": "states.csv"}
+    open_tab(page, "Runs")
+    row(page, two[1]).click()
+    taken: dict[str, Path] = {}
+    page.on("download", lambda one: taken.update({one.suggested_filename: one.path()}))
+    page.evaluate("titles => document.querySelectorAll('.downloads a').forEach(link => (link.click(), link.click()))", list(forms))
+    expect(page.get_by_role("list", name="Downloads")).to_have_count(0)
+    until(page, lambda: len(taken) == 4)
+    for form in forms.values():
+        whole = workbench.get(f"/api/recordings/{two[1]}/file", params={"form": form}).content
+        assert taken[f"{two[1]}.{form}"].read_bytes() == whole
+
+    spare = recorded(workbench, "counting.py")
+    page.get_by_role("button", name="Read the list again").click()
+    row(page, spare).click()
+    (recordings / f"{spare}.sqlite").unlink()
+    page.get_by_role("link", name="CSV of events").click()
+    expect(page.locator(".toast")).to_contain_text(
+        re.compile(r"Not downloaded: CSV of events of counting\.py .*: there is no such recording")
+    )
+
+
+def test_a_recording_from_elsewhere_shows_its_code_and_asks_before_it_is_run(
+    pages: Callable[..., Page], workbench: Served, recordings: Path
+) -> None:
+    page = pages(refusals=True)
+    spare = recorded(workbench, "counting.py")
+    far = recordings / "far.sqlite"
+    (recordings / f"{spare}.sqlite").rename(far)
+    forge(far, key=b"another key")
+    open_tab(page, "Runs")
+    page.get_by_role("button", name="Read the list again").click()
+    row(page, "far").click()
+    page.get_by_role("button", name="Replay", exact=True).click()
+    dialog = page.get_by_role("dialog", name="A recording from elsewhere")
+    expect(dialog).to_contain_text("This installation did not make the recording far, or it was changed since. Replaying it runs the code")
+    expect(dialog.locator("pre")).to_contain_text("class Counting(ACTR)")
+    dialog.get_by_role("button", name="Cancel").click()
+    expect(page.get_by_text("It cannot tell. cancelled")).to_be_visible()
+    page.get_by_role("button", name="Replay", exact=True).click()
+    dialog.get_by_role("button", name="Run its code").click()
+    expect(page.get_by_text("Every byte agrees.")).to_be_visible()
+    page.get_by_role("button", name="Open", exact=True).click()
+    dialog.get_by_role("button", name="Cancel").click()
+    assert all(one["recorded"] is None for one in workbench.get("/api/sessions").json()["sessions"])
+    page.get_by_role("button", name="Open", exact=True).click()
+    dialog.get_by_role("button", name="Run its code").click()
+    expect(page).to_have_url(re.compile("recording=far"))
+    far.unlink()
 
 
 def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], recordings: Path) -> None:

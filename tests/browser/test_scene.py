@@ -79,8 +79,9 @@ def test_viser_alone_has_all_controls_and_they_are_those_of_the_session(workbenc
     wait(lambda: shown(workbench, session, "edges"))
     say(workbench, session, type="overlay", name="edges", shown=False)
     expect(box).not_to_be_checked(timeout=PATIENCE)
-    say(workbench, session, type="camera", view="top")
-    expect(page.get_by_role("combobox", name="camera")).to_have_value("top", timeout=PATIENCE)
+    page.get_by_role("combobox", name="Camera").select_option("top")
+    page.wait_for_function("() => window.scene.camera?.view === 'top'")
+    page.get_by_role("button", name="Reset view").click()
     assert told(workbench, session)["session"]["controlled_by"] == "3D view"  # who has stepped
 
 

@@ -89,6 +89,25 @@ def test_lanes_and_plots_tell_what_was_when(ended: Page) -> None:
     assert any("a gap of 0.50 m" in text for text in told(page, 4.7 / 8))
 
 
+def drag_aperture(page: Page) -> None:
+    """Draws the slider of the aperture to 90 cm by many steps, as a hand does."""
+    area = page.locator("#aperture").bounding_box()
+    assert area is not None
+    least, most, now = (float(page.locator("#aperture").evaluate(f"slider => slider.{name}")) for name in ("min", "max", "value"))
+    thumb = 16
+
+    def place(value: float) -> float:
+        return area["x"] + thumb / 2 + (value - least) / (most - least) * (area["width"] - thumb)
+
+    page.mouse.move(place(now), area["y"] + area["height"] / 2)
+    page.mouse.down()
+    for value in range(int(now), 91, 5):
+        page.mouse.move(place(value), area["y"] + area["height"] / 2)
+        drawn(page)
+    page.mouse.up()
+    page.locator("#aperture").fill("90")  # a pixel is more than a centimetre
+
+
 def test_going_back_and_forth(ended: Page) -> None:
     page = ended
     end = slider(page, "valuemax")
@@ -119,15 +138,22 @@ def test_going_back_and_forth(ended: Page) -> None:
     again.click()
     shows(page, "#status", "ended")
     assert slider(page, "valuemax") == slider(page, "valuenow") == end  # it went as it had gone
-    # Where something is changed in the past, another way begins: what was known after it is gone.
+    # Where something is changed in the past, another way begins: what was known after it is kept as a branch.
     page.mouse.click(*at(page, 0.25))
     when(page, "2.00")
+    drag_aperture(page)
+    shows(page, "#width", "90 cm")
+    shows(page, ".branched", rf"Changed at 2\.00 s: the run up to {end:.2f} s is kept as a branch")
+    page.locator("#aperture").focus()
+    page.keyboard.press("Home")  # is the slider's own key
+    when(page, "2.00")
+    expect(page.locator("#aperture")).not_to_have_value("90")
     page.locator("#aperture").fill("90")
     shows(page, "#width", "90 cm")
     page.click("#run")
     shows(page, "#status", "ended")
     page.get_by_label("Filter rows").fill("commands")
-    assert any(re.search(r"commands\naperture 0\.9", text) for text in told(page, 0.25))
+    assert [text for text in told(page, 0.25) if "commands" in text] == ["commands\naperture 50 -> 90 cm\nat 2.000 s"]
     page.get_by_label("Filter rows").fill("joints")
     assert any(re.search(r"torso\w* -?[01]\.\d+ deg", text) for text in told(page, 5.8 / 8))  # it is wide enough not to turn
 
@@ -274,3 +300,51 @@ def test_no_text_of_the_axis_is_cut(page: Page, end: float, width: int) -> None:
     assert drawn[0][0] >= 4
     assert drawn[-1][1] <= width - 4
     assert all(one[1] < other[0] for one, other in pairwise(drawn))
+
+
+EVERY_TICK = """async () => {
+  const { known } = await import("/static/timeline/curves.js");
+  const { state } = await import("/static/store.js");
+  const ticks = known.times.map((time) => Math.round(time * 100));
+  const whole = ticks.length === Math.round(state.value.furthest * 100) + 1 && ticks.every((tick, n) => tick === n);
+  return whole && [...known.values.values()].every(({ length }) => length === ticks.length);
+}"""
+"""Whether the curves have a value of each tick, once."""
+
+
+def test_curves_have_every_tick_after_a_restart_and_a_reload(ended: Page) -> None:
+    page = ended
+    until(page, lambda: page.evaluate(EVERY_TICK))
+    for _ in range(3):
+        page.evaluate(
+            """async () => {
+              const { say } = await import("/static/server.js");
+              const { session, state } = await import("/static/store.js");
+              const before = session.value.run;
+              await say({ type: "restart", run: true });
+              while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
+            }"""
+        )
+        until(page, lambda: page.evaluate(EVERY_TICK))
+    page.evaluate("async () => (await import('/static/server.js')).say({ type: 'restart', run: true })")
+    page.reload()  # while it goes on
+    shows(page, "#status", "ended")
+    until(page, lambda: page.evaluate(EVERY_TICK))
+
+
+def test_a_short_run_fits_and_the_slider_keeps_its_keys(pages: Callable[..., Page]) -> None:
+    page, other = pages("counting.py"), pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.click("#step")
+    when(page, "0.01")
+    page.get_by_role("button", name="Fit").click()
+    page.mouse.move(*at(page, 0.5))
+    assert page.evaluate("async () => (await import('/static/timeline/view.js')).span.value.to") < 0.1
+    for one, another in ((page, other), (other, page)):
+        shows(one, "#browsers", r"2 browsers: you are page \d+, ")
+        one.click("#step")
+        shows(one, "#browsers", "you control")
+        shows(another, "#browsers", r"page \d+ controls")
+    names = [re.search(r"page \d+", one.locator("#browsers").inner_text()) for one in (page, other)]
+    assert None not in names
+    assert names[0] != names[1]

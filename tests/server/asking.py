@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable, MutableMapping
+from collections.abc import Awaitable, Callable, Iterable, MutableMapping
 from typing import Any
 
 from workbench.auth import App, Gate, Token
@@ -67,9 +67,36 @@ def ask(
     app: App, path: str, *headers: Header, query: str = "", method: str = "GET", body: bytes = b"", parts: Iterable[bytes] | None = None
 ) -> Answer:
     """Sends a request and returns the answer."""
+    return asyncio.run(call(app, path, *headers, query=query, method=method, body=body, parts=parts))
+
+
+async def call(
+    app: App,
+    path: str,
+    *headers: Header,
+    query: str = "",
+    method: str = "GET",
+    body: bytes = b"",
+    parts: Iterable[bytes] | None = None,
+    leaving: asyncio.Event | None = None,
+    first: Callable[[], Awaitable[object]] | None = None,
+) -> Answer:
+    """Sends a request and returns the answer, in an event loop that there is already.
+
+    Args:
+        app: Who is asked.
+        path: For what.
+        headers: With which headers.
+        query: What stands after the path.
+        method: How.
+        body: What is sent.
+        parts: What is sent before that.
+        leaving: When this is set, the client has gone.
+        first: Is called when the answer begins.
+    """
     waiting = [{"type": "http.request", "body": part, "more_body": True} for part in parts or ()]
     waiting.append({"type": "http.request", "body": body, "more_body": False})
-    return asyncio.run(_call(app, _scope("http", path, headers, query, method), waiting))
+    return await _call(app, _scope("http", path, headers, query, method), waiting, leaving, first)
 
 
 def connect(app: App, path: str, *headers: Header) -> Answer:
@@ -78,14 +105,28 @@ def connect(app: App, path: str, *headers: Header) -> Answer:
     return asyncio.run(_call(app, _scope("websocket", path, headers, "", ""), waiting))
 
 
-async def _call(app: App, scope: dict[str, Any], waiting: list[dict[str, Any]]) -> Answer:
+async def _call(
+    app: App,
+    scope: dict[str, Any],
+    waiting: list[dict[str, Any]],
+    leaving: asyncio.Event | None = None,
+    first: Callable[[], Awaitable[object]] | None = None,
+) -> Answer:
     sent: list[MutableMapping[str, Any]] = []
+    answered = leaving or asyncio.Event()
 
     async def receive() -> MutableMapping[str, Any]:
-        return waiting.pop(0) if waiting else {"type": "http.disconnect"}
+        if waiting:
+            return waiting.pop(0)
+        await answered.wait()  # clients stay until they have their answer
+        return {"type": "http.disconnect"}
 
     async def send(message: MutableMapping[str, Any]) -> None:
         sent.append(message)
+        if message["type"] == "http.response.start" and first is not None:
+            await first()
+        if message["type"] == "http.response.body" and not message.get("more_body", False):
+            answered.set()
 
     await app(scope, receive, send)
     return Answer(sent)

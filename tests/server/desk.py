@@ -10,11 +10,14 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, TypeVar
 
+from tests.server.asking import COOKIE, GATE, HOST, Answer, call
 from workbench import protocol as say
+from workbench.app import make_app
 from workbench.files import ModelFolder
 from workbench.recordings import Recordings
 from workbench.session import Session
 from workbench.sessions import Sessions
+from workbench.summaries import Summary
 from workbench.worker.workers import Workers
 
 T = TypeVar("T")
@@ -46,6 +49,16 @@ class Desk:
         sessions = Sessions(ModelFolder(folder), Recordings(folder), self.workers)
         self._open.append(sessions)
         return sessions
+
+    def ask(self, folder: Path, path: str, **more: Any) -> Answer:
+        """Sends a request to an application with the models of a folder, and returns the answer."""
+        app = make_app(folder, GATE)
+        app.state.sessions = self.sessions(folder)
+        return self.do(call(app, path, HOST, COOKIE, **more))
+
+    def listed(self, folder: Path, first: int = 0, most: int = 1000) -> tuple[int, list[Summary]]:
+        """Returns how many recordings a folder has, and the summaries of some."""
+        return self.do(self.sessions(folder).listing.some(first, most))
 
     def begin(self, folder: Path, source: str, *, name: str = "model.py", wait: str | None = "paused", **options: Any) -> Talk:
         """Begins a session with a model of this text."""
@@ -101,6 +114,10 @@ class Talk:
                 return self.state
             time.sleep(0.005)
         raise AssertionError(f"it did not come: {self.facts}, {self.session.state and self.state}, {self.notices}")
+
+    def summary(self, name: str) -> Summary:
+        """Returns what is known of a recording."""
+        return self.desk.do(self.sessions.listing.one(name))
 
     @property
     def state(self) -> dict[str, Any]:

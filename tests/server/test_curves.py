@@ -12,7 +12,7 @@ from actr3d.recording import Recorded
 from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, ended, recording
 from workbench.curves import NOTHING
-from workbench.recordings import curves
+from workbench.forms import curves_of
 from workbench.worker.past import Past
 
 PUSHED = """from actr3d.actr import *
@@ -65,7 +65,11 @@ def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk,
     assert way == pytest.approx(0.01 * sum(of["walker speed"]), rel=0.02)
     assert set(of["walker contact force"]) == {0.0}
     path = recording(desk, talk)
-    assert curves(path, None, 0.0, 5000) == told
+    assert curves_of(path, None, 0.0, 5000) == told
+    part = curves_of(path, ["walker speed"], 0.995, 5000, last=1.234)
+    assert part["times"] == told["times"][100:124]
+    assert part["curves"]["walker speed"] == of["walker speed"][100:124]
+    assert curves_of(path, None, 1.0, 3, last=0.5)["times"] == []
 
 
 def test_the_force_of_a_wall_is_told_and_that_of_the_ground_is_not(desk: Desk, tmp_path: Path) -> None:
@@ -89,6 +93,13 @@ def test_only_what_is_asked_for_is_told_from_a_time_on_and_evenly(desk: Desk, tm
     assert told["times"] == pytest.approx([0.40 + 0.01 * n for n in range(11)])
     told = talk.say("curves", names=["walker x"], most=7)
     assert told["times"] == [0.0, 0.09, 0.18, 0.27, 0.36, 0.45, 0.5]
+    told = talk.say("curves", names=["walker x"], first=0.105, last=0.151)
+    assert told["times"] == [0.11, 0.12, 0.13, 0.14, 0.15]
+    told = talk.say("curves", names=["walker x"], first=0.1, last=0.3, most=4)
+    assert told["times"] == [0.14, 0.21, 0.28, 0.3]
+    assert talk.say("curves", names=["walker x"], first=0.3, last=0.1)["times"] == []
+    assert talk.say("curves", names=["walker x"], first=2.0, last=3.0)["times"] == []
+    assert talk.say("curves", names=["walker x"], last=9.0, most=5000)["times"][-1] == 0.5
     assert talk.say("curves", names=[], most=7)["times"] == []
 
 
@@ -103,7 +114,7 @@ def test_what_lies_ahead_is_told_until_the_run_goes_another_way(desk: Desk, tmp_
     talk.say("step", ticks=5)
     talk.until("paused", tick=15)
     assert talk.say("curves") == before
-    talk.say("say", word="walk", values=[-1.0])
+    talk.say("say", word="walk", values=[-1.0], drop=True)
     told = talk.say("curves")
     assert told["times"][-1] == 0.15
     talk.say("step", ticks=25)
@@ -114,12 +125,31 @@ def test_what_lies_ahead_is_told_until_the_run_goes_another_way(desk: Desk, tmp_
     assert after["curves"]["walker x"][-1] < before["curves"]["walker x"][-1]
 
 
+def test_a_run_goes_another_way_also_where_no_event_was_ahead(desk: Desk, tmp_path: Path) -> None:
+    """A page knows by the number of the way that what it has of the time ahead, as curves, holds no more."""
+    still = PUSHED.replace("    motor = Motor()\n", "").replace(
+        "        motor.walk(1.0)\n", ""
+    )  # who has a motor feels the body at each tick
+    talk = desk.begin(tmp_path, still)
+    talk.say("step", ticks=44)
+    talk.until("paused", tick=44)
+    events = talk.state["events"]
+    talk.say("seek", time=0.43)
+    assert talk.until("paused", tick=43)["events"] == events
+    before = talk.session.epoch
+    talk.say("aperture", width=0.3, drop=True)
+    assert talk.session.epoch == before + 1
+    assert talk.say("curves", names=["walker x"])["times"][-1] == 0.43
+    talk.say("aperture", width=0.4)  # now there is nothing ahead that could be lost
+    assert talk.session.epoch == before + 1
+
+
 def test_a_program_has_no_curves(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, "x = 1\n", record=True)
     talk.say("run")
     talk.until("ended")
     assert talk.say("curves") == NOTHING
-    assert curves(recording(desk, talk), None, 0.0, 100) == NOTHING
+    assert curves_of(recording(desk, talk), None, 0.0, 100) == NOTHING
 
 
 class Steady:
@@ -137,13 +167,13 @@ def test_of_a_long_past_every_second_state_is_left_out() -> None:
     past = Past()
     for world.tick in range(200):
         past.keep(world.tick, world)
-    ticks = [tick for tick, state in past.since(0, 5000) if state[:8] == tick.to_bytes(8, "big")]
+    ticks = [tick for tick, state in past.within(0, None, 5000) if state[:8] == tick.to_bytes(8, "big")]
     assert ticks == [*range(0, 200, 8), 199]
     past.cut(100)
-    assert [tick for tick, _ in past.since(0, 5000)] == [*range(0, 97, 8)]
+    assert [tick for tick, _ in past.within(0, None, 5000)] == [*range(0, 97, 8)]
     for world.tick in range(101, 106):
         past.keep(world.tick, world)
-    assert [tick for tick, _ in past.since(90, 5000)] == [96, 104, 105]
+    assert [tick for tick, _ in past.within(90, None, 5000)] == [96, 104, 105]
 
 
 def test_a_recording_keeps_its_scene(desk: Desk, tmp_path: Path) -> None:

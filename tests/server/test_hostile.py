@@ -80,7 +80,7 @@ def test_a_model_that_forks_goes_on_in_one_process(desk: Desk, tmp_path: Path, d
     assert [event[3]["text"] for event in talk.events if event[2] == "output"] == ["once"]
     name = talk.facts["recording"]
     talk.say("stop")
-    assert talk.sessions.recordings.summary(name).events == talk.session.log.next
+    assert talk.summary(name).events == talk.session.log.next
 
 
 def test_a_child_that_holds_the_wire_does_not_hold_up_the_end(desk: Desk, tmp_path: Path) -> None:

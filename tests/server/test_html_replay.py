@@ -18,8 +18,8 @@ from tests.server.desk import Desk
 from tests.server.test_overlays import LOOKING
 from tests.server.test_recorded_runs import recording
 from workbench.html_replay import make, shapes
-from workbench.html_replay.aside import ReplayError, replay_of
 from workbench.html_replay.make import write_replay
+from workbench.readers import Readers, ReadingError
 
 EVIL = "</script><img src=x onerror=alert(1)><!--"
 PRINTS = f"from actr3d.actr import *\nprint('''{EVIL}''')\n"
@@ -140,10 +140,9 @@ def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, mo
 
 
 def test_it_is_made_aside_and_what_goes_wrong_is_told(desk: Desk, walked: Path, tmp_path: Path) -> None:
-    made = desk.do(replay_of(desk.workers, walked))
-    assert inside(made.read_text(encoding="utf-8"))["model"] == "model.py"
-    made.unlink()
+    with desk.do(Readers(desk.workers).make("replay.html", walked)) as made:
+        assert inside(made.read().decode())["model"] == "model.py"
     broken = tmp_path / "broken.sqlite"
     broken.write_bytes(b"nothing")
-    with pytest.raises(ReplayError, match="is no recording"):
-        desk.do(replay_of(desk.workers, broken))
+    with pytest.raises(ReadingError, match=r"^'broken' is no recording: file is not a database$"):
+        desk.do(Readers(desk.workers).make("replay.html", broken))

@@ -78,7 +78,7 @@ def test_a_recording_that_is_being_written_keeps_its_name(desk: Desk, tmp_path: 
         talk.sessions.recordings.rename(name, "mine")
     talk.say("stop")
     talk.sessions.recordings.rename(name, "mine")
-    assert talk.sessions.recordings.summary("mine").model == "model.py"
+    assert talk.summary("mine").model == "model.py"
 
 
 def test_what_cannot_be_opened_is_listed_with_the_reason(desk: Desk, tmp_path: Path) -> None:
@@ -91,14 +91,14 @@ def test_what_cannot_be_opened_is_listed_with_the_reason(desk: Desk, tmp_path: P
     with sqlite3.connect(folder / "older.sqlite") as older:
         older.execute("CREATE TABLE runs (x)")
     older.close()
-    told = {summary.id: summary for summary in recordings.list()[1]}
+    told = {summary.id: summary for summary in desk.listed(tmp_path)[1]}
     assert len(told) == 4
     assert told[talk.facts["recording"]].problem is None
     for name in ("none", "empty", "older"):
         assert told[name].problem
-        assert recordings.summary(name) == told[name]
+        assert talk.summary(name) == told[name]
         recordings.delete(name)
-    assert recordings.list()[0] == 1
+    assert desk.listed(tmp_path)[0] == 1
 
 
 def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) -> None:
@@ -116,7 +116,7 @@ def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) 
     talk.wait(lambda: talk.session.start is not second and talk.state["status"] == "paused")
     desk.do(talk.session.stop())
     names = {Path(start.record).stem for start in (second, talk.session.start) if start is not None and start.record is not None}
-    assert {summary.id for summary in talk.sessions.recordings.list()[1]} == names
+    assert {summary.id for summary in desk.listed(tmp_path)[1]} == names
 
 
 def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:

@@ -111,6 +111,8 @@ def test_every_model_is_listed_without_complaint() -> None:
         ("print 'so'", 1, "Python 2"),
         ("a\0b", 1, "NUL"),
         ("x = '\ud800'", None, "no Python source"),
+        ("\ndef build():\n    return 3\n", 2, "build() does not say what it returns, not a Simulation; it must be `def build("),
+        ("async def build() -> Simulation: ...", 1, "build is an async function"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(text: str, line: int | None, message: str) -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
+from workbench.palette import channels, label_colours, palette
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -85,8 +86,10 @@ def test_the_field_of_view_is_that_of_the_camera_from_the_start_on(desk: Desk, t
 
 def test_edges_lie_on_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, LOOKING)
-    lines = np.frombuffer(drawn(talk, 0, ("edges",))["edges"]["walker"], dtype=np.float32).reshape(-1, 2, 3)
-    assert len(lines) > 100
+    told = drawn(talk, 0, ("edges",))["edges"]["walker"]
+    lines = np.frombuffer(told["lines"], dtype=np.float32).reshape(-1, 2, 3)
+    labels = np.frombuffer(told["labels"], dtype=np.int64)
+    assert len(lines) == len(labels) > 100
     along = (lines[..., :2] - MIDDLE) @ ACROSS
     before = (lines[..., :2] - MIDDLE) @ np.array((math.cos(0.3), math.sin(0.3)))
     assert np.abs(before).max() < 0.05 + 0.005 * 6  # the wall is 10 cm thick, and they are drawn a little before it
@@ -94,6 +97,16 @@ def test_edges_lie_on_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     assert at_gap.mean() > 0.3  # the sides of the gap; what else there is are the ends of the wall, its top and its bottom
     assert not (np.abs(along) < 0.27).any()
     assert lines[..., 2].max() < 2.5
+    sides = {int(label): {bool(side) for side in (along[labels == label] > 0).flat} for label in set(labels.tolist())}
+    assert sorted(map(sorted, sides.values())) == [[False], [True]]  # each wall has a label, and so a colour, of its own
+
+
+def test_edges_have_the_colours_of_the_retina() -> None:
+    colours = label_colours([1, 2, 1, 1 + len(palette()["labels"])])
+    assert colours[0].tolist() == list(channels(palette()["labels"][0]))
+    assert (colours[0] == colours[2]).all()
+    assert (colours[0] == colours[3]).all()
+    assert (colours[0] != colours[1]).any()
 
 
 def test_openings_are_shown_where_they_are_with_their_width(desk: Desk, tmp_path: Path) -> None:
@@ -122,7 +135,7 @@ def test_the_path_is_known_to_who_comes_late_and_after_going_back(desk: Desk, tm
     back = np.array(drawn(talk, 100, ("path",))["path"]["walker"])
     assert len(back) < len(way)
     assert back[-1, 0] == pytest.approx(0.5 * 0.95, abs=0.03)
-    talk.say("say", word="walk", values=[-0.5])
+    talk.say("say", word="walk", values=[-0.5], drop=True)
     talk.say("step", ticks=100)
     talk.until("paused", tick=200)
     other = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
@@ -168,9 +181,6 @@ def test_who_looks_switches_for_all_and_takes_no_control(desk: Desk, tmp_path: P
     talk.say("overlay", name="edges", shown=True)
     talk.say("overlay", name="path", shown=False)
     assert shown() == {**before, "edges": True, "path": False}
-    assert talk.facts["camera"] == "free"
-    talk.say("camera", view="eye")
-    assert (talk.facts["camera"], talk.facts["cameras"]) == ("eye", ["free", "follow", "eye", "top"])
     assert talk.facts["controlled_by"] == ""
     talk.say("restart")
     talk.wait(lambda: talk.session.run == 2)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -13,7 +15,7 @@ from actr3d.recording import Recorded, Recording
 from actr3d.trace import TraceEvent
 from tests.server.desk import Desk
 from workbench.comparing import CONTEXT, compare
-from workbench.recordings import Recordings
+from workbench.summaries import Summary
 
 MODELS = Path(__file__).parents[2] / "models"
 APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
@@ -40,7 +42,7 @@ def test_a_list_tells_the_result_and_what_is_not_the_default(desk: Desk, tmp_pat
     assert talk.sessions.writing() == {name: talk.session.name}
     desk.do(talk.session.stop())
     assert talk.sessions.writing() == {}
-    total, (summary,) = talk.sessions.recordings.list()
+    total, (summary,) = desk.listed(tmp_path)
     assert (total, summary.id, summary.model, summary.seed, summary.problem) == (1, name, "model.py", 1, None)
     assert summary.different == ("aperture",)
     assert summary.parameters["condition"] == "normal"
@@ -70,7 +72,7 @@ def build() -> Simulation:
 def test_a_list_tells_what_a_model_raised(desk: Desk, tmp_path: Path, source: str) -> None:
     talk = desk.begin(tmp_path, source, record=True, run=True, wait="failed")
     desk.do(talk.session.stop())
-    summary = talk.sessions.recordings.list()[1][0]
+    summary = desk.listed(tmp_path)[1][0]
     assert summary.ended is None
     assert "ValueError: too far" in str(summary.failed)
 
@@ -81,40 +83,43 @@ def test_a_run_that_goes_another_way_before_it_failed_has_not_failed(desk: Desk,
     talk.until("paused", time=0.01)
     talk.say("say", body="walker", word="walk", values=[1.0])
     desk.do(talk.session.stop())
-    assert talk.sessions.recordings.list()[1][0].failed is None
+    assert desk.listed(tmp_path)[1][0].failed is None
 
 
-def test_a_list_has_the_newest_first_and_tells_what_cannot_be_read(tmp_path: Path) -> None:
+def test_a_list_has_the_newest_first_and_tells_what_cannot_be_read(desk: Desk, tmp_path: Path) -> None:
     written(tmp_path, "m-20260102-000000-aaaa", firing(3))
     written(tmp_path, "m-20260103-000000-aaaa", firing(2))
     old = written(tmp_path, "m-20260101-000000-aaaa", [], form="actr3d recording 1")
     torn = written(tmp_path, "m-20251231-000000-aaaa", firing(3))
     torn.write_bytes(b"no recording at all" * 100)
     os.utime(old)
-    recordings = Recordings(tmp_path)
-    total, found = recordings.list()
+    total, found = desk.listed(tmp_path)
     assert (total, [summary.id[2:10] for summary in found]) == (4, ["20260103", "20260102", "20260101", "20251231"])
     assert [summary.events for summary in found] == [2, 3, 0, 0]
     assert "it says 'actr3d recording 1'" in str(found[2].problem)
     assert "not a database" in str(found[3].problem)
-    assert [summary.id for summary in recordings.list(1, 2)[1]] == [summary.id for summary in found[1:3]]
+    assert [summary.id for summary in desk.listed(tmp_path, 1, 2)[1]] == [summary.id for summary in found[1:3]]
 
 
-def test_a_summary_is_read_again_when_its_file_has_changed(tmp_path: Path) -> None:
-    recordings = Recordings(tmp_path)
+def test_a_summary_is_read_again_when_its_file_has_changed(desk: Desk, tmp_path: Path) -> None:
+    listing = desk.sessions(tmp_path).listing
     path = tmp_path / ".workbench" / "recordings" / "m.sqlite"
     path.parent.mkdir(parents=True)
+
+    def summary() -> Summary:
+        return desk.do(listing.one("m"))
+
     with Recording(path, {"kind": "program", "seed": 1}) as recording:
-        assert recordings.summary("m").events == 0
+        assert summary().events == 0
         recording.event(firing(1)[0])
         end = time.monotonic() + 10
-        while recordings.summary("m").events == 0 and time.monotonic() < end:
+        while summary().events == 0 and time.monotonic() < end:
             time.sleep(0.05)
-        assert recordings.summary("m").events == 1
+        assert summary().events == 1
         beside = path.with_name("m.sqlite-wal").stat().st_size
         assert beside > 0
-        assert recordings.summary("m").size >= path.stat().st_size + beside  # what is new lies there until the run has ended
-        assert recordings.summary("m") is recordings.summary("m")
+        assert summary().size >= path.stat().st_size + beside  # what is new lies there until the run has ended
+        assert summary() is summary()
 
 
 def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:
@@ -149,6 +154,8 @@ def test_where_objects_lie_is_no_difference(tmp_path: Path) -> None:
 
 
 def test_damaged_recordings_are_not_compared(tmp_path: Path) -> None:
-    one, other = written(tmp_path, "a", firing(3)), written(tmp_path, "b", firing(3), parameters=["no", "dict"])
-    with pytest.raises(RecordingError, match="damaged"):
+    one, other = written(tmp_path, "a", firing(3)), written(tmp_path, "b", firing(3))
+    with closing(sqlite3.connect(other)) as file, file:
+        file.execute("""INSERT OR REPLACE INTO facts VALUES ('parameters', '["no", "dict"]')""")
+    with pytest.raises(RecordingError, match="the fact 'parameters' of a recording must be values by their names"):
         compare(one, other)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ import pytest
 from actr3d.camera.stand import Stand
 from actr3d.vision import Feature, Sighting
 from actr3d.vision.units import Metres
-from workbench.overlays.features import CLOSE, apart
 from workbench.worker.contours import Places
 from workbench.worker.sightings import DIAMOND, _outline
 
@@ -63,11 +61,3 @@ def test_what_has_a_size_is_a_frame_of_that_size() -> None:
     assert lines[..., 0] == pytest.approx(3.0)
     (line,) = outline(Line(distance=3.0, direction=0.0))
     assert line == pytest.approx(np.array([(3, 1, 0), (3, -1, 0)]))
-
-
-def test_labels_at_one_place_stand_one_above_the_other() -> None:
-    places = apart([(7.0, 0.0, 1.0), (7.0, 0.3, 1.0), (7.0, -0.3, 1.1), (3.0, 0.0, 1.0)])
-    assert places[0] == (7.0, 0.0, 1.0)
-    assert places[3] == (3.0, 0.0, 1.0)
-    for one, other in combinations(places, 2):
-        assert np.hypot(one[0] - other[0], one[1] - other[1]) >= CLOSE or abs(one[2] - other[2]) >= 0.29

@@ -23,6 +23,7 @@ COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
         ({"buffer": "walker.gaol", "pattern": "pass"}, "no buffer 'walker.gaol'; did you mean 'walker.goal'?"),
         ({"buffer": "walker.goal", "pattern": "a:b c"}, "'c' without a slot's name after the named slot 'a' in pattern 'a:b c'"),
         ({"buffer": "walker.goal", "pattern": "a:"}, "no value for slot 'a' in pattern 'a:'"),
+        ({"buffer": "gaol", "pattern": "pass"}, "no buffer 'gaol'; did you mean 'goal'?"),
         ({"contact": "waker"}, "no body 'waker'; did you mean 'walker'?"),
     ],
 )
@@ -41,6 +42,7 @@ def test_what_there_is_not_is_refused_before_anything_runs(desk: Desk, tmp_path:
     [
         ({"production": "turn"}, "turn did not fire"),
         ({"buffer": "walker.goal", "pattern": "never"}, "walker.goal did not come to match 'never'"),
+        ({"buffer": "goal", "pattern": "never"}, "goal did not come to match 'never'"),
         ({"contact": ""}, "no body touched anything more"),
         ({"contact": "walker"}, "walker touched nothing more"),
     ],
@@ -101,3 +103,49 @@ def test_a_breakpoint_on_what_there_is_not_is_refused_and_one_that_an_edit_has_l
     assert talk.facts["breakpoints"] == ["turn", "turn_now"]
     talk.say("run")
     talk.wait(lambda: talk.state["reason"] == "breakpoint: turn_now fired")
+
+
+SLOTS = """
+from actr3d.actr import *
+
+class {name}(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set({chunk})
+    def go_on(goal="state:begin"):
+        goal.set("state:middle")
+    def end(goal="state:middle"):
+        goal.set("state:end")
+
+{name}().run()
+"""
+
+
+def test_a_slot_that_no_chunk_can_have_is_refused_with_what_is_like_it(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOTS.format(name="Plain", chunk="'state:begin'"))
+    talk.say("step")
+    talk.until("paused", tick=1)
+    for wrong in ("stat:end", "state:end stat:?x", "statt:!end"):
+        with pytest.raises(RefusedError, match=r"no chunk of this model can have a slot 'statt?'; did you mean 'state'\?"):
+            talk.say("until", buffer="goal", pattern=wrong)
+    with pytest.raises(RefusedError, match=r"no chunk of this model can have a slot 'zzz'; there are: state"):
+        talk.say("until", buffer="goal", pattern="zzz:1")
+    talk.say("until", buffer="goal", pattern="state:end")
+    assert talk.until("ended")["reason"] == "the program is over; goal matches 'state:end'"  # both at once
+
+
+def test_a_slot_whose_name_is_computed_is_let_through(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOTS.format(name="Computes", chunk="'state:begin ' + ' '.join(f'{a}{b}:1' for a, b in [('al', 'pha')])"))
+    talk.say("until", buffer="goal", pattern="alpha:1")
+    talk.wait(lambda: talk.state["reason"] == "goal matches 'alpha:1'")
+
+
+def test_what_a_run_goes_on_for_is_shown_while_it_goes_on(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY, settings={"width": 0.9})
+    talk.say("speed", factor=0.05)
+    talk.say("until", buffer="goal", pattern="never")
+    talk.wait(lambda: (talk.state["status"], talk.state["reason"]) == ("running", "until goal matches 'never'"))
+    talk.say("until", time=1.5, production="turn")
+    talk.wait(lambda: (talk.state["status"], talk.state["reason"]) == ("running", "until 1.5 s or turn fires"))
+    talk.say("run")
+    talk.wait(lambda: (talk.state["status"], talk.state["reason"]) == ("running", ""))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -13,6 +14,8 @@ from typing import Any
 import pytest
 
 from tests.server.desk import Desk, RefusedError, Talk
+from workbench.jobs import Job, doing
+from workbench.worker.messages import Start
 
 AGENT = """
 import os, signal, sys, time
@@ -32,6 +35,9 @@ agent.run(10)
 
 WIRES = "import gc, workbench.worker.link as l; links = [o for o in gc.get_objects() if type(o) is l.Link];"
 """Finds what a model has no business with."""
+
+
+CLOSED = "the model closed the connection of its process to the workbench"
 
 
 def of(does: str) -> str:
@@ -150,7 +156,12 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
         ("x = [0] * 10**10", "the model used more memory"),
         ("exec('x = []\\nwhile True: x.append(bytearray(10**7))')", "the model used more memory"),
         (f"{WIRES} [link._wire.sendall(b'junk' * 1000) for link in links]; time.sleep(9)", "nobody understands"),
-        ("[os.close(n) for n in range(3, 64) if os.path.exists(f'/proc/self/fd/{n}')]", ""),
+        ("[os.close(n) for n in range(3, 64) if os.path.exists(f'/proc/self/fd/{n}')]", CLOSED),
+        ("os.closerange(0, 64)", CLOSED),
+        ("os.closerange(3, 64); files = [open('/dev/null') for _ in range(64)]; time.sleep(9)", CLOSED),
+        ("os.kill(os.getpid(), signal.SIGTERM)", "ended by SIGTERM"),
+        ("os.kill(os.getpid(), signal.SIGALRM)", "ended by SIGALRM"),
+        ("os.abort()", "ended by SIGABRT"),
         ("raise KeyboardInterrupt", "KeyboardInterrupt"),
         ("raise BaseException('odd')", "odd"),
         ("input()", "EOFError"),
@@ -161,6 +172,7 @@ def test_a_worker_that_ends_is_told_of(desk: Desk, tmp_path: Path, does: str, to
     talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] in ("failed", "ended"))
     if told:
         talk.wait_for_notice(told)
+    assert not [notice for notice in talk.notices if "Exception ignored" in notice["text"] or "exit code 0" in notice["text"]]
     runs_again(talk, tmp_path)
 
 
@@ -235,3 +247,59 @@ def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behin
     done = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, text=True, timeout=60)
     theirs.close()
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_process_that_a_signal_has_stopped_is_said_to_stand_still(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("os.kill(os.getpid(), signal.SIGSTOP); goal.set('done')"), run=True, wait=None)
+    talk.wait_for_notice("was stopped by SIGSTOP, and stands still")
+    talk.wait(lambda: talk.facts["stuck"])
+    assert talk.facts["stuck"] == {"file": None, "line": None, "function": "", "signal": "SIGSTOP"}
+    worker: Any = talk.session._worker
+    os.kill(worker.pid, signal.SIGCONT)
+    talk.until("ended", time=10)
+    assert talk.facts["stuck"] is None
+    runs_again(talk, tmp_path)
+
+
+def test_a_model_that_a_signal_stops_while_it_is_checked_is_ended(desk: Desk, tmp_path: Path) -> None:
+    source = "import os, signal\nos.kill(os.getpid(), signal.SIGSTOP)\ndef build() -> Simulation: ...\n"
+
+    async def check() -> Job:
+        path = str(tmp_path / "model.py")
+        async with doing(desk.workers, Start(job="check", path=path, source=source, folder=str(tmp_path))) as job:
+            await job.over.wait()
+            return job
+
+    assert "was stopped by SIGSTOP" in desk.do(check()).problem
+
+
+def test_the_process_all_come_from_goes_on_where_a_model_has_stopped_it(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, of("os.kill(os.getppid(), signal.SIGSTOP); goal.set('done')"), run=True, wait=None)
+    talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] == "ended")
+    runs_again(talk, tmp_path)
+
+
+FORKS = """
+import os, sys
+for name in ("first", "second"):
+    if os.fork() == 0:
+        print(name, "child")
+        if os.fork() == 0:
+            print(name, "grandchild", end="")
+            sys.exit(0)
+        os.wait()
+        {end}
+    os.wait()
+print("over")
+"""
+
+
+@pytest.mark.parametrize(("end", "told"), [("os._exit(0)", []), ("sys.exit(4)", []), ("1 / 0", ["ZeroDivisionError"] * 2)])
+def test_what_copies_of_the_process_print_arrives(desk: Desk, tmp_path: Path, end: str, told: list[str]) -> None:
+    talk = desk.begin(tmp_path, FORKS.replace("{end}", end), run=True, wait="ended")
+    for line in ("first child", "second child", "first grandchild", "second grandchild"):
+        talk.wait_for_notice(line)
+    assert [data["text"] for _, _, kind, data in talk.events if kind == "output"] == ["over"]
+    texts = [notice["text"] for notice in talk.notices]
+    assert not [text for text in texts if "Exception ignored" in text]
+    assert [text.partition(":")[0] for text in texts if "Error:" in text] == told

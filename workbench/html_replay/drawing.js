@@ -25,9 +25,12 @@ void main() {
   seen = vec4(mix(ground, line, strong), far);
 }`;
 
+const parts = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+
 class Drawing {
-  constructor(canvas, scene) {
+  constructor(canvas, scene, palette) {
     this.canvas = canvas;
+    this.palette = palette;
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which the 3D scene needs");
     this.scene = scene;
@@ -102,8 +105,8 @@ class Drawing {
     const wide = Math.max(1, Math.round(canvas.clientWidth * devicePixelRatio)), high = Math.max(1, Math.round(canvas.clientHeight * devicePixelRatio));
     if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
     gl.viewport(0, 0, wide, high);
-    const dark = this.dark.matches, sky = dark ? [0.08, 0.09, 0.11] : [0.93, 0.95, 0.97];
-    gl.clearColor(...sky, 1);
+    const colours = this.palette[this.dark.matches ? "dark" : "light"];
+    gl.clearColor(...parts(colours.haze), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
@@ -111,7 +114,7 @@ class Drawing {
     if (!this.shapes.length) return;
     const { eye, target, view } = this.camera.seen(this.pose(this.scene.stage.follow, time), wide / high);
     this.target = target;
-    this.drawGround(view, dark);
+    this.drawGround(view, colours);
     gl.useProgram(this.shaded);
     const place = (name) => gl.getUniformLocation(this.shaded, name);
     gl.uniformMatrix4fv(place("view"), false, view);
@@ -125,13 +128,13 @@ class Drawing {
       });
   }
 
-  drawGround(view, dark) {
+  drawGround(view, colours) {
     const gl = this.gl, place = (name) => gl.getUniformLocation(this.grounded, name);
     gl.useProgram(this.grounded);
     gl.uniformMatrix4fv(place("view"), false, view);
     gl.uniform2f(place("middle"), this.target[0], this.target[1]);
-    gl.uniform3fv(place("ground"), dark ? [0.16, 0.18, 0.21] : [0.84, 0.87, 0.89]);
-    gl.uniform3fv(place("line"), dark ? [0.34, 0.37, 0.42] : [0.66, 0.7, 0.74]);
+    gl.uniform3fv(place("ground"), parts(colours.ground));
+    gl.uniform3fv(place("line"), parts(colours.line));
     gl.bindVertexArray(this.square);
     for (const height of this.scene.grounds) {
       gl.uniform1f(place("height"), height);

@@ -19,6 +19,7 @@ from actr3d.values import to_json
 from workbench.compiled import from_text, loaded
 from workbench.curves import stride
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
+from workbench.palette import palette
 from workbench.stage import Stage
 
 RATE = 30
@@ -43,7 +44,7 @@ def write_replay(path: Path, to: Path) -> None:
     """
     with Recorded(path) as recorded:
         facts = _facts(recorded)
-        told = {**facts, "events": _events(recorded), "scene": _scene(recorded)}
+        told = {**facts, "palette": palette(), "events": _events(recorded), "scene": _scene(recorded)}
     # Nothing that a model says can end the element in which it stands.
     data = msgspec.json.encode(told).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent

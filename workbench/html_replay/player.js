@@ -25,7 +25,7 @@ get("outcome").textContent =
 
 let drawing = null;
 try {
-  if (data.scene) drawing = new Drawing(get("canvas"), data.scene);
+  if (data.scene) drawing = new Drawing(get("canvas"), data.scene, data.palette);
 } catch (error) {
   get("empty").textContent = error.message;
 }

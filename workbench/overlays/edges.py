@@ -1,4 +1,4 @@
-"""The edges that an eye sees, as lines in the world."""
+"""The edges that an eye sees, as lines in the world, in the colours of the retina."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from mujoco import MjData
 
 from workbench.overlays.overlay import Lines, Overlay
+from workbench.palette import label_colours
 
 
 class Edges(Overlay):
@@ -18,13 +19,15 @@ class Edges(Overlay):
     """
 
     def __init__(self, server: Any) -> None:
-        self._lines = Lines(server, "/overlays/edges", (200, 30, 90), 2.0)
+        self._lines = Lines(server, "/overlays/edges", (0, 0, 0), 2.5)
         self._lines.show(False)
 
-    def draw(self, data: MjData, drawn: dict[str, bytes] | None) -> None:
+    def draw(self, data: MjData, drawn: dict[str, dict[str, bytes]] | None) -> None:
         """Draws what is seen now."""
         if drawn is not None:
-            self._lines.set(np.frombuffer(b"".join(drawn.values()), dtype=np.float32).reshape(-1, 2, 3))
+            lines, labels = (b"".join(eye[part] for eye in drawn.values()) for part in ("lines", "labels"))
+            colours = label_colours(np.frombuffer(labels, dtype=np.int64))
+            self._lines.set(np.frombuffer(lines, dtype=np.float32).reshape(-1, 2, 3), np.repeat(colours[:, None], 2, axis=1))
 
     def switch(self) -> None:
         """Shows or hides them."""

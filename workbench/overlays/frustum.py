@@ -13,6 +13,7 @@ from workbench.overlays.overlay import Overlay
 
 SCALE = 0.6
 """How long the pyramid is drawn [m]."""
+COLOUR = (91, 127, 166)
 
 
 class Frustum(Overlay):
@@ -32,6 +33,8 @@ class Frustum(Overlay):
         self.fields: dict[str, tuple[float, float]] = {}
         """How wide and how high each eye sees [rad]."""
         self._handles: dict[str, Any] = {}
+        self._heads = [geom for site in self.sites.values() if (geom := _head(model, site)) is not None]
+        self._sizes = model.geom_rbound
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
         """Moves them with the eyes, whose x points forward and z up; a frustum's z points forward and y down."""
@@ -41,7 +44,15 @@ class Frustum(Overlay):
                 self.fields[name] = field[0], field[1]
                 aspect = math.tan(field[0] / 2) / math.tan(field[1] / 2)
                 self._handles[name] = self._server.scene.add_camera_frustum(
-                    f"/overlays/frustum/{number}", fov=field[1], aspect=aspect, scale=SCALE, color=(30, 110, 200), visible=self.visible
+                    f"/overlays/frustum/{number}",
+                    fov=field[1],
+                    aspect=aspect,
+                    scale=SCALE,
+                    thickness=1.2,
+                    thickness_units="screen",
+                    color=COLOUR,
+                    cast_shadow=False,
+                    visible=self.visible,
                 )
             if name in self._handles:
                 forward, left, up = data.site_xmat[site].reshape(3, 3).T
@@ -49,7 +60,31 @@ class Frustum(Overlay):
                 mujoco.mju_mat2Quat(quaternion, np.stack((-left, -up, forward), axis=1).flatten())
                 self._handles[name].wxyz, self._handles[name].position = quaternion, np.array(data.site_xpos[site])
 
+    def eye(self, data: MjData) -> dict[str, Any] | None:
+        """Returns where the first eye is, where it looks, and how high it sees [rad]; None where there is none."""
+        name, site = next(iter(self.sites.items()), ("", -1))
+        if site < 0 or name not in self.fields:
+            return None
+        axes = data.site_xmat[site].reshape(3, 3)
+        told = {"place": data.site_xpos[site], "forward": axes[:, 0], "up": axes[:, 2]}
+        return {**{key: value.round(5).tolist() for key, value in told.items()}, "fov": self.fields[name][1]}
+
+    def heads(self, data: MjData) -> list[list[float]]:
+        """Returns the spheres around the heads that carry eyes, which no label is to cover: x, y, z, radius [m]."""
+        return [[*data.geom_xpos[geom].round(3).tolist(), round(float(self._sizes[geom]), 3)] for geom in self._heads]
+
     def switch(self) -> None:
         """Shows or hides them."""
         for handle in self._handles.values():
             handle.visible = self.visible
+
+
+def _head(model: MjModel, site: int) -> int | None:
+    """Returns the largest geom of the part that carries an eye, or of the nearest part above it that is seen; None if there is none."""
+    body = int(model.site_bodyid[site]) if site >= 0 else 0
+    while body > 0:
+        own = np.flatnonzero((model.geom_bodyid == body) & (model.geom_rgba[:, 3] > 0))
+        if own.size:
+            return int(own[np.argmax(model.geom_rbound[own])])
+        body = int(model.body_parentid[body])
+    return None

@@ -36,7 +36,7 @@ class Overlay(ABC):
 
 
 class Lines:
-    """Line segments in the scene, drawn anew only where they are others.
+    """Line segments in the scene, sent again only where they have changed.
 
     Args:
         server: Viser's server.
@@ -51,20 +51,28 @@ class Lines:
         self._last = b""
         self._visible = True
 
-    def set(self, points: Any) -> None:
-        """Draws these lines, `(n, 2, 3)` 4-byte numbers [m], in place of those before."""
-        data = points.tobytes()
+    def set(self, points: Any, colours: Any = None) -> None:
+        """Draws these lines in place of those before.
+
+        Args:
+            points: `(n, 2, 3)`, 4-byte numbers [m].
+            colours: Those of their ends, `(n, 2, 3)`, 0 to 255; None for the same for all.
+        """
+        data = points.tobytes() + (b"" if colours is None else colours.tobytes())
         if data == self._last:
             return
         self._last = data
         if self._handle is None and len(points):
+            colors = self._colour if colours is None else colours
             self._handle = self._server.scene.add_line_segments(
-                self._name, points=points, colors=self._colour, line_width=self._width, visible=self._visible
+                self._name, points=points, colors=colors, line_width=self._width, visible=self._visible
             )
         elif self._handle is not None:
             self._handle.visible = self._visible and len(points) > 0
             if len(points):
                 self._handle.points = points
+                if colours is not None:
+                    self._handle.colors = colours
 
     def show(self, visible: bool) -> None:
         """Shows or hides them."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
-from dataclasses import asdict
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -22,23 +21,19 @@ from actr3d.running.printed import BuiltOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
-from actr3d.world import Aperture, Floor
-from actr3d.world.sensors.touch import present
 from workbench import protocol as say
-from workbench.compiled import loaded, saved, to_text
-from workbench.curves import Curves
+from workbench.branches import new_branch, superfluous_branches
+from workbench.compiled import to_text
 from workbench.loader import Listing
-from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor
-from workbench.worker.drawings import Drawings
-from workbench.worker.messages import Facts
+from workbench.worker.foreknown import Foreknown
+from workbench.worker.messages import Branched, Facts
 from workbench.worker.names import Names, names_of
-from workbench.worker.past import Past
-from workbench.worker.surroundings import surroundings
-from workbench.worker.told_helpers import ToldHelpers
+from workbench.worker.shown import Shown
+from workbench.worker.told_helpers import helpers_of
+from workbench.worker.tops import Top
 from workbench.worker.trouble import UNFORESEEN, notice_of, told_of
 from workbench.worker.watch import Touches
-from workbench.worker.widths import widths
 
 BLOCK = 0.008
 """For about so long [s] the run goes on before it looks whether a user has said something."""
@@ -64,8 +59,10 @@ class BuiltRun:
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
         self._failed = False
-        self._past = Past()
+        self._foreknown: Foreknown | None = None
+        """The recorded run that is lived through again."""
         self._simulation: Simulation
+        self._shown: Shown
 
     def play(self) -> None:
         """Builds and runs it, until the worker is to leave.
@@ -75,15 +72,19 @@ class BuiltRun:
         """
         start = self._start
         limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
-        with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
-            helpers = ToldHelpers(self._conductor.link, start.helpers)
+        held = helpers_of(self._conductor.link, start.helpers)
+        with limits, suppress(EndOfRun), shared_random(limits.program_seed), held as helpers, BuiltOutput() as output:
             simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder), helpers)
             output.lead_to(simulation)
-            self._simulation = simulation
+            self._simulation, self._shown = simulation, Shown(simulation)
             self._prepare(limits, parameters, helpers)
+            if simulation.world.bodies:
+                self._conductor.embodied()
             try:
                 self._conductor.link.post(self._facts(limits, parameters))
                 self._conductor.conduct(self)
+                if self._foreknown is not None:
+                    self._conductor.know(self._foreknown)
                 self._conductor.show()
                 self._conductor.link.flush()  # whatever the model does next, that it was built is known
                 while True:
@@ -96,25 +97,27 @@ class BuiltRun:
     def _prepare(self, limits: RunLimits, parameters: dict[str, Any], helpers: HelperTexts) -> None:
         simulation, start = self._simulation, self._start
         simulation.traced()
-        simulation._journal.keeper = self._past.keep
         if start.record is not None:
             facts: dict[str, Any] = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
             facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
-            facts.update(compiled=to_text(saved(simulation.world.mj_model)), world=surroundings(simulation.world))
+            facts.update(compiled=to_text(self._shown.mj_model), world=self._shown.surroundings)
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
-        if start.commands:
-            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands])
+        if start.recorded is not None:
+            self._foreknown = foreknown = Foreknown(Path(start.recorded), self._shown.kept.states.add)
+            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], foreknown.ticks)
+            ended: dict[str, Any] | None = foreknown.facts.get("ended")
+            if ended is not None and ended.get("by") in ENDINGS:
+                self._end = foreknown.ticks, str(ended["by"])
 
     def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
-        world = surroundings(self._simulation.world)
         return Facts(
             kind="simulation",
             seed=limits.program_seed,
             period=self._simulation.period,
             parameters=to_json(parameters).encode(),
-            world=to_json({**world, "widths": widths(world["apertures"], self._listing.parameters)}).encode(),
-            mj_model=saved(self._simulation.world.mj_model),
+            world=to_json(self._shown.world(self._listing.parameters)).encode(),
+            mj_model=self._shown.mj_model,
         )
 
     def _go_on(self) -> None:
@@ -128,6 +131,8 @@ class BuiltRun:
             if over is not None:
                 self._conclude()
         except UNFORESEEN as error:
+            if conductor.link.left:
+                raise  # in a copy of the process that the model has made, which ends with it
             conductor.link.post(notice_of(error))
             self._tell_failure(told_of(error))
             conductor.end("failed", told_of(error))
@@ -158,17 +163,6 @@ class BuiltRun:
         if conductor.watch.goal is not None:
             most = min(most, -(-(conductor.watch.goal - self.clock) // self.period))
         return max(1, most)
-
-    @cached_property
-    def _curves(self) -> Curves:
-        """What makes curves of its past, once somebody asks; from a copy of the scene."""
-        model = loaded(saved(self._simulation.world.mj_model))
-        return Curves(model, surroundings(self._simulation.world))
-
-    @cached_property
-    def _drawings(self) -> Drawings:
-        """What tells what overlays show, once somebody looks."""
-        return Drawings(self._simulation, self._past)
 
     # -- what the conductor asks
 
@@ -205,34 +199,67 @@ class BuiltRun:
             case say.Seek():
                 self._seek(round(command.time * MICROSECONDS / self.period))
             case say.Aperture():
-                self._command("aperture", (command.width,), {"name": command.name}, None)
+                self._command("aperture", (command.width,), {"name": command.name}, None, drop=command.drop)
             case say.Say():
-                self._command(command.word, command.values, command.named, command.body)
+                self._command(command.word, command.values, command.named, command.body, drop=command.drop)
             case say.Set():
                 parameter = self._listing.parameter(command.name)
                 if parameter.live is None:
                     raise SimulationError(f"'{command.name}' cannot change while a run goes on; begin again with the new value")
                 parameter.check(command.value)
                 live = parameter.live
-                self._command(live.word, (*live.before, command.value), {}, live.body)
+                self._command(live.word, (*live.before, command.value), {}, live.body, drop=command.drop)
             case _:
                 raise SimulationError(f"'{command.type}' is nothing that is said to a run")
 
-    def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None) -> None:
+    def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None, *, drop: bool) -> None:
         if self._conductor.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or begin again")
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
-        self._simulation.command(word, *values, body=body, **named)
-        self._past.cut(self._simulation.ticks)
-        self._drawings.cut(self._simulation.ticks)
+        ahead = self.furthest > self.clock
+        at, until = seconds(self.clock), seconds(self.furthest)
+        relived = Path(self._start.recorded) if self._start.recorded is not None and self._conductor.relives else None
+        branch = self._keep_branch(at, until, drop=drop) if ahead and relived is None else None
+        try:
+            self._simulation.command(word, *values, body=body, **named)
+        except BaseException:
+            if branch is not None:
+                branch.unlink(missing_ok=True)  # nothing has changed
+            raise
+        kept = branch or (relived if ahead else None)  # what is lived through again is kept by its own recording
+        if kept is not None:
+            self._conductor.link.post(Branched(recording=kept.stem, at=at, until=until))
+        if branch is not None:
+            for old in superfluous_branches(Path(self._start.record or "")):
+                old.unlink(missing_ok=True)
         if self._failed:
             self._tell_failure(None)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
                 self._recording.fact("ended", None)
-        self._conductor.goes_another_way(before)
+        self._conductor.goes_another_way(before, ahead=ahead)
+
+    def _keep_branch(self, at: float, until: float, *, drop: bool) -> Path | None:
+        """Keeps the run as recorded so far, before something is changed in its past. Returns the file; None where it may be lost.
+
+        Raises:
+            SimulationError: If it cannot be kept, and may not be lost.
+        """
+        ahead = f"what lies ahead, from {at:g} to {until:g} s,"
+        if self._recording is None or self._start.record is None:
+            if drop:
+                return None
+            raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
+        path = new_branch(Path(self._start.record), at)
+        try:
+            self._recording.copy_to(path)
+        except Actr3dError as error:
+            if drop:
+                return None
+            raise SimulationError(f"nothing was changed, for {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
+        return path
 
     def _tell_failure(self, text: str | None) -> None:
         """Records what the model raised; None where the run goes another way now."""
@@ -248,37 +275,32 @@ class BuiltRun:
         self._conclude()
         self._conductor.end("ended", ENDINGS[self._end[1]])
 
+    def forget_ahead(self) -> None:
+        """Forgets that it has been further than it is now."""
+        self._simulation.forget_ahead()
+        self._shown.kept.cut(self._simulation.ticks)
+        if self._end is not None and self._end[0] > self._simulation.ticks:
+            self._end = None
+
     def answer(self, question: Any) -> Any:
         """Returns what is asked.
 
         Raises:
             Exception: Says why it cannot be told.
         """
-        if isinstance(question, say.Curves):
-            return self._told_curves(question)
-        return answer(question, self.trace, list(self._simulation.minds.values()), self._simulation.world)
-
-    def _told_curves(self, question: say.Curves) -> dict[str, Any]:
-        first = -(-microseconds(question.first) // self.period)
-        moments = ((seconds(tick * self.period), state) for tick, state in self._past.since(first, question.most))
-        return self._curves.told(moments, question.names)
+        return self._shown.answer(question)
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
-        """Returns the physics' state, and how wide apertures are."""
-        world = self._simulation.world
-        names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
-        return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+        """Returns the state of the physics, and how wide apertures are."""
+        return self._shown.scene()
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns what overlays show of the present, by kind; nothing of what cannot be told, as after a physics that diverged."""
-        with suppress(Actr3dError):
-            return self._drawings.told(kinds)
-        return {}
+        """Returns what overlays show of the present, by kind."""
+        return self._shown.drawn(kinds)
 
     def result(self) -> dict[str, Any] | None:
         """Returns what was measured of the run, if anything was."""
-        result = self._simulation.result()
-        return None if result is None else asdict(result)
+        return self._shown.result()
 
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts of all minds are like."""
@@ -289,15 +311,11 @@ class BuiltRun:
 
     def names(self) -> Names:
         """Returns at what it can be stopped."""
-        return names_of(self._simulation.minds.values(), self._simulation.world.bodies)
+        return names_of(map(Top, self._simulation.minds.values()), self._simulation.world.bodies)
 
     def touches(self) -> Touches:
         """Returns what touches a body now, the ground left out."""
-        world = self._simulation.world
-        ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
-        return frozenset(
-            (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
-        )
+        return self._shown.touches()
 
 
 def check(source: str, filename: str, folder: Path) -> dict[str, Any]:

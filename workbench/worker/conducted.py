@@ -40,6 +40,10 @@ class Conducted(Protocol):
         """
         ...
 
+    def forget_ahead(self) -> None:
+        """Forgets that it has been further than it is now."""
+        ...
+
     def answer(self, question: Any) -> Any:
         """Returns what is asked, as plain values.
 

@@ -17,6 +17,7 @@ from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.worker.bounds import bounded_json, event_json
 from workbench.worker.conducted import Conducted
+from workbench.worker.foreknown import Foreknown, difference_notice
 from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.names import check_until, lost_breakpoints
@@ -56,6 +57,10 @@ class Conductor:
         """How many events the server has been given."""
         self._last: State | None = None
         """The state that was shown last."""
+        self._foreknown: Foreknown | None = None
+        """The recorded run that is lived through again."""
+        self._compared = 0
+        """So many events have been compared with the recorded ones."""
         self._telling = threading.Lock()
         """Held by the thread that gives events to the server."""
         self._seen = 0
@@ -67,9 +72,33 @@ class Conductor:
     def conduct(self, run: Conducted) -> None:
         """Takes the run that is to be conducted; its names are known by now."""
         self.run = run
+        self.link.events = self._count
         if self.watch.breakpoints:  # else the names need not be looked for
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.link.post(lost)
+
+    def know(self, foreknown: Foreknown) -> None:
+        """Shows all that a recorded run did, before this run, which lives through it again, has come to it."""
+        with self._telling:
+            self._foreknown = foreknown
+            self._sent = foreknown.count
+            self.link.tell(foreknown.first, foreknown.events)
+            foreknown.events = []
+
+    @property
+    def relives(self) -> bool:
+        """Whether the run lives through a recorded one again, and nothing has been changed in it."""
+        return self._foreknown is not None
+
+    def embodied(self) -> None:
+        """Takes note that the run has a body: it goes at real time, unless a speed was chosen."""
+        if self.link.start.real_time:
+            self.pacer.set(1.0)
+
+    def _count(self) -> int:
+        """Returns how many events there are."""
+        trace = self.run.trace
+        return 0 if trace is None else len(trace)
 
     # -- what the run asks
 
@@ -117,7 +146,9 @@ class Conductor:
 
     def end(self, status: Status, reason: str) -> None:
         """Takes note that the run is over, and tells what it was to go on for and has not come."""
-        missed = self.watch.missed if status == "ended" else ""
+        trace = self.run.trace
+        news = trace.since(self._seen) if trace is not None and self.watch.of_events else []
+        missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # it may come with the very end
         self.status, self.reason = status, whole(f"{reason}; {missed}" if missed else reason)
         self._halt()
 
@@ -128,11 +159,17 @@ class Conductor:
         self.status, self.reason = "paused", "went to this time"
         self._halt()
 
-    def goes_another_way(self, events: int) -> None:
-        """Takes note that from an event on all will be different from what was known."""
+    def goes_another_way(self, events: int, *, ahead: bool) -> None:
+        """Tells the server that what was known of the run after the present moment holds no more.
+
+        Args:
+            events: How many events there were until this moment.
+            ahead: Whether the run had been beyond this moment; perhaps without any event there.
+        """
         with self._telling:
-            if events < self._sent:
-                self._sent = events
+            self._foreknown = None
+            if ahead or events < self._sent:
+                self._sent = min(self._sent, events)
                 self.link.cut(Cut(events=events), events)
 
     # -- what users say
@@ -192,7 +229,8 @@ class Conductor:
         wanted = said.model_dump(exclude={"type"}, exclude_none=True)
         if not wanted.keys() - {"pattern"}:
             raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
-        check_until(said, self.run.names())
+        start, names = self.link.start, self.run.names()
+        check_until(said, names, (start.source, *(text for _, text in start.helpers.values())), start.folder)
         goal = None if said.time is None else round(said.time * MICROSECONDS)
         if goal is not None and goal <= self.run.clock:
             raise Actr3dError(f"it is {seconds(self.run.clock):g} s already; a click on the timeline goes back")
@@ -201,11 +239,14 @@ class Conductor:
             goal=goal,
             goal_reason=f"at {said.time} s",
             production=said.production,
-            buffer=said.buffer,
+            buffer=names.buffer(said.buffer) if said.buffer else None,
+            called=said.buffer or "",
             pattern=said.pattern or "",
             contact=said.contact,
             touching=touching,
         )
+        self.reason = self.watch.pending
+        self.show()
 
     def _go(self, **wanted: Any) -> None:
         if self.status in ("ended", "failed"):
@@ -278,9 +319,27 @@ class Conductor:
     def _tell(self, state: State, trace: Trace | None) -> None:
         """Gives the server a state and the events up to it that it does not have."""
         count = state.events
+        on_its_thread = threading.current_thread() is threading.main_thread()  # else the run may be in the middle of something
+        if self._foreknown is not None and trace is not None and on_its_thread:
+            state = self._compare(self._foreknown, state, trace)
         news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
         self.link.show(state, self._sent, [event_json(event) for event in news])
         self._sent, self._last = max(self._sent, count), state
+
+    def _compare(self, foreknown: Foreknown, state: State, trace: Trace) -> State:
+        """Compares what has happened with the recording; returns the state, which tells of nothing ahead where they differ."""
+        events = trace.since(self._compared)[: max(0, state.events - self._compared)]
+        found = foreknown.difference(self._compared, events)
+        is_over = state.status in ("ended", "failed")
+        if found is None and not (is_over and state.events < foreknown.count):
+            self._compared = max(self._compared, state.events)
+            return state
+        self._foreknown = None
+        self.run.forget_ahead()
+        self._sent = state.events if found is None else found
+        self.link.cut(Cut(events=self._sent), self._sent)
+        self.link.post(difference_notice(state.time, None if found is None else events[found - self._compared]))
+        return msgspec.structs.replace(state, furthest=state.time)
 
     def _halt(self) -> None:
         self.pacer.halt()

@@ -24,16 +24,17 @@ def points_of(view: View) -> Places:
     return deep[..., None] * (u[..., None] * right + v[..., None] * up + forward)
 
 
-def contours_of(view: View) -> Places:
-    """Returns the lines that the edges of objects make from row to row, and where objects begin and end, `(n, 2, 3)`.
+def contours_of(view: View) -> tuple[Places, list[int]]:
+    """Returns the lines that the edges of objects make from row to row, and where objects begin and end, and the label of each.
 
-    They are in the upright frame of the view, with the eye as origin [m].
+    The lines `(n, 2, 3)` are in the upright frame of the view, with the eye as origin [m].
     """
     points = points_of(view)
     by_row: dict[int, dict[int, list[int]]] = {}
     for number, (row, label) in enumerate(zip(view.extents["row"].tolist(), view.extents["label"].tolist(), strict=True)):
         by_row.setdefault(row, {}).setdefault(label, []).append(number)
     lines: list[Places] = []
+    labels: list[int] = []
     empty: dict[int, list[int]] = {}
     for row in range(-1, view.rows):
         above, below = by_row.get(row, empty), by_row.get(row + 1, empty)
@@ -43,7 +44,8 @@ def contours_of(view: View) -> Places:
                 lines += [points[[one, other], side] for one, other in zip(upper, lower, strict=True) for side in (0, 1)]
             else:  # where it begins, ends or parts, nobody knows which edge goes on in which
                 lines += [points[number] for number in (*upper, *lower)]
-    return np.array(lines).reshape(-1, 2, 3)
+            labels += [label] * (len(lines) - len(labels))
+    return np.array(lines).reshape(-1, 2, 3), labels
 
 
 def into_world(points: Places, stand: Stand) -> Places:

@@ -8,13 +8,15 @@ import os
 import signal
 import socket
 import sys
+import traceback
 import warnings
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from actr3d.actr.limits import EndOfRun
 from actr3d.actr.reading import compile_source
+from actr3d.running.declared import check_build
 from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.conductor import Conductor
@@ -38,6 +40,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     watch_memory(memory)
     link = Link(wire)
     os.register_at_fork(after_in_child=link.leave)
+    os.register_at_fork(after_in_child=_PAST_PRINT.open)
     conductor = Conductor(link)
     warnings.simplefilter("default")
     warnings.showwarning = _told_to(link)
@@ -46,23 +49,39 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     except EndOfRun:
         pass
     except BaseException as error:  # noqa: BLE001 - SystemExit, too, is how a model ended
+        if link.left:
+            _leave_copy(error)
         link.post(notice_of(error))
     link.post(Over())
     link.flush()
     with suppress(OSError):
         wire.shutdown(socket.SHUT_WR)
-    sys.stderr.flush()
+    with suppress(OSError, ValueError):
+        sys.stderr.flush()
     os._exit(0)  # threads that the model has left do not keep the process
+
+
+def _leave_copy(error: BaseException) -> NoReturn:
+    """Ends a copy of the process that the model has made, as Python would."""
+    code = error.code if isinstance(error, SystemExit) else 1
+    with suppress(OSError, ValueError):
+        sys.stdout.flush()
+        if not isinstance(error, SystemExit):
+            traceback.print_exception(error)
+        elif code is not None and not isinstance(code, int):
+            sys.stderr.write(f"{code}\n")
+    os._exit(0 if code is None else code & 0xFF if isinstance(code, int) else 1)
 
 
 def _run(link: Link, conductor: Conductor) -> None:
     start = link.start
-    if start.job in ("replay", "page"):
-        from workbench.worker.recorded import make_page, replay_again
+    if start.job in ("replay", "make", "list"):
+        from workbench.worker import recorded
 
-        link.post(Reply(id=0, result=to_json((replay_again if start.job == "replay" else make_page)(link)).encode()))
+        {"replay": recorded.replay_again, "make": recorded.make, "list": recorded.summarize}[start.job](link)
         return
     compile_source(start.source, start.path)  # what is wrong with the text is told before anything else
+    check_build(start.source, start.path)
     listing = listing_of(start.source, start.path)
     if start.job == "check":
         from workbench.worker.built import check
@@ -93,19 +112,49 @@ def _settle(output: int) -> None:
         os.close(output)
     sys.stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - it stays
     # What the model prints is told as events of its run; this is for what is written past them.
-    sys.stdout = sys.__stdout__ = io.TextIOWrapper(_Nothing(), encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
+    sys.stdout = sys.__stdout__ = io.TextIOWrapper(_PAST_PRINT, encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
     sys.stderr = sys.__stderr__ = io.TextIOWrapper(io.FileIO(2, "w", closefd=False), encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
     faulthandler.enable(file=2)
 
 
-class _Nothing(io.RawIOBase):
-    """Takes bytes, and forgets them."""
+class _PastPrint(io.RawIOBase):
+    """Takes what the model prints, which is told as events already, and forgets it; in copies of the process, whose events nobody
+    hears, it is told as what is printed past them, a line at a time.
+    """
+
+    def __init__(self) -> None:
+        self._rest: bytes | None = None
+        """The beginning of a line; None where nothing is told."""
+
+    def open(self) -> None:
+        """Tells what is printed from now on."""
+        self._rest = b""
 
     def writable(self) -> bool:
         return True
 
     def write(self, data: Any, /) -> int:
+        if self._rest is not None:
+            lines, end, rest = bytes(data).rpartition(b"\n")
+            if end:
+                self._tell(self._rest + lines + end)
+                self._rest = rest
+            else:
+                self._rest += rest
         return len(data)
+
+    def flush(self) -> None:
+        if self._rest:
+            rest, self._rest = self._rest, b""
+            self._tell(rest + b"\n")  # it is told as a line, whatever comes after it
+
+    def _tell(self, data: bytes) -> None:
+        with suppress(OSError):  # the model may have closed it
+            while data:
+                data = data[os.write(1, data) :]
+
+
+_PAST_PRINT = _PastPrint()
 
 
 def _told_to(link: Link) -> Any:

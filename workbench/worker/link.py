@@ -10,8 +10,12 @@ import threading
 import traceback
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from time import perf_counter
 from types import FrameType
+from typing import NoReturn
+
+import msgspec
 
 from workbench.worker.messages import (
     LENGTH,
@@ -21,6 +25,7 @@ from workbench.worker.messages import (
     At,
     Do,
     Draw,
+    Facts,
     Leave,
     Message,
     News,
@@ -33,6 +38,8 @@ from workbench.worker.messages import (
     whole,
 )
 
+WIRE_LOST = 88
+"""With this exit code a worker ends whose model has closed the wire to the server, or put something else in its place."""
 MOST_EVENTS = 50_000
 """So many events may wait to be sent; beyond that the oldest are left out, and the numbers tell so."""
 MOST_BYTES = 50_000_000
@@ -65,10 +72,13 @@ class Link:
         self._something = threading.Condition()
         self._sending = False
         self._main = threading.main_thread().ident
+        self.events: Callable[[], int] | None = None
+        """Returns how many events the run has had, so that notices can say after which one they came."""
         self.busy: Callable[[], None] | None = None
         """Shows what has happened in a run that says nothing of itself."""
-        self._left = False
+        self.left = False
         """Whether this is a copy of the process, which has nothing to do with the server."""
+        self._identity = _identity(wire)
         self.start: Start = self._read_start()
         threading.Thread(target=self._read, name="reader", daemon=True).start()
         threading.Thread(target=self._write, name="writer", daemon=True).start()
@@ -77,8 +87,8 @@ class Link:
 
     def receive(self, timeout: float | None = None) -> Do | Draw | Leave | None:
         """Returns the next command; waits for it for so long [s], or for ever. None where there is none by then."""
-        if self._left:
-            os._exit(0)  # a copy of the process that the model has made: the run goes on in one only
+        if self.left:
+            _end_copy()
         try:
             return self.inbox.get(timeout=timeout) if timeout is None or timeout > 0 else self.inbox.get_nowait()
         except queue.Empty:
@@ -97,6 +107,7 @@ class Link:
     def _exactly(self, size: int) -> bytes | None:
         data = bytearray()
         while len(data) < size:
+            self._check_wire()
             part = self._wire.recv(size - len(data))
             if not part:
                 return None
@@ -126,14 +137,21 @@ class Link:
         own = [line for line in lines if line.filename == self.start.path or line.filename.startswith(folder)]
         return At(file=whole(own[-1].filename), line=own[-1].lineno, function=whole(own[-1].name)) if own else At(file=None, line=None)
 
+    def _check_wire(self) -> None:
+        """Ends the process where the model has closed the wire: what the model has opened meanwhile may have its number."""
+        if _identity(self._wire) != self._identity:
+            os._exit(WIRE_LOST)
+
     # -- what goes
 
     def post(self, message: Message) -> None:
         """Sends a message, after all that came before it; but no notice where very many wait already."""
+        if isinstance(message, Notice) and self.events is not None:
+            message = msgspec.structs.replace(message, events=self.events())
         with self._something:
             if isinstance(message, Notice) and len(self._messages) >= MOST_TOLD and message.level != "error":
                 return
-            if isinstance(message, (Reply, At)) and self._state is not None:
+            if isinstance(message, (Reply, At, Facts)) and self._state is not None:
                 self._flush_events()
                 self._messages.append(self._state)
                 self._state = None
@@ -143,15 +161,24 @@ class Link:
     def show(self, state: State, first: int, events: Sequence[bytes]) -> None:
         """Sends new events, whose first has this number, and the newest state, which takes the place of one that still waits."""
         with self._something:
-            if not self._events:
-                self._first = first
-            self._events.extend(events)
-            self._size += sum(map(len, events))
-            while len(self._events) > MOST_EVENTS or self._size > MOST_BYTES:
-                self._size -= len(self._events.popleft())
-                self._first += 1
+            self._add(first, events)
             self._state = state
             self._something.notify()
+
+    def tell(self, first: int, events: Sequence[bytes]) -> None:
+        """Sends new events, whose first has this number, where there is no new state."""
+        with self._something:
+            self._add(first, events)
+            self._something.notify()
+
+    def _add(self, first: int, events: Sequence[bytes]) -> None:
+        if not self._events:
+            self._first = first
+        self._events.extend(events)
+        self._size += sum(map(len, events))
+        while len(self._events) > MOST_EVENTS or self._size > MOST_BYTES:
+            self._size -= len(self._events.popleft())
+            self._first += 1
 
     def cut(self, message: Message, events: int) -> None:
         """Takes back events from a number on, as the message tells."""
@@ -169,14 +196,18 @@ class Link:
 
     def leave(self) -> None:
         """Lets go of the wire, in a copy of the process that the model has made."""
-        self._left = True
-        self._something = threading.Condition()  # another thread of the model's process may have held it
-        os.close(self._wire.detach())
+        if not self.left:  # else it is a copy of a copy
+            self.left = True
+            self._something = threading.Condition()  # another thread of the model's process may have held it
+            ours = _identity(self._wire) == self._identity
+            number = self._wire.detach()
+            if ours:
+                os.close(number)
 
     def flush(self, timeout: float = 2.0) -> None:
         """Waits until everything is sent, but not for ever."""
-        if self._left:
-            os._exit(0)
+        if self.left:
+            _end_copy()
         end = perf_counter() + timeout
         with self._something:
             while (self._messages or self._events or self._state is not None or self._sending) and perf_counter() < end:
@@ -206,9 +237,26 @@ class Link:
                 self._sending = True
             try:
                 for message in messages:
+                    self._check_wire()
                     self._wire.sendall(_bounded(message))
             except OSError:
                 os._exit(0)
+
+
+def _end_copy() -> NoReturn:
+    """Ends a copy of the process that the model has made: the run goes on in one only."""
+    with suppress(OSError, ValueError):
+        sys.stdout.flush()
+    os._exit(0)
+
+
+def _identity(wire: socket.socket) -> tuple[int, int] | None:
+    """Returns what tells an open file from others; None where it is closed."""
+    try:
+        status = os.fstat(wire.fileno())
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino
 
 
 def _bounded(message: Message) -> bytes:

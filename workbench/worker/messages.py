@@ -33,23 +33,31 @@ def digest_of(text: str) -> str:
 class Start(Message, frozen=True, kw_only=True):
     """Begins a run; the first message."""
 
-    job: Literal["run", "check", "replay", "page"] = "run"
-    """`check` loads the model, builds what it describes and runs nothing; `replay` runs a recording again and compares; `page` makes
-    one HTML file of it."""
-    path: str
-    """The model; or the recording."""
+    job: Literal["run", "check", "replay", "make", "list"] = "run"
+    """`check` loads the model, builds what it describes and runs nothing; `replay` runs a recording again and compares; `make` writes
+    a file that is made of recordings; `list` reads summaries of recordings."""
+    path: str = ""
+    """The model; or the recording that is run again."""
     source: str = ""
     folder: str = ""
+    recordings: tuple[str, ...] = ()
+    """The recordings that are read."""
+    form: str = ""
+    """What is made of them: one of `workbench.forms`."""
     to: str = ""
-    """The file that is to be made."""
+    """The file that is made."""
     settings: dict[str, Any] = {}
     seed: int | str | None = None
     record: str | None = None
     commands: list[tuple[int, dict[str, Any]]] = []
     """What users did in an earlier run, to be done again: after which tick, and what (`Command.to_data`)."""
+    recorded: str | None = None
+    """The recording of the earlier run that is lived through again; None for a new run."""
     helpers: dict[str, tuple[str, str]] = {}
     """The file and text of each helper module of an earlier run, by name; others are read from the folder."""
     factor: float | None = None
+    real_time: bool = False
+    """Whether a run that has a body goes at real time, whatever `factor` is: no speed has been chosen yet."""
     breakpoints: tuple[str, ...] = ()
     run: bool = False
     attempt: int = 0
@@ -84,7 +92,7 @@ class Where(Message, frozen=True, kw_only=True):
 
 
 class Facts(Message, frozen=True, kw_only=True):
-    """What is known of a run once it is built."""
+    """What is known of a run once it is built; of a program once more whenever another one of its simulations is shown."""
 
     kind: Literal["simulation", "program"]
     seed: int | str
@@ -141,6 +149,17 @@ class Cut(Message, frozen=True, kw_only=True):
     events: int
 
 
+class Branched(Message, frozen=True, kw_only=True):
+    """The run goes another way from a moment on; how it had gone on is kept as a recording of its own."""
+
+    recording: str
+    """Its name."""
+    at: float
+    """The moment [s]."""
+    until: float
+    """How far the run had come [s]."""
+
+
 class Loaded(Message, frozen=True, kw_only=True):
     """The model has loaded a helper module."""
 
@@ -164,6 +183,8 @@ class Notice(Message, frozen=True, kw_only=True):
     file: str | None = None
     line: int | None = None
     detail: str = ""
+    events: int | None = None
+    """How many events there were when it was told; None where that is not known."""
 
 
 def notice(
@@ -195,7 +216,7 @@ class Over(Message, frozen=True, kw_only=True):
 
 
 ToWorker = Start | Do | Draw | Leave | Where
-FromWorker = Facts | State | News | Cut | Loaded | Share | Notice | Reply | At | Over
+FromWorker = Facts | State | News | Cut | Branched | Loaded | Share | Notice | Reply | At | Over
 
 _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)

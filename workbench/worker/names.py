@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from actr3d.actr.buffer import Buffer
-from actr3d.actr.model import Model
-from actr3d.actr.pattern import parse
 from actr3d.actr.production_system import ProductionSystem
 from actr3d.actr.sources import syntax_tree
 from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import Listing
 from workbench.protocol import Until
 from workbench.worker.messages import Notice, notice
+from workbench.worker.slots import check_slots
+from workbench.worker.tops import Top
 
 MOST_TOLD = 12
 """So many names are told of where one is not known."""
@@ -30,9 +30,24 @@ class Names:
     buffers: frozenset[str] = frozenset()
     """Their paths."""
     bodies: frozenset[str] = frozenset()
+    modules: frozenset[str] = frozenset()
+    """The Python modules from which their parts come."""
     growing: frozenset[str] = frozenset()
     """Of what there may be more later, `production` or `buffer`, as of a program, which makes its models as it goes on: then only a
     name that looks misspelt is refused."""
+
+    def buffer(self, name: str) -> str:
+        """Returns the path of the buffer that is called so: by its path, or by the name that its agent gives it.
+
+        Raises:
+            Actr3dError: If there is none, or there are several.
+        """
+        found = [name] if name in self.buffers else sorted(path for path in self.buffers if path.endswith(f".{name}"))
+        if len(found) > 1:
+            raise Actr3dError(f"there are several buffers '{name}': {', '.join(found[:MOST_TOLD])}; name one of these")
+        if not found:
+            self.check("buffer", name)
+        return found[0] if found else name
 
     def check(self, what: str, name: str) -> None:
         """Checks that there is a thing of this name, or may be.
@@ -44,11 +59,12 @@ class Names:
         Raises:
             Actr3dError: If there is none.
         """
+        short = {path.rpartition(".")[2] for path in self.buffers} if what == "buffer" and "." not in name else set[str]()
         known = {"production": self.productions, "buffer": self.buffers, "body": self.bodies}[what]
         likely = {"production": _learned, "buffer": _numbered}.get(what)
         if name in known or (likely is not None and likely(name, known)):
             return
-        near = did_you_mean(name, known)
+        near = did_you_mean(name, short) or did_you_mean(name, known)
         if near or what not in self.growing:
             raise Actr3dError(f"no {what} '{name}'{near or _there_are(known)}")
 
@@ -62,18 +78,26 @@ class Names:
             self.check("production", name)
 
 
-def check_until(said: Until, names: Names) -> None:
+def check_until(said: Until, names: Names, sources: Iterable[str], folder: str = "") -> None:
     """Checks that there is what a run is to go on for, before it goes on.
 
+    Args:
+        said: Until when.
+        names: What there is.
+        sources: The texts of the model.
+        folder: Where its helper modules are.
+
     Raises:
-        Actr3dError: If there is no such thing, or the pattern cannot be read.
+        Actr3dError: If there is no such thing, or the pattern cannot be read, or names a slot that no chunk can have.
     """
-    for what, name in (("production", said.production), ("buffer", said.buffer), ("body", said.contact)):
+    if said.buffer:
+        names.buffer(said.buffer)
+    for what, name in (("production", said.production), ("body", said.contact)):
         if what == "body" and name is not None and not names.bodies:
             raise Actr3dError("there is no body in this run that could touch anything")
         if name:
             names.check(what, name)
-    parse(said.pattern or "")
+    check_slots(said.pattern or "", sources, names.modules, folder)
 
 
 def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notice]:
@@ -102,38 +126,41 @@ def _there_are(known: Iterable[str]) -> str:
     return f"; there are: {', '.join(names[:MOST_TOLD]) or 'none'}{more}"
 
 
-def names_of(models: Iterable[Model], bodies: Iterable[str] = ()) -> Names:
+def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
     """Returns what there is in models.
 
     Args:
-        models: The top models, or the minds.
+        tops: The top models, or the agents of a simulation.
         bodies: The bodies.
     """
     productions: set[str] = set()
     buffers: set[str] = set()
-    for part in (part for model in models for part in model._tree()):
+    modules: set[str] = set()
+    for name, part in (named for top in tops for named in top.parts()):
+        modules.add(type(part).__module__)
         if isinstance(part, Buffer):
-            buffers.add(part._path)
+            buffers.add(name)
         elif isinstance(part, ProductionSystem):
             productions.update(production.name for production in part.__dict__.get("_productions", ()))
-    return Names(productions=frozenset(productions), buffers=frozenset(buffers), bodies=frozenset(bodies))
+    return Names(productions=frozenset(productions), buffers=frozenset(buffers), bodies=frozenset(bodies), modules=frozenset(modules))
 
 
-def names_of_program(models: Iterable[Model], listing: Listing, source: str, folder: Path) -> Names:
+def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: Listing, source: str, folder: Path) -> Names:
     """Returns what there is in a program, as far as it has come.
 
     Args:
-        models: The models that it has made.
+        tops: The models that it has made.
+        bodies: The bodies of the simulation that is shown.
         listing: What its text says of itself.
         source: Its text.
         folder: Where its helper modules are.
     """
-    made = names_of(models)
+    made = names_of(tops, bodies)
     written = {name.rpartition(".")[2] for name in listing.productions}
     productions = made.productions | written
     hidden = not productions or _has_helpers(source, folder)
     growing = frozenset(("production", "buffer") if hidden else ("buffer",))
-    return Names(productions=productions, buffers=made.buffers, growing=growing)
+    return Names(productions=productions, buffers=made.buffers, bodies=made.bodies, modules=made.modules, growing=growing)
 
 
 def _has_helpers(source: str, folder: Path) -> bool:

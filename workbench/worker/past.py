@@ -1,4 +1,4 @@
-"""What a worker keeps of its run's past: the physics at the ends of ticks, from which curves and the path walked are made."""
+"""What a worker keeps of its run's past: the physics at the ends of ticks, from which curves are made."""
 
 from __future__ import annotations
 
@@ -22,9 +22,13 @@ class Past:
 
     def keep(self, tick: int, world: World) -> None:
         """Takes the end of a tick, or the start of the run (tick 0); what is known already stays."""
+        if tick > self._last[0]:
+            self.add(tick, world.state_bytes())
+
+    def add(self, tick: int, state: bytes) -> None:
+        """Takes the state at the end of a tick; what is known already stays."""
         if tick <= self._last[0]:
             return
-        state = world.state_bytes()
         self._last = tick, state
         if tick % self._every:
             return
@@ -40,26 +44,22 @@ class Past:
             kept = len(self._states) - 1
             self._last = kept * self._every, self._states[kept]
 
-    def since(self, first: int, most: int) -> Iterator[tuple[int, bytes]]:
-        """Yields ticks from one on with their states, evenly spread, no more than so many; the last that is known is among them."""
-        begin = -(-first // self._every)
-        count = max(0, len(self._states) - begin)
-        every = stride(count, most - 1)
-        for number in range(-(-begin // every) * every, len(self._states), every):
-            if number * self._every != self._last[0]:
+    def within(self, first: int, last: int | None, most: int) -> Iterator[tuple[int, bytes]]:
+        """Yields the ticks of a stretch with their states, evenly spread, no more than `most`; the last one is among them.
+
+        Args:
+            first: The first tick of the stretch.
+            last: The last one; None for the furthest that the run has come.
+            most: At least 2.
+        """
+        end = self._last[0] if last is None else min(last, self._last[0])
+        if end < first:
+            return
+        begin, beyond = -(-first // self._every), min(len(self._states), end // self._every + 1)
+        final = self._last if end == self._last[0] else ((beyond - 1) * self._every, self._states[beyond - 1])
+        every = stride(max(0, beyond - begin), most - 1)
+        for number in range(-(-begin // every) * every, beyond, every):
+            if number * self._every != final[0]:
                 yield number * self._every, self._states[number]
-        if self._last[0] >= first:
-            yield self._last
-
-    def at(self, tick: int) -> bytes | None:
-        """Returns the state at the end of a tick, or the nearest one before that is kept; None where it has not been there."""
-        if tick == self._last[0]:
-            return self._last[1]
-        return self._states[tick // self._every] if 0 <= tick < self._last[0] else None
-
-    def up_to(self, first: int, last: int, spacing: int) -> Iterator[tuple[int, bytes]]:
-        """Yields one tick in so many between two, and the last one, with their states."""
-        for tick in (*range(-(-first // spacing) * spacing, last, spacing), last):
-            state = self.at(tick)
-            if state is not None and tick >= first:
-                yield tick, state
+        if final[0] >= first:
+            yield final

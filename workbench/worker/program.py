@@ -1,12 +1,14 @@
-"""A run of a program: models without a world. It goes back by being run again from its start, with the same seed."""
+"""A run of a program, with the simulations that it makes. It goes back by being run again from its start, with the same seed."""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.picture import picture_of
@@ -15,24 +17,30 @@ from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.running.printed import ProgramOutput
-from actr3d.trace import Trace
+from actr3d.simulation import Simulation
+from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
 from workbench import protocol as say
-from workbench.curves import NOTHING
+from workbench.curves import joined
 from workbench.loader import Listing
 from workbench.worker.answers import answer
 from workbench.worker.conductor import Conductor, Leaving
+from workbench.worker.foreknown import Foreknown
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, names_of_program
 from workbench.worker.recorded_once import RecordedOnce
-from workbench.worker.told_helpers import ToldHelpers
+from workbench.worker.shown import Kept, Shown
+from workbench.worker.told_helpers import helpers_of
+from workbench.worker.tops import Top
 from workbench.worker.trouble import UNFORESEEN, notice_of, told_of
 from workbench.worker.watch import Touches
 
 PERIOD = 10_000
 """What a step is [us]: as long as a tick of a simulation."""
 MOST_RUNS = 8
-"""Of so many of the models that a program makes one after the other the latest parts are shown."""
+"""So many of the models that a program makes one after the other are kept and shown, the latest ones."""
+MOST_SIMULATIONS = 4
+"""Of so many of its simulations the past is kept."""
 
 
 class _Again(EndOfRun):
@@ -60,17 +68,32 @@ class ProgramRun:
         self._rush: int | None = None
         """Up to where it goes without being shown or held [us]."""
         self._again = False
+        self._introduced = False
+        """Whether the server has been told that the run has begun."""
+        self._begun = 0
+        """How many simulations have begun."""
+        self._simulations: list[tuple[Shown, int]] = []
+        """The latest of them, and when each began [us]."""
+        self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MOST_RUNS)
+        """The numbers of the latest runs, these, and their models."""
+        self._runs = 0
+        """How many runs there have been."""
+        self._shown: Shown | None = None
+        """The simulation that has ticked last."""
+        self._scene: tuple[bytes | None, bytes] = (None, b"null")
+        """The compiled scene and the world that the server knows."""
+        self._scene_of: Shown | None = None
+        """The simulation that was shown last."""
+        self._kept: dict[int, Kept] = {}
+        """What is kept of the past of simulations, by number; it outlives that the program is run again."""
         self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
         """The helper modules as they were the first time; see `actr3d.actr.helper_texts`."""
 
     def play(self) -> None:
         """Runs it, and again where a user goes back, until the worker is to leave."""
         start, conductor = self._conductor.link.start, self._conductor
-        known = {parameter.name: parameter.default for parameter in self._listing.parameters}
-        parameters = to_json({**known, **start.settings}).encode()
-        facts = Facts(kind="program", seed=self._seed, period=seconds(PERIOD), parameters=parameters, world=b"null", mj_model=None)
-        conductor.link.post(facts)
-        conductor.conduct(self)
+        if not self._listing.simulates:
+            self._introduce()
         try:
             if start.record is not None:
                 told = {"kind": "program", "file": start.path, "sources": {start.path: self._source}}
@@ -86,28 +109,56 @@ class ProgramRun:
             if self._recording is not None:
                 self._recording.close()
 
+    def _foresee(self) -> None:
+        """Shows all of the recorded run that is lived through again, where it is one."""
+        recorded = self._conductor.link.start.recorded
+        if recorded is not None:
+            foreknown = Foreknown(Path(recorded))
+            self._furthest = max(self._furthest, foreknown.time)
+            self._conductor.know(foreknown)
+
+    def _introduce(self) -> None:
+        """Lets the server know that the run has begun: a program that makes a simulation once that stands at its start."""
+        if not self._introduced:
+            self._introduced = True
+            self._tell_facts()
+            self._conductor.conduct(self)
+            if self._shown is not None and self._shown.simulation.world.bodies:
+                self._conductor.embodied()
+            self._foresee()
+            if self._listing.simulates:
+                self._conductor.show()
+                self._conductor.link.flush()  # whatever the program does next, that it has begun is known
+
+    def _tell_facts(self) -> None:
+        known = {parameter.name: parameter.default for parameter in self._listing.parameters}
+        parameters = to_json({**known, **self._conductor.link.start.settings}).encode()
+        self._scene = mj_model, world = self._scene_now()
+        period = seconds(self.period)
+        facts = Facts(kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model)
+        self._conductor.link.post(facts)
+
+    def _scene_now(self) -> tuple[bytes | None, bytes]:
+        return (None, b"null") if self._shown is None else (self._shown.mj_model, to_json(self._shown.world()).encode())
+
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
         conductor = self._conductor
         self._again = False
-        self._clock = 0
+        self._clock = self._begun = self._runs = 0
+        self._held.clear()
+        self._shown = None
+        self._simulations.clear()
         trace = Trace("all")
-        self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass)
-        helpers = ToldHelpers(conductor.link, self._helpers)
-        helpers.heard = self._keep_helpers
+        self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
             limits.recorder = again = RecordedOnce(self._recording)
             trace.listen(again.event)
-        if self._rush == 0:
-            self._rush = None
-            conductor.went_back()
-        if self._rush is None:
-            conductor.show()
-            conductor.link.flush()  # whatever the program does next, that it has begun is known
-            with suppress(_Again):
-                conductor.attend()
+        if not self._listing.simulates:  # else it goes on to where its simulation stands at its start
+            self._hold_at_start()
         try:
-            with ProgramOutput(limits) as output:
+            with helpers_of(conductor.link, self._helpers) as helpers, ProgramOutput(limits) as output:
+                helpers.heard = self._keep_helpers
                 if not self._again:
                     self._run_text(limits, helpers)
                 if not self._left:
@@ -115,8 +166,11 @@ class ProgramRun:
         except _Again:
             return
         except UNFORESEEN as error:
+            if conductor.link.left:
+                raise  # in a copy of the process that the model has made, which ends with it
             if self._left:
                 return
+            self._introduce()
             conductor.link.post(notice_of(error))
             if self._recording is not None:
                 self._recording.fact("failed", told_of(error))
@@ -127,7 +181,19 @@ class ProgramRun:
                 self._recording.fact("ended", {"by": "end"})
             self._end("ended", "the program is over")
 
-    def _run_text(self, limits: RunLimits, helpers: ToldHelpers) -> None:
+    def _hold_at_start(self) -> None:
+        """Waits before the program begins, where nothing says that it is to go on."""
+        conductor = self._conductor
+        if self._rush == 0:
+            self._rush = None
+            conductor.went_back()
+        if self._rush is None:
+            conductor.show()
+            conductor.link.flush()  # whatever the program does next, that it has begun is known
+            with suppress(_Again):
+                conductor.attend()
+
+    def _run_text(self, limits: RunLimits, helpers: HelperTexts) -> None:
         start = self._conductor.link.start
         try:
             run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
@@ -142,6 +208,7 @@ class ProgramRun:
 
     def _end(self, status: Any, reason: str) -> None:
         self._rush = None
+        self._introduce()
         self._furthest = max(self._furthest, self._clock)
         self._conductor.end(status, reason)
 
@@ -152,8 +219,10 @@ class ProgramRun:
             self._recording.fact("helpers", self._helpers)
 
     def _pass(self, begin: int, end: int) -> None:
-        """Lets time pass, as fast as the conductor says; holds the program up meanwhile."""
+        """Lets time pass of a model without a body, as fast as the conductor says; holds the program up meanwhile."""
         conductor = self._conductor
+        self._introduce()
+        self._hold_models()
         to = self._clock + end - begin
         while True:
             if conductor.leaving:
@@ -179,6 +248,47 @@ class ProgramRun:
             if stop == to:
                 return
 
+    def _tick(self, simulation: Simulation, passed: int) -> None:
+        """Takes note that a simulation has ticked, or is about to begin; holds the program up until it may go on."""
+        conductor = self._conductor
+        self._show(simulation)
+        self._hold_models()
+        self._introduce()
+        self._clock += passed
+        if conductor.leaving:
+            raise Leaving
+        if self._again:
+            raise _Again
+        if self._rush is not None and self._clock < self._rush:
+            return
+        self._furthest = max(self._furthest, self._clock)
+        if self._rush is None:
+            conductor.passed()
+        while True:
+            if self._rush is not None:
+                if self._clock < self._rush:
+                    return
+                self._rush = None
+                conductor.went_back()
+            conductor.attend()
+            if self._rush is None and conductor.pace(self._clock):
+                return
+
+    def _show(self, simulation: Simulation) -> None:
+        """Lets this simulation be shown from now on."""
+        if self._shown is not None and self._shown.simulation is simulation:
+            return
+        self._shown = next((shown for shown, _ in self._simulations if shown.simulation is simulation), None)
+        if self._shown is None:
+            with suppress(SimulationError):  # it has begun already; its past cannot be explained then
+                simulation.traced()
+            self._begun += 1
+            self._shown = shown = Shown(simulation, self._kept.get(self._begun))
+            self._kept[self._begun] = shown.kept
+            if len(self._kept) > MOST_SIMULATIONS:
+                self._kept.pop(next(number for number in self._kept if number != self._begun))
+            self._simulations = [*self._simulations, (shown, self._clock)][-MOST_SIMULATIONS:]
+
     # -- what the conductor asks
 
     @property
@@ -193,8 +303,8 @@ class ProgramRun:
 
     @property
     def period(self) -> int:
-        """What a step is [us]."""
-        return PERIOD
+        """What a step is [us]: a tick of the simulation that is shown."""
+        return PERIOD if self._shown is None else self._shown.period
 
     @property
     def trace(self) -> Trace | None:
@@ -202,18 +312,21 @@ class ProgramRun:
         return self._limits.trace
 
     def do(self, command: Any) -> None:
-        """Goes to another time; nothing else can be done to a program.
+        """Goes to another time; nothing else can be done to a program: it may hold what a command would change.
 
         Raises:
             SimulationError: If it is anything else, or the run has not been there.
             EndOfRun: To leave the program.
         """
         if isinstance(command, say.Back):
-            to = max(0, (self._clock - 1) // PERIOD - command.ticks + 1) * PERIOD
+            to = max(0, (self._clock - 1) // self.period - command.ticks + 1) * self.period
         elif isinstance(command, say.Seek):
             to = round(command.time * MICROSECONDS)
         else:
-            raise SimulationError("a program without `build(parameters) -> Simulation` takes no commands while it runs")
+            raise SimulationError(
+                f"'{command.type}' cannot be done: a program takes no commands while it runs; to change a simulation while it runs, "
+                "let a function `build(parameters) -> Simulation` return it"
+            )
         if to > self._furthest:
             raise SimulationError(f"the run has come to {seconds(self._furthest):g} s only; run it on instead")
         over = self._conductor.status in ("ended", "failed")
@@ -223,44 +336,72 @@ class ProgramRun:
             self._again = True
             raise _Again
 
+    def forget_ahead(self) -> None:
+        """Forgets that it has been further than it is now."""
+        self._furthest = self._clock
+
     def answer(self, question: Any) -> Any:
         """Returns what is asked.
 
         Raises:
             Exception: Says why it cannot be told.
         """
-        if isinstance(question, say.Curves):
-            return NOTHING
-        return answer(question, self.trace, list(self._models()), None)
+        match question:
+            case say.Curves():
+                return joined(shown.curves(question, begin) for shown, begin in self._simulations)
+            case say.Look() | say.Body() if self._shown is not None:
+                return self._shown.answer(question)
+            case _:
+                return answer(question, self.trace, list(self._tops()))
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
-        """Returns nothing: a program has no world that is shown."""
-        return None, {}
+        """Returns the state of the physics, and how wide apertures are; before that the server is told of a scene that is another one."""
+        if self._shown is not self._scene_of:
+            self._scene_of = self._shown
+            if self._scene_now() != self._scene:
+                self._tell_facts()
+        return (None, {}) if self._shown is None else self._shown.scene()
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns nothing: there is nothing to draw on."""
-        return {}
+        """Returns what overlays show of the present, by kind."""
+        return {} if self._shown is None else self._shown.drawn(kinds)
 
     def result(self) -> dict[str, Any] | None:
-        """Returns nothing: a program is not measured."""
-        return None
+        """Returns what was measured of the simulation that is shown, if anything was."""
+        return None if self._shown is None else self._shown.result()
 
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts of its latest models are like."""
         told: dict[str, dict[str, Any]] = {}
-        for model in list(self._models())[-MOST_RUNS:]:
-            told |= picture_of(model)
+        for top in self._tops():
+            told |= {top.name(path): part for path, part in picture_of(top.model).items()}
         return told
 
     def names(self) -> Names:
         """Returns at what it can be stopped."""
-        return names_of_program(self._models(), self._listing, self._source, Path(self._conductor.link.start.folder))
+        bodies = () if self._shown is None else self._shown.simulation.world.bodies
+        return names_of_program(self._tops(), bodies, self._listing, self._source, Path(self._conductor.link.start.folder))
 
     def touches(self) -> Touches:
-        """Returns nothing: there are no bodies."""
-        return frozenset()
+        """Returns what touches a body now, the ground left out."""
+        return frozenset() if self._shown is None else self._shown.touches()
 
-    def _models(self) -> Iterator[Any]:
-        for run in self._limits.trace.runs if self._limits.trace is not None else ():
-            if run.model is not None:
-                yield run.model
+    def _tops(self) -> Iterator[Top]:
+        """Yields the latest models."""
+        self._hold_models()
+        for number, run, made in self._held:
+            model = run.model or made
+            if not model.sch.in_lockstep:
+                yield Top(model)
+                continue
+            for agent in model._members():  # the environment of a simulation is its own
+                yield Top(agent, top_path(number) if number > 1 else "")
+
+    def _hold_models(self) -> None:
+        """Keeps the latest models: else it would be up to Python's collector of garbage which of them are shown."""
+        trace = self._limits.trace
+        if trace is not None:
+            for run in trace.runs[self._runs :]:
+                self._runs += 1
+                if run.model is not None:
+                    self._held.append((self._runs, run, run.model))

@@ -1,24 +1,34 @@
-"""What a worker does with a recording: runs it again, or makes a page of it."""
+"""What a worker does with recordings: runs one again, makes files of them, or reads their summaries."""
 
 from __future__ import annotations
 
+import resource
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.running.replay import replay
+from actr3d.values import to_json
+from workbench.forms import FORMS
+from workbench.summaries import summary_json
 from workbench.worker.link import Link
-from workbench.worker.messages import Share, whole
+from workbench.worker.memory import relieve
+from workbench.worker.messages import Reply, Share, whole
 
 STEP = 0.001
 """It is told whenever so much more is done."""
 MOST_TEXT = 20_000
 """No more is told of where a run differs [characters]."""
+LEAST_ROOM = 1_000_000_000
+"""What is made of recordings may always be so large [bytes],"""
+ROOM = 10
+"""and so many times as large as they are: a table of text is larger than numbers and packed text."""
 
 
-def replay_again(link: Link) -> dict[str, Any]:
-    """Runs a recording again; returns whether every byte agrees (None where that cannot be told), and what the comparison says."""
+def replay_again(link: Link) -> None:
+    """Runs a recording again; answers whether every byte agrees (None where that cannot be told), and what the comparison says."""
     path = Path(link.start.path)
     told = 0.0
 
@@ -30,14 +40,48 @@ def replay_again(link: Link) -> dict[str, Any]:
 
     try:
         with Recorded(path) as recorded:
-            comparison = replay(recorded, progress=progress)
+            comparison = replay(recorded, trust=True, progress=progress)  # the server has asked
+        found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
-        return {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"'{path}'", "it")}
-    return {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
+        found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"'{path}'", "it")}
+    link.post(Reply(id=0, result=to_json(found).encode()))
 
 
-def make_page(link: Link) -> None:
-    """Makes one HTML file of a recording."""
-    from workbench.html_replay.make import write_replay
+def make(link: Link) -> None:
+    """Makes a file of recordings; answers how large it is [bytes], or why it cannot be made."""
+    start = link.start
+    paths, to = [Path(path) for path in start.recordings], Path(start.to)
 
-    write_replay(Path(link.start.path), Path(link.start.to))
+    def made() -> bytes:
+        room = max(LEAST_ROOM, ROOM * sum(path.stat().st_size for path in paths))
+        soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (room if soft == resource.RLIM_INFINITY else min(room, soft), hard))
+        FORMS[start.form](*paths, to, **start.settings)
+        return str(to.stat().st_size).encode()
+
+    link.post(_answer(0, made, paths))
+
+
+def summarize(link: Link) -> None:
+    """Answers with the summary of each recording, in order."""
+    for number, path in enumerate(map(Path, link.start.recordings)):
+        link.post(_answer(number, lambda path=path: summary_json(path), [path]))
+
+
+def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:
+    """Returns what comes of some work, or in words why nothing did."""
+    try:
+        return Reply(id=number, result=work())
+    except MemoryError:
+        relieve()
+        problem = "it takes more memory to read than there may be"
+    except Actr3dError as error:
+        problem = str(error)
+    except OSError as error:
+        problem = f"it cannot be read or written: {error.strerror or error}"
+    except Exception as error:  # noqa: BLE001 - whatever is in the file
+        which = "the recording" if len(paths) == 1 else "one of the recordings"
+        problem = f"{which} is damaged: {type(error).__name__}: {error}"
+    for path in paths:
+        problem = problem.replace(str(path), path.stem)
+    return Reply(id=number, error=whole(problem, 2_000))

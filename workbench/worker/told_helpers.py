@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from actr3d.actr.helper_texts import HelperTexts
+from actr3d.actr.sealed import sealed
 from workbench.worker.link import Link
 from workbench.worker.messages import Loaded, digest_of
 
@@ -26,3 +28,19 @@ class ToldHelpers(HelperTexts):
         """Takes the text of a module that is about to run."""
         super().keep(name, file, folder, text)
         self._link.post(Loaded(file=file, digest=digest_of(text)))
+
+
+@contextmanager
+def helpers_of(link: Link, known: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
+    """Yields the helper modules of a run: of one that is lived through again those in its recording alone, of others those in its folder.
+
+    Args:
+        link: The wire to the server.
+        known: What was loaded in an earlier run, whatever the files hold now.
+    """
+    start = link.start
+    if start.recorded is None:
+        yield ToldHelpers(link, known)
+    else:
+        with sealed(start.path, start.source, known) as texts:
+            yield texts

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from actr3d.actr.chunk import Chunk
 from actr3d.actr.search import search_for
 from actr3d.actr.store import ChunkStore
+from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
 
 Touches = frozenset[tuple[str, str, str]]
@@ -27,6 +28,8 @@ class Watch:
     """Of which system these are to be; None for any."""
     production: str | None = None
     buffer: str | None = None
+    called: str = ""
+    """How the user calls the buffer."""
     pattern: str = ""
     contact: str | None = None
     """The body whose touch ends it; an empty text for any body."""
@@ -50,12 +53,24 @@ class Watch:
         return self.of_events or self.contact is not None
 
     @property
+    def pending(self) -> str:
+        """What the run goes on for, where a user has said so."""
+        parts = [] if self.goal is None else [f"{seconds(self.goal):g} s"]
+        if self.production is not None:
+            parts.append(f"{self.production} fires")
+        if self.buffer is not None:
+            parts.append(f"{self.called} matches '{self.pattern}'" if self.pattern.strip() else f"{self.called} changes")
+        if self.contact is not None:
+            parts.append(f"{self.contact or 'a body'} touches something")
+        return f"until {' or '.join(parts)}"
+
+    @property
     def missed(self) -> str:
         """What has not come of what is watched for, for a run that is over; an empty text where there is nothing to say."""
         missed = [f"{self.production} did not fire"] if self.production is not None else []
         if self.buffer is not None:
             came = f"come to match '{self.pattern}'" if self.pattern.strip() else "change"
-            missed.append(f"{self.buffer} did not {came}")
+            missed.append(f"{self.called} did not {came}")
         if self.contact is not None:
             missed.append(f"{self.contact or 'no body'} touched {'nothing' if self.contact else 'anything'} more")
         return "; ".join(missed)
@@ -72,7 +87,7 @@ class Watch:
                 if name == self.production or (cycle and self.cycles == 0):
                     return f"{name} fired"
             elif event.kind == "buffer" and event.source == self.buffer and self._matches(event):
-                return f"{self.buffer} matches '{self.pattern}'" if self.pattern.strip() else f"{self.buffer} has changed"
+                return f"{self.called} matches '{self.pattern}'" if self.pattern.strip() else f"{self.called} has changed"
         return None
 
     def touched(self, touches: Touches) -> str | None:

@@ -10,7 +10,7 @@ from contextlib import suppress
 
 from workbench.worker.messages import FROM_WORKER, LENGTH, LONGEST, FromWorker, Leave, Message, framed
 from workbench.worker.spawn import Zygote, spawn
-from workbench.worker.zygote import ANSWER, ASK, BORN, READY
+from workbench.worker.zygote import ANSWER, ASK, BORN, DEAD, HALTED, READY
 
 GRACE = 0.7
 """How long a worker may take to end in good order [s]; then it is told by the system."""
@@ -43,6 +43,8 @@ class Worker:
         self._writer = writer
         self.exit: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         """How it ended: its exit code, or the negative number of a signal."""
+        self.halted = 0
+        """The signal that has stopped it, so that it stands still; 0 where it does not."""
 
     def send(self, message: Message) -> None:
         """Tells it something; nothing, where it is gone."""
@@ -112,6 +114,7 @@ class Workers:
         self._ready = asyncio.Event()
         self._launching = asyncio.Lock()
         self._listening: asyncio.Task[None] | None = None
+        self._going: asyncio.Task[None] | None = None
 
     def begin(self) -> None:
         """Begins to listen to the process from which workers are forked, and starts it where that has not been done."""
@@ -121,14 +124,18 @@ class Workers:
         self._ready = asyncio.Event()
         self._born = asyncio.Queue()
         self._listening = asyncio.create_task(self._listen(self._zygote))
+        self._going = asyncio.create_task(self._keep_going(self._zygote))
 
     @property
     def ready(self) -> bool:
         """Whether what workers need has been loaded, so that they begin at once."""
         return self._ready.is_set()
 
-    async def launch(self) -> Worker:
+    async def launch(self, memory: int | None = None) -> Worker:
         """Returns a new worker.
+
+        Args:
+            memory: How much memory it may take [MB]; None for as much as every model may.
 
         Raises:
             OSError: If the system has no more processes or files to give, or workers are to come no more.
@@ -136,7 +143,7 @@ class Workers:
         ours, theirs = socket.socketpair()
         reading, writing = os.pipe()
         # Who waits may leave; the process that is being born is heard of all the same, and ends where its wire is closed.
-        birth = asyncio.create_task(self._birth(theirs, writing))
+        birth = asyncio.create_task(self._birth(theirs, writing, self.memory if memory is None else memory))
         try:
             pid = await asyncio.shield(birth)
         except BaseException:
@@ -151,14 +158,14 @@ class Workers:
             worker.exit.set_result(self._early.pop(pid))
         return worker
 
-    async def _birth(self, wire: socket.socket, output: int) -> int:
+    async def _birth(self, wire: socket.socket, output: int, memory: int) -> int:
         """Lets a worker be born that has these; returns its process number."""
         try:
             await self._ready.wait()
             async with self._launching:
                 if self._control is None:
                     raise OSError(NO_MORE)
-                socket.send_fds(self._control, [ASK.pack(self.memory)], [wire.fileno(), output])
+                socket.send_fds(self._control, [ASK.pack(memory)], [wire.fileno(), output])
                 pid = await self._born.get()
         finally:
             wire.close()
@@ -179,15 +186,30 @@ class Workers:
                     self._ready.set()
                 elif what == BORN:
                     self._born.put_nowait(pid)
-                elif (worker := self._alive.pop(pid, None)) is not None:
-                    if not worker.exit.done():
-                        worker.exit.set_result(status)
-                else:
-                    self._early[pid] = status
+                elif what == HALTED and pid in self._alive:
+                    self._alive[pid].halted = status
+                elif what == DEAD:
+                    self._bury(pid, status)
         await self._begin_again(zygote)
+
+    def _bury(self, pid: int, status: int) -> None:
+        worker = self._alive.pop(pid, None)
+        if worker is None:
+            self._early[pid] = status
+        elif not worker.exit.done():
+            worker.exit.set_result(status)
+
+    async def _keep_going(self, zygote: Zygote) -> None:
+        """Lets the process from which workers are forked go on, now and then: a model may have stopped it by a signal."""
+        while True:
+            await asyncio.sleep(GRACE)
+            with suppress(OSError):
+                os.kill(zygote.process.pid, signal.SIGCONT)
 
     async def _begin_again(self, zygote: Zygote) -> None:
         """Starts another process from which workers are forked, as a model has ended this one; runs end with it."""
+        if self._going is not None:
+            self._going.cancel()
         useful = self._ready.is_set()
         self._say_ended()
         workers = list(self._alive.values())
@@ -209,8 +231,9 @@ class Workers:
 
     async def close(self) -> None:
         """Ends all workers, and the process that has started them."""
-        if self._listening is not None:
-            self._listening.cancel()
+        for task in (self._listening, self._going):
+            if task is not None:
+                task.cancel()
         for worker in list(self._alive.values()):
             worker.kill()
         self._say_ended()

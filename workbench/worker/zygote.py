@@ -20,8 +20,9 @@ from contextlib import suppress
 from workbench.worker.orphans import adopt, end_orphans
 
 ANSWER = struct.Struct("!Bqi")
-"""What is told (BORN or DEAD), the process number, and for a dead one its status as `os.waitstatus_to_exitcode` gives it."""
-BORN, DEAD, READY = 1, 2, 3
+"""What is told (BORN, DEAD, HALTED or READY), the process number, and of a dead one its status as `os.waitstatus_to_exitcode` gives it,
+of one that stands still the signal that has stopped it; 0 where it goes on again."""
+BORN, DEAD, READY, HALTED = 1, 2, 3, 4
 ASK = struct.Struct("!i")
 """How much memory a new worker may take [MB]."""
 FAREWELL = 1.0
@@ -103,8 +104,10 @@ def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int],
             os.close(descriptor)
         control.close()
         wire, output = descriptors
-        work(socket.socket(fileno=wire), output, memory)
-        os._exit(0)
+        try:
+            work(socket.socket(fileno=wire), output, memory)
+        finally:
+            os._exit(1)  # it has ended by itself, unless it could not even do that
     for descriptor in descriptors:
         os.close(descriptor)
     return pid
@@ -115,11 +118,13 @@ def _woken(_: int, __: object) -> None:
 
 
 def _bury(control: socket.socket, children: set[int]) -> None:
-    """Tells the server of the children that have died."""
+    """Tells the server of the children that have died, and of those that a signal has stopped."""
     for pid in list(children):
         with suppress(ChildProcessError):
-            done, status = os.waitpid(pid, os.WNOHANG)
-            if done:
+            done, status = os.waitpid(pid, os.WNOHANG | os.WUNTRACED | os.WCONTINUED)
+            if done and (os.WIFSTOPPED(status) or os.WIFCONTINUED(status)):
+                _answer(control, HALTED, pid, os.WSTOPSIG(status) if os.WIFSTOPPED(status) else 0)
+            elif done:
                 children.discard(pid)
                 with suppress(OSError):
                     os.killpg(pid, signal.SIGKILL)  # whom it has left in its group

@@ -15,6 +15,8 @@ from actr3d.actr.parameters import named_parameters
 from actr3d.errors import SimulationError
 
 _LIBRARY = str(Path(__file__).parents[2])
+RAW_VISION = ("view",)
+"""What only a vision module should ask a body for: whoever else does steps outside what vision gives an agent."""
 
 
 class Reading(Event):
@@ -98,6 +100,10 @@ class Port(Model):
         embodiment.outbox.append(Request(embodiment.body, word, values, options or {}, place or place_of_caller(), self, reading, **how))
         return reading
 
+    def _kept_private(self, word: str) -> str | None:
+        """Returns the option by which this part lets others ask for a word that it keeps to itself; None where it keeps none."""
+        return None
+
     def _joined(self, word: str) -> Embodiment:
         """Returns the body that a word is for.
 
@@ -140,6 +146,9 @@ class BodyPort(Port):
     answers; the answers are there when the next tick begins. `busy` is True while answers are outstanding; `error`
     after an answer to `request` that was nothing.
 
+    `view` is the raw view: with it an agent steps outside what vision gives, and the trace says so (`outside_vision`). Where
+    the agent has a `Vision`, that keeps the view private, unless it is made with `private_view=False`.
+
     Args:
         buffer: Where the answers to `request` go; None for a port without.
     """
@@ -164,7 +173,7 @@ class BodyPort(Port):
         """Asks the body what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
 
         Raises:
-            SimulationError: If the agent has no body, or does not live yet.
+            SimulationError: If the agent has no body, does not live yet, or keeps the word private to one of its modules.
         """
         return self._ask("get", word, values, options)
 
@@ -172,7 +181,8 @@ class BodyPort(Port):
         """Asks the body what it senses; the answer comes as a chunk: the word, then what was sensed, by name or in order.
 
         Raises:
-            SimulationError: If the agent has no body, or does not live yet; or if the port has no buffer.
+            SimulationError: If the agent has no body, does not live yet, or keeps the word private to one of its modules; or if
+                the port has no buffer.
         """
         self._joined(word)
         if self._buffer is None:
@@ -180,14 +190,30 @@ class BodyPort(Port):
         return self._ask("request", word, values, options)
 
     def _ask(self, call: str, word: str, values: tuple[Any, ...], options: Mapping[str, Any]) -> Reading:
-        self._joined(word)
-        self._trace_request(call, word=word, **_given(values, options))
+        embodiment = self._joined(word)
+        outside = {}
+        if word in RAW_VISION:
+            self._check_private(word, embodiment)
+            outside = {"outside_vision": True}
+        self._trace_request(call, word=word, **_given(values, options), **outside)
         if call == "request":
             self.error = False
         reading = self._inquire(word, values, options, to_buffer=call == "request")
         self._outstanding += 1
         self.busy = True
         return reading
+
+    def _check_private(self, word: str, embodiment: Embodiment) -> None:
+        """Refuses a word that another part of the agent keeps private."""
+        agent = next(part for part in self._line() if part.__dict__.get("_embodiment") is embodiment)
+        for part in agent._tree():
+            option = part._kept_private(word) if isinstance(part, Port) else None
+            if option is not None:
+                raise SimulationError(
+                    f"port '{self._path}' cannot ask body '{embodiment.body}' for '{word}': agent '{agent._path}' "
+                    f"({type(agent).__name__}) keeps it private to its module '{part._path}'; make that with {option} to let other "
+                    "ports of the agent have it too"
+                )
 
     def _receive(self, request: Request, answer: Any) -> None:
         """Puts an answer into the buffer, where that was asked."""

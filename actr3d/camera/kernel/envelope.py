@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.crossings import add_crossings, may_cover
-from actr3d.camera.kernel.extents import EDGES_AT_ONCE, come_near, end_row, goes_on, without_sliver
+from actr3d.camera.kernel.extents import EDGES_AT_ONCE, end_row, goes_on, without_sliver
 from actr3d.camera.kernel.jit import compiled, zero
 from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, NUMBER, PIECE, SAME_DEPTH, Array, Record, Records
+from actr3d.camera.kernel.nearest import STRETCHES, forget, note
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 
 MOST_CUTS = 400
@@ -35,6 +36,8 @@ class Row(NamedTuple):
     work: Array
     edges: Array
     """Room for `finish`."""
+    stretches: Array
+    """Room for `find_nearest`, one record."""
     curve: Array
     """One piece."""
     places: Array
@@ -55,6 +58,7 @@ def room_for(pieces: int, places: Array, reaches: Array) -> Row:
         stack=np.zeros((MOST_CUTS, 2)),
         work=np.zeros((6, 5)),
         edges=np.zeros((3, EDGES_AT_ONCE)),
+        stretches=np.zeros(1, STRETCHES),
         curve=np.zeros(1, PIECE),
         places=places,
         reaches=reaches,
@@ -204,6 +208,7 @@ def _tell(
     if object == BACKGROUND:
         return done
     done = without_sliver(optics, extents, first, done)
+    forget(row.stretches[0], done)
     if not goes_on(object, low, optics, extents, first, done):
         if done == len(extents):
             return done
@@ -214,7 +219,7 @@ def _tell(
     for i in range(rivals):
         piece = row.pieces[winner if rivals == 1 else row.rivals[i]]
         if piece.object == object:
-            come_near(extents[done - 1], piece, low, high, level)
+            note(row.stretches[0], done - 1, piece, low, high, level, extents)
     return done
 
 

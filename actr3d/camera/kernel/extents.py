@@ -6,7 +6,7 @@ import math
 
 from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.layout import NEGLIGIBLE, SLIVER, Array, Record, Records
-from actr3d.camera.kernel.pieces import nearest_at, nearness
+from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.screen import screen_part
 
 EDGES_AT_ONCE = 128
@@ -25,25 +25,6 @@ def goes_on(object: int, low: float, optics: Record, extents: Records, first: in
         return False
     reached = extents[done - 1].x2
     return low - reached <= NEGLIGIBLE or _gap(reached, low, optics) <= max(optics.precision, SLIVER)
-
-
-@compiled
-def come_near(extent: Record, piece: Record, low: float, high: float, level: float) -> None:
-    """Sets the nearest point of an extent from one of its pieces, if that comes nearer; until the row ends, `dn` is its nearness.
-
-    What is nearest on the ground, with heights left out, is meant: of the square of the distance `(u^2 + level) / w^2` the least.
-    """
-    least = max(low, -high, 0.0)
-    if extent.dn > 0.0:
-        best = (extent.xn * extent.xn + level) / (extent.dn * extent.dn)
-        if least * least + level >= best * piece.ceiling * piece.ceiling:
-            return
-    else:
-        best = math.inf
-    u = nearest_at(piece, low, high, level)
-    w = nearness(piece, u)
-    if w > 0.0 and u * u + level < best * w * w:
-        extent.xn, extent.dn = u, w
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +44,7 @@ PIECE = np.dtype(
         ("side", "i8"),  # a line, or the near or far side of something round
         ("object", "i8"),
         ("geom", "i8"),
-        ("face", "i8"),  # or -1
+        ("surface", "i8"),  # the number of the patch or face it is cut from, see Scene.surfaces, or -1
         ("a", "f8"),  # conic: a w^2 - 2 (b0 + b1 u) w + (c0 + c1 u + c2 u^2) = 0
         ("b0", "f8"),  # line: w = c0 + c1 (u - b0)
         ("b1", "f8"),
@@ -90,22 +90,35 @@ OCCLUDER = np.dtype(
 )
 """A face that hides what is behind it."""
 
-EXTENT = np.dtype(
-    [
-        ("row", "i4"),
-        ("label", "i4"),
-        ("y", "f8"),
-        ("x1", "f8"),
-        ("x2", "f8"),
-        ("d1", "f8"),
-        ("d2", "f8"),
-        ("a1", "f8"),
-        ("a2", "f8"),
-        ("xn", "f8"),
-        ("dn", "f8"),
-    ],
-    align=True,
+
+class ExtentField(NamedTuple):
+    """What one field of an extent is."""
+
+    name: str
+    type: str
+    title: str
+    """What people call it, in a few words."""
+    unit: str
+    """Its unit; empty for a plain number."""
+    about: str
+
+
+EXTENT_FIELDS: Final = (
+    ExtentField("row", "i4", "scan line", "", "which scan line, counted from 0 at the top"),
+    ExtentField("label", "i4", "object", "", "a number that tells objects apart, and nothing else"),
+    ExtentField("y", "f8", "height", "", "where the scan line is on the screen: 0 at the top, 1 at the bottom"),
+    ExtentField("x1", "f8", "left edge", "", "where its left edge is on the screen: 0 at the left, 1 at the right"),
+    ExtentField("x2", "f8", "right edge", "", "where its right edge is on the screen: 0 at the left, 1 at the right"),
+    ExtentField("d1", "f8", "left distance", "m", "how far its left edge is from the eye"),
+    ExtentField("d2", "f8", "right distance", "m", "how far its right edge is from the eye"),
+    ExtentField("a1", "f8", "left angle", "°", "the angle between the line of sight and the direction to its left edge"),
+    ExtentField("a2", "f8", "right angle", "°", "the angle between the line of sight and the direction to its right edge"),
+    ExtentField("xn", "f8", "nearest point", "", "where on the screen its nearest point is, as measured on the ground: 0 left, 1 right"),
+    ExtentField("dn", "f8", "nearest distance", "m", "how far that nearest point is from the eye"),
 )
+"""The fields of an extent, in order; the page shows these texts with the columns."""
+
+EXTENT = np.dtype([(field.name, field.type) for field in EXTENT_FIELDS], align=True)
 """A stretch of one row in which one object is seen."""
 
 OPTICS = np.dtype(

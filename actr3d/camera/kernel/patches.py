@@ -14,12 +14,13 @@ SEEN, PASSED_BY, IN_PARTS = 1, 0, -1
 
 
 @compiled
-def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array) -> int:
+def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Records, count: int, cuts: Array) -> int:
     """Appends the pieces of a patch on the row at the tangent v; returns how many pieces there are now.
 
     The whole curve is cut wherever anything about it may change; what lies between two cuts is seen or not as a whole.
     """
-    curve.object, curve.geom, curve.face = patch.object, patch.geom, -1
+    curve = pieces[count]
+    curve.object, curve.geom = patch.object, patch.geom
     if patch.even:
         curve.side, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
         whole = _whole_line(patch, v, optics, curve, cuts)
@@ -31,9 +32,11 @@ def add_patch(patch: Record, v: float, optics: Record, curve: Record, pieces: Re
         curve.c1, curve.c2 = 2.0 * (form[0, 1] * v + form[0, 2]), form[0, 0]
         whole = _whole_conic(patch, v, optics, curve, cuts)
     if whole == SEEN:
-        pieces[count] = curve
         return count + 1
-    return count if whole == PASSED_BY else _add_parts(patch, v, optics, curve, pieces, count, cuts)
+    if whole == PASSED_BY:
+        return count
+    room[0] = curve
+    return _add_parts(patch, v, optics, room[0], pieces, count, cuts)
 
 
 @compiled

@@ -7,19 +7,13 @@ import math
 from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
 
-HALVINGS = 5
-"""So often the stretch is halved in which something round is nearest."""
-FLAT = 0.03
-"""Where the distance changes by less than this part of itself for a tangent of 1, it is taken to be least."""
-
 
 @compiled
-def root_of(a: float, b: float, c: float, side: int) -> float:
+def root_of(a: float, b: float, c: float, side: float) -> float:
     """Returns a root of `a w^2 - 2 b w + c`: the nearness of the near (1) or far (-1) side, without loss of digits."""
     root = math.sqrt(max(b * b - a * c, 0.0))
-    if side * b >= 0.0:
-        return (b + side * root) / a
-    return c / (b - side * root)
+    straight = side * b >= 0.0
+    return (b + side * root if straight else c) / (a if straight else b - side * root)
 
 
 @compiled
@@ -50,31 +44,6 @@ def summit(piece: Record) -> float:
     if a <= 0.0 or discriminant < 0.0:
         return math.inf
     return (b + math.sqrt(discriminant)) / a * (1.0 + NEGLIGIBLE)
-
-
-@compiled
-def nearest_at(piece: Record, low: float, high: float, level: float) -> float:
-    """Returns the tangent from `low` to `high` at which `(u^2 + level) / w^2` is least; of what is round, nearly."""
-    if piece.side == LINE:
-        start = piece.c0 - piece.c1 * piece.b0
-        if start > 0.0:
-            return min(high, max(low, piece.c1 * level / start))
-        return high if piece.c1 > 0.0 else low
-    # A ball or an upright pole is nearest where its middle is; other round things nearer on one side of that.
-    x, z = piece.b1 * piece.c0 - 0.5 * piece.c1 * piece.b0, piece.b0 * piece.c2 - 0.5 * piece.c1 * piece.b1
-    u = min(high, max(low, x / z)) if z != 0.0 else 0.5 * (low + high)
-    for _ in range(HALVINGS):
-        w = nearness(piece, u)
-        slope = (piece.b1 * w - 0.5 * piece.c1 - piece.c2 * u) / (piece.a * w - piece.b0 - piece.b1 * u)
-        away = u - (u * u + level) * slope / w
-        if away > 0.0:
-            high = u
-        else:
-            low = u
-        if abs(away) < FLAT or low >= high:
-            break
-        u = 0.5 * (low + high)
-    return u
 
 
 @compiled

@@ -34,9 +34,8 @@ def _value(coefficients: Array, degree: int, x: float) -> float:
 
 
 @compiled
-def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, high: float) -> float:
+def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, high: float, rising: bool) -> float:
     """Returns the one root of a polynomial between two places where its signs differ: Newton's steps, halving where they leave."""
-    rising = _value(coefficients, degree, low) <= 0.0
     x = 0.5 * (low + high)
     for _ in range(60):
         value = _value(coefficients, degree, x)
@@ -74,10 +73,12 @@ def add_quartic_roots(quartic: Array, work: Array, roots: Array, count: int) -> 
     for level in range(3, -1, -1):
         degree = 4 - level
         start, bound, new = count, -1.0, 0
+        positive = _value(work[level], degree, bound) > 0.0
         for i in range(found + 1):
             end = roots[start + i] if i < found else 1.0
-            if (_value(work[level], degree, bound) > 0.0) != (_value(work[level], degree, end) > 0.0):
-                roots[start + found + new] = _root_between(work[level], work[level + 1], degree, bound, end)
+            positive_before, positive = positive, _value(work[level], degree, end) > 0.0
+            if positive_before != positive:
+                roots[start + found + new] = _root_between(work[level], work[level + 1], degree, bound, end, positive)
                 new += 1
             bound = end
         if level == 0:

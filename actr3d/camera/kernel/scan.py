@@ -12,6 +12,7 @@ from actr3d.camera.kernel.extents import finish
 from actr3d.camera.kernel.faces import add_face
 from actr3d.camera.kernel.jit import compiled, kept, sources_digest, zero
 from actr3d.camera.kernel.layout import BACKGROUND, FAR_SIDE, Array, Record, Records
+from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import Geoms, Scene, Topology, set_scene
@@ -73,59 +74,56 @@ def _look(
     failed = set_scene(eye, place, turn, geoms, topology, optics, scene)
     if failed < 0:
         return failed
-    done, rounds, faces = zero(), zero(), zero()
+    done, present = zero(), zero()
+    row.stretches[0].count = row.stretches[0].open = 0
     for number in range(optics.rows):
         v = row_tangent(number, optics)
-        rounds, faces = bring_up(scene.round, number, rounds), bring_up(scene.faces, number, faces)
-        pieces = _add_patches(v, optics, scene, rounds, row)
-        pieces, aside = _add_faces(v, optics, topology, scene, faces, row, pieces)
+        present = bring_up(scene.surfaces, number, present)
+        pieces, aside = _add_pieces(v, optics, topology, scene, present, row)
         pieces = _add_range(v, optics, row, pieces)
         first = done
         rise = v * eye[1, 2] + eye[2, 2]
         done = trace_row(v, 1.0 + v * v - rise * rise, optics, row, pieces, extents, first)
         _label(number, labels, extents, first, done)
-        _order_faces(row, pieces, scene, aside)
+        _order_surfaces(row, pieces, scene, aside)
+    find_nearest(row.stretches[0], extents)
     finish(optics, extents, done, row.edges)
     return done
 
 
 @compiled
-def _add_patches(v: float, optics: Record, scene: Scene, present: int, row: Row) -> int:
-    """Writes the pieces of all patches on a row; returns how many there are."""
-    count, curve = zero(), row.curve[0]
+def _add_pieces(v: float, optics: Record, topology: Topology, scene: Scene, present: int, row: Row) -> tuple[int, int]:
+    """Writes the pieces of all surfaces on a row; returns how many pieces there are, and how many surfaces gave none."""
+    count, aside = zero(), zero()
     for i in range(present):
-        count = add_patch(scene.patches[scene.round.present[i]], v, optics, curve, row.pieces, count, row.cuts)
-    return count
-
-
-@compiled
-def _add_faces(v: float, optics: Record, topology: Topology, scene: Scene, present: int, row: Row, count: int) -> tuple[int, int]:
-    """Appends the pieces of all faces on a row; returns how many pieces there are now, and how many faces gave none."""
-    aside = zero()
-    for i in range(present):
-        face = scene.faces.present[i]
-        before = count
-        count = add_face(topology.face_corners[face], scene.corners, v, optics, row.pieces, count)
-        if count > before:
-            piece, geom = row.pieces[before], topology.face_geom[face]
-            piece.face, piece.geom, piece.object = face, geom, topology.objects[geom]
+        surface, before = scene.surfaces.present[i], count
+        if surface < len(scene.patches):
+            count = add_patch(scene.patches[surface], v, optics, row.curve, row.pieces, count, row.cuts)
         else:
-            scene.aside[aside] = face
+            face = surface - len(scene.patches)
+            count = add_face(topology.face_corners[face], scene.corners, v, optics, row.pieces, count)
+            if count > before:
+                geom = topology.face_geom[face]
+                row.pieces[before].geom, row.pieces[before].object = geom, topology.objects[geom]
+        for piece in range(before, count):
+            row.pieces[piece].surface = surface if piece == before else -1
+        if count == before:
+            scene.aside[aside] = surface
             aside += 1
     return count, aside
 
 
 @compiled
-def _order_faces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
-    """Puts the faces in the order of their pieces: on the next row, the sorting finds nearly everything in order."""
+def _order_surfaces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
+    """Puts the surfaces in the order of their first pieces: on the next row, the sorting finds nearly everything in order."""
     count = zero()
     for i in range(pieces):
-        face = row.pieces[row.order[i]].face
-        if face >= 0:
-            scene.faces.present[count] = face
+        surface = row.pieces[row.order[i]].surface
+        if surface >= 0:
+            scene.surfaces.present[count] = surface
             count += 1
     for i in range(aside):
-        scene.faces.present[count] = scene.aside[i]
+        scene.surfaces.present[count] = scene.aside[i]
         count += 1
 
 
@@ -136,7 +134,7 @@ def _add_range(v: float, optics: Record, row: Row, count: int) -> int:
         return count
     piece = row.pieces[count]
     piece.low, piece.high, piece.side = -optics.right, optics.right, FAR_SIDE
-    piece.object, piece.geom, piece.face = BACKGROUND, len(row.places) - 1, -1
+    piece.object, piece.geom, piece.surface = BACKGROUND, len(row.places) - 1, -1
     square = optics.range * optics.range
     piece.a, piece.b0, piece.b1 = -1.0, 0.0, 0.0
     piece.c0, piece.c1, piece.c2 = (1.0 + v * v) / square, 0.0, 1.0 / square

@@ -67,28 +67,29 @@ class Scene(NamedTuple):
     """The corners of one geom in its frame [m]."""
     corners: Array
     """All corners in the eye's frame [m]."""
-    round: Waiting
-    """The patches by their rows."""
-    faces: Waiting
-    """The faces by their rows; those at hand from left to right on the row above."""
+    surfaces: Waiting
+    """The patches, and then the faces, by their rows; those present are in the order from left to right of the row above.
+
+    The number of a face is here its own and the length of `patches`.
+    """
     aside: Array
-    """Faces at hand that no piece was cut from."""
+    """Surfaces present that no piece was cut from."""
 
 
 def room_for_scene(topology: Topology, rows: int) -> Scene:
     """Returns room for all that a model's geoms may be."""
     geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
+    patches = 3 * geoms + 1  # a cylinder or capsule has three
     return Scene(
         places=np.zeros((geoms + 1, 3)),
         reaches=np.full(geoms + 1, np.inf),
         turn=np.zeros((3, 3)),
         occluders=np.zeros(MOST_OCCLUDERS, OCCLUDER),
-        patches=np.zeros(3 * geoms + 1, PATCH),  # a cylinder or capsule has three
+        patches=np.zeros(patches, PATCH),
         local=np.zeros((max(8, corners), 3)),
         corners=np.zeros((corners, 3)),
-        round=room_for_waiting(3 * geoms + 1, rows),
-        faces=room_for_waiting(faces, rows),
-        aside=np.zeros(faces, NUMBER),
+        surfaces=room_for_waiting(patches + faces, rows),
+        aside=np.zeros(patches + faces, NUMBER),
     )
 
 
@@ -106,8 +107,7 @@ def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Top
         scene: Where it is written.
     """
     count, occluders = zero(), zero()
-    send_away(scene.round)
-    send_away(scene.faces)
+    send_away(scene.surfaces)
     for turn_of in range(2):  # first those that may hide others
         for geom in range(len(topology.kind)):
             first = topology.kind[geom] == BOX and _is_large(geoms.size[geom], place[geom], eye)
@@ -155,7 +155,7 @@ def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics
     for i in range(before, count):
         patch = scene.patches[i]
         patch.object, patch.geom = topology.objects[geom], geom
-        enter(scene.round, i, patch.first_row, patch.last_row)
+        enter(scene.surfaces, i, patch.first_row, patch.last_row)
     return count
 
 
@@ -205,7 +205,7 @@ def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record,
     one_sided = kind == BOX and box_distance(size, place, turn) > optics.corner
     for face in range(topology.faces[geom], topology.faces[geom + 1]):
         first, last = face_rows(topology.face_corners[face], scene.corners, one_sided, optics)
-        enter(scene.faces, face, first, last)
+        enter(scene.surfaces, len(scene.patches) + face, first, last)
         if one_sided and first <= last:
             occluders = offer(topology.face_corners[face], scene.corners, optics, scene.occluders, occluders)
     return occluders

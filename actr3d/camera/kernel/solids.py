@@ -75,11 +75,13 @@ def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z
     patch.even, patch.slabs, patch.radius = 0, 0, 0.0
     a = -1.0
     for i in range(3):
+        for j in range(i, 3):
+            form = turn[i, 0] * turn[j, 0] / (x * x) + turn[i, 1] * turn[j, 1] / (y * y) + turn[i, 2] * turn[j, 2] / (z * z)
+            patch.form[i, j] = patch.form[j, i] = form
+    for i in range(3):
         row = 0.0
         for j in range(3):
-            form = turn[i, 0] * turn[j, 0] / (x * x) + turn[i, 1] * turn[j, 1] / (y * y) + turn[i, 2] * turn[j, 2] / (z * z)
-            patch.form[i, j] = form
-            row += form * place[j]
+            row += patch.form[i, j] * place[j]
         patch.q[i] = row
         a += row * place[i]
     patch.a = a

@@ -1,0 +1,142 @@
+"""Where on the ground each extent is nearest to the eye: of many stretches at once, which is faster than one by one.
+
+Heights are left out: on a row, the square of the distance on the ground is `(u^2 + level) / w^2`.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from actr3d.camera.kernel.jit import compiled
+from actr3d.camera.kernel.layout import LINE, Record, Records
+from actr3d.camera.kernel.pieces import nearness, root_of
+
+HALVINGS = 5
+"""How often the stretch is halved in which something round is nearest."""
+FLAT = 0.03
+"""Where the distance changes by less than this part of itself for a tangent of 1, it is taken to be least."""
+
+AT_ONCE: Final = 100
+MANY: Final = (AT_ONCE,)
+
+STRETCHES = np.dtype(
+    [
+        ("count", "i8"),  # how many stretches are noted
+        ("owner", "i8", MANY),  # the number of the extent
+        ("least", "f8", MANY),  # the least |u|
+        ("level", "f8", MANY),
+        ("ceiling", "f8", MANY),  # the bound of its piece's nearness
+        ("u", "f8", MANY),  # where it is nearest, and the nearness there
+        ("w", "f8", MANY),
+        ("open", "i8"),  # how many of them, all of round pieces, are still to be searched; the fields below are of these
+        ("number", "i8", MANY),  # which of the stretches it is
+        ("low", "f8", MANY),  # where the nearest point may be, and the guess
+        ("high", "f8", MANY),
+        ("guess", "f8", MANY),
+        ("near", "f8", MANY),  # the nearness there
+        ("found", "f8", MANY),  # 1 where the guess is good enough
+        ("ground", "f8", MANY),  # the level
+        ("side", "f8", MANY),
+        ("a", "f8", MANY),  # the piece's equation
+        ("b0", "f8", MANY),
+        ("b1", "f8", MANY),
+        ("c0", "f8", MANY),
+        ("c1", "f8", MANY),
+        ("c2", "f8", MANY),
+    ],
+    align=True,
+)
+"""Stretches of extents whose nearest points are still to be found. All in one record: the compiler then knows that its
+arrays do not overlap, and makes instructions that compute with four numbers at once."""
+
+
+@compiled
+def note(stretches: Record, owner: int, piece: Record, low: float, high: float, level: float, extents: Records) -> None:
+    """Notes that a piece is seen in an extent between two tangents."""
+    if stretches.count == AT_ONCE:
+        find_nearest(stretches, extents)
+    number = stretches.count
+    stretches.count = number + 1
+    stretches.owner[number], stretches.least[number] = owner, max(low, -high, 0.0)
+    stretches.level[number], stretches.ceiling[number] = level, piece.ceiling
+    if piece.side == LINE:
+        start = piece.c0 - piece.c1 * piece.b0
+        end = high if piece.c1 > 0.0 else low
+        u = min(high, max(low, piece.c1 * level / start)) if start > 0.0 else end
+        stretches.u[number], stretches.w[number] = u, nearness(piece, u)
+        return
+    i = stretches.open
+    stretches.open = i + 1
+    # A ball or an upright pole is nearest where its middle is; other round things nearer on one side of that.
+    x, z = piece.b1 * piece.c0 - 0.5 * piece.c1 * piece.b0, piece.b0 * piece.c2 - 0.5 * piece.c1 * piece.b1
+    stretches.guess[i] = min(high, max(low, x / z)) if z != 0.0 else 0.5 * (low + high)
+    stretches.number[i], stretches.low[i], stretches.high[i], stretches.ground[i] = number, low, high, level
+    stretches.side[i], stretches.a[i], stretches.b0[i], stretches.b1[i] = piece.side, piece.a, piece.b0, piece.b1
+    stretches.c0[i], stretches.c1[i], stretches.c2[i] = piece.c0, piece.c1, piece.c2
+
+
+@compiled
+def forget(stretches: Record, extents: int) -> None:
+    """Forgets the stretches of extents that were left out after all: all but so many."""
+    while stretches.count > 0 and stretches.owner[stretches.count - 1] >= extents:
+        stretches.count -= 1
+    while stretches.open > 0 and stretches.number[stretches.open - 1] >= stretches.count:
+        stretches.open -= 1
+
+
+@compiled
+def find_nearest(stretches: Record, extents: Records) -> None:
+    """Sets `xn` and `dn` of extents, until the end a tangent and a nearness, from all stretches noted, and forgets these."""
+    for _ in range(HALVINGS):
+        _try_guesses(stretches, stretches.open)
+        stretches.open = _keep_open(stretches)
+    for i in range(stretches.open):
+        u, number = stretches.guess[i], stretches.number[i]
+        b, c = stretches.b0[i] + stretches.b1[i] * u, stretches.c0[i] + u * (stretches.c1[i] + u * stretches.c2[i])
+        stretches.u[number], stretches.w[number] = u, root_of(stretches.a[i], b, c, stretches.side[i])
+    for i in range(stretches.count):
+        extent, u, w = extents[stretches.owner[i]], stretches.u[i], stretches.w[i]
+        least, level, ceiling = stretches.least[i], stretches.level[i], stretches.ceiling[i]
+        best = np.inf
+        if extent.dn > 0.0:
+            best = (extent.xn * extent.xn + level) / (extent.dn * extent.dn)
+            if least * least + level >= best * ceiling * ceiling:
+                continue
+        if w > 0.0 and u * u + level < best * w * w:
+            extent.xn, extent.dn = u, w
+    stretches.count = stretches.open = 0
+
+
+@compiled
+def _try_guesses(stretches: Record, count: int) -> None:
+    """Computes the nearness of each guess, whether that is good enough, and in which half the nearest point is if not."""
+    for i in range(count):
+        u, b1, c1, c2 = stretches.guess[i], stretches.b1[i], stretches.c1[i], stretches.c2[i]
+        b, c = stretches.b0[i] + b1 * u, stretches.c0[i] + u * (c1 + u * c2)
+        w = root_of(stretches.a[i], b, c, stretches.side[i])
+        slope = (b1 * w - 0.5 * c1 - c2 * u) / (stretches.a[i] * w - stretches.b0[i] - b1 * u)
+        away = u - (u * u + stretches.ground[i]) * slope / w
+        low = stretches.low[i] if away > 0.0 else u
+        high = u if away > 0.0 else stretches.high[i]
+        stretches.near[i], stretches.low[i], stretches.high[i] = w, low, high
+        stretches.found[i] = 1.0 if abs(away) < FLAT or low >= high else 0.0
+
+
+@compiled
+def _keep_open(stretches: Record) -> int:
+    """Writes down what is found, and the next guess for the others, which move to the front; returns how many these are."""
+    kept = 0
+    for i in range(stretches.open):
+        if stretches.found[i] > 0.0:
+            number = stretches.number[i]
+            stretches.u[number], stretches.w[number] = stretches.guess[i], stretches.near[i]
+            continue
+        stretches.guess[kept] = 0.5 * (stretches.low[i] + stretches.high[i])
+        stretches.number[kept], stretches.low[kept], stretches.high[kept] = stretches.number[i], stretches.low[i], stretches.high[i]
+        stretches.ground[kept], stretches.side[kept], stretches.a[kept] = stretches.ground[i], stretches.side[i], stretches.a[i]
+        stretches.b0[kept], stretches.b1[kept] = stretches.b0[i], stretches.b1[i]
+        stretches.c0[kept], stretches.c1[kept], stretches.c2[kept] = stretches.c0[i], stretches.c1[i], stretches.c2[i]
+        kept += 1
+    return kept

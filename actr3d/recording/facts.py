@@ -1,0 +1,127 @@
+"""What the facts of a recording are, as far as this library reads them itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import Any, NamedTuple, cast
+
+from actr3d.errors import RecordingError
+
+LARGEST = 2**63
+"""No number of a recording is as large."""
+
+
+class _Kind(NamedTuple):
+    words: str
+    fits: Callable[[Any], bool]
+
+
+def _text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _number(value: Any) -> bool:
+    return type(value) in (int, float) and isfinite(value) and 0 < value < LARGEST
+
+
+def _whole(value: Any) -> bool:
+    return type(value) is int and 0 < value < LARGEST
+
+
+def _dict(value: Any) -> bool:
+    return isinstance(value, dict)
+
+
+def _flag(value: Any) -> bool:
+    return isinstance(value, bool)
+
+
+def _run_kind(value: Any) -> bool:
+    return value in ("simulation", "program")
+
+
+def _until(value: Any) -> bool:
+    return value is None or _number(value)
+
+
+def _failed(value: Any) -> bool:
+    return value is None or _text(value)
+
+
+def _seed(value: Any) -> bool:
+    return isinstance(value, str) or type(value) is int
+
+
+def _texts(value: Any) -> bool:
+    return isinstance(value, dict) and all(map(_text, cast("dict[str, Any]", value).values()))
+
+
+def _modules(value: Any) -> bool:
+    return isinstance(value, dict) and all(map(_pair, cast("dict[str, Any]", value).values()))
+
+
+def _pair(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and len(cast("list[Any]", value)) == 2 and all(map(_text, cast("list[Any]", value)))
+
+
+def _ended(value: Any) -> bool:
+    return value is None or (isinstance(value, dict) and _text(cast("dict[str, Any]", value).get("by")))
+
+
+_TEXT = _Kind("a text", _text)
+_TEXTS = _Kind("texts by their names", _texts)
+_SEED = _Kind("a whole number or a text", _seed)
+_PERIOD = _Kind("a whole number above 0", _whole)
+_DICT = _Kind("values by their names", _dict)
+_FLAG = _Kind("true or false", _flag)
+_KINDS = {
+    "form": _TEXT,
+    "versions": _TEXTS,
+    "kind": _Kind("'simulation' or 'program'", _run_kind),
+    "file": _TEXT,
+    "sources": _TEXTS,
+    "helpers": _Kind("a file and a text by the names of modules", _modules),
+    "parameters": _DICT,
+    "built": _FLAG,
+    "seed": _SEED,
+    "program_seed": _SEED,
+    "until": _Kind("a number above 0, or null", _until),
+    "period_us": _PERIOD,
+    "timestep_us": _PERIOD,
+    "scene": _TEXT,
+    "compiled": _TEXT,
+    "world": _DICT,
+    "ended": _Kind('{"by": a text}, or null', _ended),
+    "failed": _Kind("a text, or null", _failed),
+    "whole": _FLAG,
+}
+"""Facts that this library or the workbench reads; what others are, whoever writes them knows."""
+_SHOWN = 60
+"""No more of a wrong value is quoted [characters]."""
+
+
+def check_fact(name: str, value: Any) -> None:
+    """Raises an error where a fact is not what the readers of recordings expect; nothing is expected of others than theirs.
+
+    Raises:
+        RecordingError: If it is another value.
+    """
+    kind = _KINDS.get(name)
+    if kind is not None and not kind.fits(value):
+        shown = repr(value)
+        shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
+        raise RecordingError(f"the fact '{name}' of a recording must be {kind.words} (got {shown})")
+
+
+def check_facts(facts: Mapping[str, Any]) -> None:
+    """Does so with all of them, and raises an error where those are missing that every recording has.
+
+    Raises:
+        RecordingError: If one is missing or has a wrong value.
+    """
+    missing = [name for name in ("kind", "versions") if name not in facts]
+    if missing:
+        raise RecordingError(f"it does not say its {' and '.join(missing)}")
+    for name, value in facts.items():
+        check_fact(name, value)

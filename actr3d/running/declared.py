@@ -1,0 +1,92 @@
+"""The function `build` of a model file, as its text declares it; nothing is run."""
+
+from __future__ import annotations
+
+import ast
+
+from actr3d.actr.sources import syntax_tree
+from actr3d.errors import ModelFileError
+
+RIGHT = "`def build(parameters: Parameters) -> Simulation`, where Parameters is a frozen dataclass, or `def build() -> Simulation`"
+
+
+def has_build(source: str) -> bool:
+    """Returns whether a model's text has a function `build` that says it returns a `Simulation`."""
+    return any(isinstance(node, ast.FunctionDef) and _returns_simulation(node) for node in _builds(syntax_tree(source)))
+
+
+def check_build(source: str, filename: str) -> None:
+    """Checks what a model's text calls `build`.
+
+    Raises:
+        ModelFileError: If it is meant to build a simulation, and cannot; names the line, what was found, and what would be right.
+    """
+    found = problem_of_build(source)
+    if found is not None:
+        raise ModelFileError(f"{filename}:{found[0]}: {found[1]}")
+
+
+def problem_of_build(source: str) -> tuple[int, str] | None:
+    """Returns the line of what a model's text calls `build`, and what is wrong with it; None where nothing is.
+
+    A program may have a function of that name for itself: one that it uses is not meant.
+    """
+    tree = syntax_tree(source)
+    builds = _builds(tree)
+    if not builds:
+        return None
+    node = builds[-1]
+    said = isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and _returns_simulation(node)
+    if not said and any(isinstance(one, ast.Name) and one.id == "build" and isinstance(one.ctx, ast.Load) for one in ast.walk(tree)):
+        return None
+    wrong = _wrong(node, tree)
+    return None if wrong is None else (node.lineno, f"{wrong}; it must be {RIGHT}" + ("" if said else " (or have another name)"))
+
+
+def _builds(tree: ast.Module) -> list[ast.stmt]:
+    """Returns the statements of a text that give the name `build` a meaning."""
+    return [node for node in tree.body if "build" in _names(node)]
+
+
+def _names(node: ast.stmt) -> list[str]:
+    if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        return [node.name]
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        return [alias.asname or alias.name for alias in node.names]
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+    return [target.id for target in targets if isinstance(target, ast.Name)]
+
+
+def _wrong(node: ast.stmt, tree: ast.Module) -> str | None:
+    """Returns what is wrong with a statement that gives `build` its meaning; None where nothing is."""
+    if isinstance(node, ast.AsyncFunctionDef):
+        return "build is an async function"
+    if not isinstance(node, ast.FunctionDef):
+        kind = "a class" if isinstance(node, ast.ClassDef) else "imported" if isinstance(node, (ast.Import, ast.ImportFrom)) else "a value"
+        return f"build is {kind}, not a function that is defined in this file"
+    head = f"build({ast.unparse(node.args)})"
+    if not _returns_simulation(node):
+        returned = "does not say what it returns" if node.returns is None else f"says that it returns {ast.unparse(node.returns)}"
+        return f"{head} {returned}, not a Simulation"
+    return _wrong_arguments(head, node.args, tree)
+
+
+def _wrong_arguments(head: str, args: ast.arguments, tree: ast.Module) -> str | None:
+    named = [*args.posonlyargs, *args.args]
+    if args.vararg or args.kwarg or args.kwonlyargs:
+        return f"{head} takes arguments by name only, or any number of them"
+    if len(named) > 1:
+        return f"{head} takes {len(named)} arguments"
+    if named and named[0].annotation is None:
+        return f"{head} does not say which dataclass its parameters are of"
+    kind = ast.unparse(named[0].annotation).strip("'\"") if named and named[0].annotation is not None else ""
+    defined = {one.name: one for one in tree.body if isinstance(one, (ast.ClassDef, ast.FunctionDef))}.get(kind)
+    if kind in ("int", "float", "str", "bool", "dict", "list", "tuple", "object", "Any") or (
+        defined is not None and not (isinstance(defined, ast.ClassDef) and (defined.decorator_list or defined.bases))
+    ):
+        return f"{head} takes {kind}, which is no dataclass"
+    return None
+
+
+def _returns_simulation(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    return node.returns is not None and ast.unparse(node.returns).strip("'\"").rpartition(".")[2] == "Simulation"

@@ -1,0 +1,42 @@
+// Changing something in the past of a run: how it had gone on is kept as a branch, or the user is asked whether it may be lost.
+
+import { html, signal } from "../vendor/preact.js";
+import { confirmed } from "../parts/dialog.js";
+import { isLeft, say } from "../server.js";
+import { complain, session } from "../store.js";
+import { openRun } from "../runs/doing.js";
+import { furthest, inThePast, present } from "../timeline/seek.js";
+
+const seconds = (time) => `${time.toFixed(2)} s`;
+
+/** Sends a command that changes the run; where the run stands in its past and is not recorded, asks first. Returns whether it was
+ * sent; throws an Error that says why it cannot be done. */
+export async function change(what) {
+  const { recording, recorded, branched } = session.peek() ?? {};
+  const isKept = recording || (recorded && !branched); // the run itself, or the one that is lived through again
+  if (!inThePast.peek() || isKept) return say(what).then(() => true);
+  const [here, end] = [seconds(present.peek()), seconds(furthest.peek())];
+  const text = `The run stands at ${here} and has come to ${end}. It is not recorded: if it is changed here, what came after ${here} is lost.`;
+  if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
+  await say({ ...what, drop: true });
+  return true;
+}
+
+/** The same; an error is shown among the messages. */
+export function orderChange(what) {
+  return change(what).catch((error) => isLeft(error) || complain(error.message));
+}
+
+const dismissed = signal(null); // the branch of which the user has read
+
+/** Tells, in the line below, what was kept when the run was changed in its past. */
+export function Branch() {
+  const { branched, model } = session.value ?? {};
+  if (!branched || branched.recording === dismissed.value) return null;
+  const { recording, at, until } = branched;
+  const open = () => openRun({ id: recording, model, made: Date.now() / 1000 });
+  return html`<span class="former branched" role="status" title="Kept as the recording ${recording}; it is listed in Runs">
+    <span>Changed at ${seconds(at)}: the run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button></span>
+    <button class="bare" aria-label="Dismiss" title="Dismiss; the branch stays in Runs" onClick=${() => (dismissed.value = recording)}>✕</button>
+  </span>`;
+}

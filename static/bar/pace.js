@@ -1,0 +1,21 @@
+// How a run that goes at real time can go faster: said in the line below until the user has changed a speed once.
+
+import { html } from "../vendor/preact.js";
+import { remembered } from "../remembered.js";
+import { session, state } from "../store.js";
+
+/** Whether the user has changed the speed of a run on any visit. */
+export const speedIsKnown = remembered("speed known", false);
+
+let faster = () => {};
+
+/** Takes what chooses the next higher speed. */
+export function bindFaster(work) {
+  faster = work;
+}
+
+export function Hint() {
+  const hasBody = Object.keys(session.value?.world?.bodies ?? {}).length > 0;
+  if (speedIsKnown.value || !hasBody || state.value?.wanted !== 1) return null;
+  return html`<button class="pace-hint" title="A model with a body goes at real time at first. + and -, or the choice of speeds above, change that" onClick=${() => faster()}>Real time: press + to go faster</button>`;
+}

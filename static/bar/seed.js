@@ -1,0 +1,51 @@
+// The seed of the run, as a field: Enter runs the model from its start with the seed that is written there.
+
+import { html, useSignal } from "../vendor/preact.js";
+import { order } from "../server.js";
+import { session } from "../store.js";
+
+const MOST = 2n ** 63n - 1n;
+
+/** Says why a text is no seed; null where it is one. */
+export function seedProblem(text) {
+  const written = text.trim();
+  if (!/^\d+$/.test(written)) return `a seed is a whole number from 0 on (got «${written.slice(0, 40)}»)`;
+  return written.length > 19 || BigInt(written) > MOST ? `a seed is at most ${MOST} (got ${written.slice(0, 40)})` : null;
+}
+
+export function SeedField() {
+  const draft = useSignal(null); // what is being written: {of, text}
+  const { id, run, seed } = session.value ?? {};
+  const known = seed === null || seed === undefined ? "" : String(seed);
+  const of = `${id} ${run}`;
+  const mine = draft.value?.of === of ? draft.value : null; // what was written for another run is nothing of this one
+  const text = mine?.text ?? known;
+  const problem = mine?.told ? seedProblem(text) : null;
+  // JavaScript has no whole number as large as the largest seed: it goes as text.
+  function press(event) {
+    if (event.key === "Escape") draft.value = null;
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    const wanted = event.currentTarget.value;
+    draft.value = { of, text: wanted, told: true };
+    if (seedProblem(wanted) !== null) return;
+    order({ type: "restart", seed: wanted.trim() });
+    event.currentTarget.blur();
+  }
+  return html`<label class="seed-field ${mine && text !== known ? "waits" : ""}" title="The seed of the run. Enter restarts with the one that is written here">
+    <input
+      aria-label="Seed"
+      inputmode="numeric"
+      autocomplete="off"
+      spellcheck="false"
+      disabled=${!session.value}
+      value=${text}
+      aria-invalid=${Boolean(problem)}
+      onFocus=${(event) => event.currentTarget.select()}
+      onInput=${(event) => (draft.value = { of, text: event.currentTarget.value, told: false })}
+      onKeyDown=${press}
+      onBlur=${() => (draft.value = null)}
+    />
+    ${problem ? html`<span class="seed-problem bad" role="alert">${problem}</span>` : null}
+  </label>`;
+}

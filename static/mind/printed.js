@@ -1,0 +1,94 @@
+// What the model prints, line by line with the numbers of its events: kept whole, though the list of events forgets the oldest.
+
+import { signal } from "../vendor/preact.js";
+import { say } from "../server.js";
+import { alive, listeners, state, whichRun } from "../store.js";
+import { firstWhere } from "../timeline/search.js";
+
+const MOST = 500_000; // lines; of more the oldest are left out
+const AT_ONCE = 20_000; // so many events the run is asked for at once
+
+/** Counts how often the lines have changed. */
+export const printedVersion = signal(0);
+
+/** The lines in order, each {number, text}; `gaps` are the events that were never told, each [from, to]. */
+let lines = [];
+let gaps = [];
+let next = 0; // the number of the event that comes next
+let dropped = 0; // how many lines were left out, for there are too many
+let of = ""; // of which run of which session
+
+function reset(run) {
+  lines = [];
+  gaps = [];
+  next = 0;
+  dropped = 0;
+  of = run;
+  printedVersion.value += 1;
+}
+
+/** Returns where in the lines the first is whose event has at least a number. */
+function placeOf(number) {
+  return firstWhere(lines, (line) => line.number >= number);
+}
+
+function hear({ of: session, run, events: news }) {
+  if (of !== `${session} ${run}`) reset(`${session} ${run}`);
+  if (!news) return;
+  const { cut, first, list } = news;
+  const before = lines.length;
+  if (cut !== undefined && cut < next) {
+    lines.length = placeOf(cut);
+    gaps = gaps.map(([from, to]) => [from, Math.min(to, cut)]).filter(([from, to]) => from < to);
+    next = cut;
+  }
+  if (list.length === 0) {
+    if (lines.length !== before) printedVersion.value += 1;
+    return;
+  }
+  if (first > next) gaps.push([next, first]);
+  list.forEach(([, , kind, data], n) => {
+    if (kind === "output" && first + n >= next) lines.push({ number: first + n, text: String(data?.text ?? data?.["…"] ?? "") });
+  });
+  next = Math.max(next, first + list.length);
+  if (lines.length > MOST) {
+    dropped += lines.length - 0.9 * MOST;
+    lines.splice(0, lines.length - 0.9 * MOST);
+  }
+  printedVersion.value += 1;
+}
+
+listeners.add(hear);
+
+/** Returns what is known of the run that is shown: {lines, gaps, dropped, of}. */
+export function printed() {
+  printedVersion.value;
+  return of === whichRun() ? { lines, gaps, dropped, of } : { lines: [], gaps: [], dropped: 0, of: "" };
+}
+
+let asking = false;
+
+/** Asks the run for what was printed in events that the page was never told, up to the present moment. */
+export async function fillGaps() {
+  if (asking || !alive.peek() || of !== whichRun()) return;
+  const [from, to] = gaps[0] ?? [];
+  const until = Math.min(to ?? 0, state.peek()?.events ?? 0);
+  if (gaps.length === 0 || until <= from) return;
+  asking = true;
+  const mine = of;
+  try {
+    const answer = await say({ type: "events", first: from, most: Math.min(AT_ONCE, until - from), kinds: ["output"] });
+    const gap = gaps[0];
+    if (mine !== of || gap?.[0] !== from) return;
+    const found = answer.events.map(([, , , data], n) => ({ number: answer.numbers[n], text: String(data?.text ?? "") }));
+    lines.splice(placeOf(from), 0, ...found.filter(({ number }) => number < gap[1]));
+    gap[0] = Math.min(answer.next, gap[1]);
+    if (gap[0] >= gap[1]) gaps.shift();
+    if (answer.next <= from) gaps.shift(); // the run does not know them, either
+    printedVersion.value += 1;
+  } catch {
+    // Another run is shown by now, or it has ended: what is missing is said.
+  } finally {
+    asking = false;
+  }
+}

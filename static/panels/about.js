@@ -1,0 +1,85 @@
+// What the model says of itself: its docstring, with values to try, and the way to its text.
+
+import { h, html, signal, useLayoutEffect } from "../vendor/preact.js";
+import { Icon } from "../parts/icon.js";
+import { openAt } from "../parts/place.js";
+import { call, order } from "../server.js";
+import { standing } from "../standing.js";
+import { session } from "../store.js";
+
+/** The elements that a description may have; the server sends no others. */
+const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"]);
+const told = signal({ key: "", answer: null, problem: null });
+
+/** Says of which text of which run a description is. */
+function keyOf({ id, run, attempt, shown_attempt: shown }) {
+  return `${id} ${run} ${shown ?? attempt}`;
+}
+
+async function follow(wanted) {
+  const key = keyOf(wanted);
+  if (told.peek().key === key) return;
+  told.value = { key, answer: null, problem: null };
+  let answer = null;
+  let problem = null;
+  try {
+    answer = await call("GET", `/api/sessions/${encodeURIComponent(wanted.id)}/about`);
+  } catch (error) {
+    problem = error.message;
+  }
+  if (told.peek().key === key) told.value = { key, answer, problem };
+}
+
+/** Runs the model from its start with these values of parameters. */
+function attempt(settings) {
+  order({ type: "restart", settings, run: true });
+}
+
+/** Draws a node: a text, or an element with what is in it. Whatever it says is text. */
+function Node({ node }) {
+  if (typeof node === "string") return node;
+  const { tag, children, settings, href } = node;
+  if (!ELEMENTS.has(tag)) return html`<${Nodes} nodes=${children} />`;
+  if (settings) {
+    return html`<button class="try" disabled=${!session.value} title="Run the model from its start with these values" onClick=${() => attempt(settings)}>
+      <${Icon} name="run" /><code>${children}</code>
+    </button>`;
+  }
+  const more = tag === "a" ? { href, target: "_blank", rel: "noopener noreferrer" } : null;
+  return h(tag, more, ...children.map((child) => h(Node, { node: child })));
+}
+
+function Nodes({ nodes }) {
+  return nodes.map((node) => h(Node, { node }));
+}
+
+function About() {
+  const shown = session.value;
+  useLayoutEffect(() => void (shown && follow(shown)));
+  if (!shown) return html`<p class="empty">${standing.value.text}</p>`;
+  const { answer, problem } = told.value;
+  const file = shown.model.split("/").at(-1);
+  const isLost = standing.value.is === "unloadable";
+  return html`<div class="about-frame"><article class="about">
+    <header>
+      <span class="mono">${file}</span>
+      <button title="Open its file in the editor" onClick=${() => openAt(shown.model, 1)}><${Icon} name="pen" />Edit</button>
+    </header>
+    ${isLost ? html`<p class="bad">${standing.value.text}</p>` : null}
+    ${problem ? html`<p class="bad">The description cannot be read: ${problem}</p>` : null}
+    ${answer ? html`<${Description} answer=${answer} />` : null}
+  </article></div>`;
+}
+
+function Description({ answer: { title, nodes, cut, readable } }) {
+  if (title.length === 0 && nodes.length === 0) {
+    return readable
+      ? html`<p class="quiet">This model has no description. A text in triple quotes at the beginning of its file is shown here.</p>`
+      : html`<p class="quiet">The text of this model cannot be read as Python, so its description is not known.</p>`;
+  }
+  return html`<h2><${Nodes} nodes=${title} /></h2>
+    <${Nodes} nodes=${nodes} />
+    ${cut ? html`<p class="quiet">The description is longer; its file has all of it.</p>` : null}`;
+}
+
+export const about = { id: "about", title: "About", View: About };

@@ -1,0 +1,132 @@
+// What the model prints, as it is printed, with the warnings and errors of the run at their places; it goes back with the run.
+
+import { html, useEffect, useMemo } from "../vendor/preact.js";
+import { fillGaps, printed, printedVersion } from "../mind/printed.js";
+import { CopyButton } from "../parts/copy.js";
+import { counted } from "../parts/count.js";
+import { Icon } from "../parts/icon.js";
+import { Lines } from "../parts/lines.js";
+import { saveFile } from "../parts/picture.js";
+import { Place } from "../parts/place.js";
+import { remembered } from "../remembered.js";
+import { nothingYet } from "../standing.js";
+import { alive, moment, notices, session, state } from "../store.js";
+import { firstWhere } from "../timeline/search.js";
+
+const LONGEST = 2000; // so much of a line is drawn [characters]
+const words = remembered("console words", "");
+
+/** What a terminal would obey, or what turns the order of letters: it is shown, and does nothing. */
+const CONTROL = /\u001b\[[0-?]*[ -/]*[@-~]|[\u0000-\u0008\u000a-\u001f\u007f-\u009f\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ufeff]/g;
+
+/** Returns a control character as Python writes it, with what belongs to it. */
+function signOf(control) {
+  const code = control.codePointAt(0);
+  const sign = { 10: "\\n", 13: "\\r" }[code] ?? (code < 0x100 ? `\\x${code.toString(16).padStart(2, "0")}` : `\\u${code.toString(16).padStart(4, "0")}`);
+  return sign + control.slice(1);
+}
+
+/** Draws a text of any kind as it is: spaces and tabs as they are, and what controls terminals as signs. */
+function Written({ text }) {
+  const shown = text.slice(0, LONGEST);
+  const parts = [];
+  let at = 0;
+  for (const found of shown.matchAll(CONTROL)) {
+    parts.push(shown.slice(at, found.index), html`<span class="control" title="a control character: it does nothing here">${signOf(found[0])}</span>`);
+    at = found.index + found[0].length;
+  }
+  parts.push(shown.slice(at));
+  const more = text.length - shown.length;
+  return html`${parts}${more > 0 ? html`<span class="control"> … ${more.toLocaleString("en")} more characters; a copy has them</span>` : null}`;
+}
+
+/** Returns the notices of the run that is shown which came before an event, in order. */
+function noticesUpTo(now) {
+  const { shown_attempt: attempt, cuts = [] } = session.value ?? {};
+  const isGone = ({ number, events }) => cuts.some(([before, cut]) => number < before && events > cut);
+  return notices.value.filter((notice) => notice.attempt === attempt && notice.number >= 0 && notice.events <= now && !isGone(notice)).toSorted((one, other) => one.events - other.events);
+}
+
+/** What is in the console: lines and notices, each at its place. */
+class Listed {
+  constructor(lines, told) {
+    this.lines = lines;
+    this.told = told;
+    /** The place of each notice among all. */
+    this.places = told.map(({ events }, n) => firstWhere(lines, ({ number }) => number >= events) + n);
+    this.count = lines.length + told.length;
+  }
+
+  /** Returns [line, null] or [null, notice]. */
+  at(place) {
+    const before = firstWhere(this.places, (one) => one >= place);
+    return this.places[before] === place ? [null, this.told[before]] : [this.lines[place - before], null];
+  }
+
+  /** Returns all of it as text. */
+  get text() {
+    return Array.from({ length: this.count }, (_, n) => textOf(this.at(n))).map((line) => `${line}\n`).join("");
+  }
+}
+
+function textOf([line, notice]) {
+  if (line) return line.text;
+  const { level, file, line: number, text } = notice;
+  return `${level === "info" ? "" : `${level}: `}${file ? `${file}:${number}: ` : ""}${text}`;
+}
+
+function useListed() {
+  const now = state.value?.events ?? 0;
+  const version = printedVersion.value;
+  const wanted = words.value.toLowerCase();
+  const has = (text) => text.toLowerCase().includes(wanted);
+  const { lines, gaps, dropped, of } = printed();
+  const present = firstWhere(lines, ({ number }) => number >= now);
+  const told = noticesUpTo(now);
+  const shown = useMemo(() => {
+    const past = present === lines.length ? lines : lines.slice(0, present);
+    return wanted ? past.filter(({ text }) => has(text)) : past;
+  }, [version, present, wanted]);
+  const listed = new Listed(shown, wanted ? told.filter((notice) => has(textOf([null, notice]))) : told);
+  return { listed, ahead: lines.length - present, all: present + told.length, gaps, dropped, of };
+}
+
+function Line({ entry: [line, notice] }) {
+  if (line) return html`<div><${Written} text=${line.text} /></div>`;
+  const { level, file, line: number, text } = notice;
+  return html`<div class=${level}>${level === "info" ? null : html`<span class="level">${level}</span> `}${file ? html`<${Place} file=${file} line=${number} /> ` : null}<${Written} text=${text.replaceAll(/\s*\n\s*/g, " ")} /></div>`;
+}
+
+function Notes({ gaps, dropped, ahead }) {
+  const now = state.value?.events ?? 0;
+  const missing = gaps.reduce((sum, [from, to]) => sum + Math.max(0, Math.min(to, now) - from), 0);
+  return html`
+    ${dropped > 0 ? html`<p class="note">The first ${counted(dropped, "line is", "lines are")} left out: there are too many.</p>` : null}
+    ${missing > 0 ? html`<p class="note" role="status">${alive.value ? "Lines from earlier in the run are being fetched …" : `What was printed in ${counted(missing, "earlier event")} is not known here any more; the recording has it.`}</p>` : null}
+    ${ahead > 0 ? html`<p class="note" role="status">${counted(ahead, "line")} printed after this moment ${ahead === 1 ? "is" : "are"} not shown.</p>` : null}
+  `;
+}
+
+function Console() {
+  const { listed, ahead, all, gaps, dropped, of } = useListed();
+  useEffect(() => {
+    const timer = setTimeout(fillGaps, 0);
+    return () => clearTimeout(timer);
+  }, [printedVersion.value, alive.value, moment.value]);
+  const name = `${(session.value?.model ?? "model").split("/").at(-1).replace(/\.py$/, "")}_seed_${session.value?.seed ?? ""}_console.txt`;
+  const save = () => saveFile(name, new Blob([listed.text], { type: "text/plain;charset=utf-8" }));
+  const none = all > 0 ? "No line has that text." : ahead > 0 ? "Nothing was printed before this moment." : nothingYet("Nothing was printed in this run.").replace("Nothing has happened yet", "Nothing has been printed yet");
+  return html`<div class="console">
+    <div class="tools" role="toolbar" aria-label="Console">
+      <input type="search" aria-label="Search the console" placeholder="Search" value=${words.value} onInput=${(event) => (words.value = event.currentTarget.value)} />
+      <span class="quiet number">${words.value ? `${listed.count} of ${counted(all, "line")}` : counted(all, "line")}</span>
+      <${CopyButton} text="Copy" title="Copy the lines that are shown" disabled=${listed.count === 0} copied=${() => listed.text} />
+      <button disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save</button>
+    </div>
+    <${Notes} gaps=${gaps} dropped=${dropped} ahead=${ahead} />
+    ${listed.count === 0 ? html`<p class="empty">${none}</p>` : null}
+    <${Lines} label="What the model prints" count=${listed.count} of=${`${of} ${words.value}`} line=${(n) => html`<${Line} key=${n} entry=${listed.at(n)} />`} />
+  </div>`;
+}
+
+export const consoleTab = { id: "console", title: "Console", View: Console };

@@ -1,0 +1,55 @@
+// Long text, line by line, of which only the lines in sight are drawn; it stays at its end until the user scrolls away from it.
+
+import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+
+const LINE = 18; // the height of a line, as lines.css has it [px]
+const SPARE = 20; // so many lines are drawn beyond what is in sight
+
+/**
+ * @param count How many lines there are.
+ * @param line Returns line n, drawn; it is as high as all others.
+ * @param of What the lines are of: where that is another one, the end is shown again.
+ */
+export function Lines({ label, count, line, of }) {
+  const box = useRef(null);
+  const atEnd = useRef(true);
+  const [view, setView] = useState({ top: 0, height: 400 });
+
+  function look() {
+    if (!box.current) return;
+    const { scrollTop: top, clientHeight: height } = box.current;
+    setView((before) => (before.top === top && before.height === height ? before : { top, height }));
+  }
+
+  function scrolled() {
+    if (!box.current) return;
+    const { scrollTop, clientHeight, scrollHeight } = box.current;
+    atEnd.current = scrollTop + clientHeight >= scrollHeight - LINE;
+    look();
+  }
+
+  useLayoutEffect(() => {
+    const watcher = new ResizeObserver(() => {
+      if (atEnd.current && box.current) box.current.scrollTop = box.current.scrollHeight;
+      look();
+    });
+    watcher.observe(box.current);
+    return () => watcher.disconnect();
+  }, []);
+  useLayoutEffect(() => {
+    atEnd.current = true;
+  }, [of]);
+  useLayoutEffect(() => {
+    if (atEnd.current) box.current.scrollTop = box.current.scrollHeight;
+    look();
+  }, [count, of]);
+
+  const top = Math.max(0, Math.min(view.top, count * LINE - view.height));
+  const from = Math.max(0, Math.floor(top / LINE) - SPARE);
+  const to = Math.min(count, Math.ceil((top + view.height) / LINE) + SPARE);
+  const drawn = [];
+  for (let n = from; n < to; n += 1) drawn.push(line(n));
+  return html`<div class="lines" ref=${box} tabindex="0" role="region" aria-label=${label} onScroll=${scrolled}>
+    <div style=${{ height: `${count * LINE}px`, paddingTop: `${from * LINE}px` }}>${drawn}</div>
+  </div>`;
+}

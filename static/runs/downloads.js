@@ -1,0 +1,53 @@
+// Files of recordings: made by the server, which may take a while, and handed to the user; several at once.
+
+import { html, signal, useEffect, useSignal } from "../vendor/preact.js";
+import { saveFile } from "../parts/picture.js";
+import { fetchFile } from "../server.js";
+import { complain } from "../store.js";
+import { nameOf, sizeText } from "./words.js";
+
+/** Those that go on: {key, text, since, come, all}, with the bytes that have come and their number, 0 while the file is being made. */
+const downloads = signal([]);
+const cancels = new Map();
+
+function note(key, told) {
+  downloads.value = downloads.value.map((one) => (one.key === key ? { ...one, ...told } : one));
+}
+
+/** Fetches a file of a recording and hands it to the user. What goes wrong is shown as a message. */
+export async function download(run, form, title) {
+  const key = `${run.id}.${form}`;
+  if (cancels.has(key)) return; // it is on its way
+  const cancel = new AbortController();
+  cancels.set(key, cancel);
+  const text = `${title} of ${nameOf(run)}`;
+  downloads.value = [...downloads.value, { key, text, since: Date.now(), come: 0, all: 0 }];
+  try {
+    const blob = await fetchFile(`/api/recordings/${run.id}/file?form=${form}`, cancel.signal, (come, all) => note(key, { come, all }));
+    saveFile(key, blob);
+  } catch (error) {
+    if (!cancel.signal.aborted) complain(`Not downloaded: ${text}: ${error.message}`);
+  }
+  cancels.delete(key);
+  downloads.value = downloads.value.filter((one) => one.key !== key);
+}
+
+function Going({ key_, text, since, come, all }) {
+  const passed = useSignal(0);
+  useEffect(() => {
+    const clock = setInterval(() => (passed.value = (Date.now() - since) / 1000), 200);
+    return () => clearInterval(clock);
+  }, [since]);
+  const far = all > 0 ? `${sizeText(come)} of ${sizeText(all)}` : `being made, ${passed.value.toFixed(0)} s`;
+  return html`<li>
+    <progress aria-label="Downloading" value=${all > 0 ? come / all : undefined}></progress>
+    <span class="text">${text}</span> <span class="number quiet">${far}</span>
+    <button class="bare" aria-label=${`Cancel ${text}`} onClick=${() => cancels.get(key_)?.abort()}>Cancel</button>
+  </li>`;
+}
+
+/** The downloads that go on, of any recording. */
+export function Downloads() {
+  if (downloads.value.length === 0) return null;
+  return html`<ul class="going" role="status" aria-label="Downloads">${downloads.value.map((one) => html`<${Going} key=${one.key} key_=${one.key} ...${one} />`)}</ul>`;
+}

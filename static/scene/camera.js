@@ -1,0 +1,142 @@
+// The camera of this browser: which view it has, and how it goes along with the body. It moves viser's own camera controls, which
+// turn, shift and zoom by mouse.
+
+import { FOV, anchorOf, standing } from "./stage.js";
+import { cross, plus } from "./space.js";
+
+const SLIGHT = 1e-6; // smaller moves are none [m]
+const DEEP = 500; // without perspective, so much before and behind what is looked at is seen [m]
+
+/** @param viewer Viser's own objects. */
+export class SceneCamera {
+  constructor(viewer) {
+    this.viewer = viewer;
+    this.camera = viewer.camera;
+    this.controls = viewer.cameraControl;
+    this.view = null;
+    this.flat = false; // whether the picture is without perspective
+    this.anchor = [0, 0, 0];
+    this.room = () => 1;
+    this.aspect = 0;
+    this.touched = false; // whether the user has moved it
+    this.vector = this.camera.position.clone();
+    this.other = this.vector.clone();
+    this.matrix = this.camera.matrix.clone();
+    const { camera } = this;
+    const usual = camera.updateProjectionMatrix;
+    camera.updateProjectionMatrix = () => {
+      usual.call(camera);
+      if (this.flat) this.flatten();
+    };
+    this.actions = this.controls.constructor.ACTION;
+    for (const kind of ["controlstart", "control"]) this.controls.addEventListener(kind, () => (this.touched = true));
+    camera.up.copy(this.toThree([0, 0, 1], true));
+    this.controls.updateCameraUp();
+  }
+
+  get root() {
+    return this.viewer.nodeRefFromName[""];
+  }
+
+  /** Returns a place of the world, or a direction, in the frame of three.js. */
+  toThree(place, direction = false) {
+    const found = this.vector.set(...place).applyMatrix4(this.root.matrixWorld);
+    return direction ? found.sub(this.other.set(0, 0, 0).applyMatrix4(this.root.matrixWorld)) : found;
+  }
+
+  /** Puts the camera where a view begins. From the view with the body, `free` stays where it is. */
+  choose(view, stage, now) {
+    const stays = view === "free" && this.view === "follow";
+    this.view = view;
+    this.touched = stays;
+    this.aspect = this.camera.aspect;
+    const { controls, camera, actions } = this;
+    this.flat = view === "top" || view === "side";
+    controls.setFocalOffset(0, 0, 0, false);
+    // What is seen without perspective is shifted, not turned; what is followed is shifted within the picture, so that it turns about the body.
+    controls.mouseButtons.left = this.flat ? actions.TRUCK : actions.ROTATE;
+    controls.mouseButtons.right = view === "follow" ? actions.OFFSET : actions.TRUCK;
+    controls.maxPolarAngle = this.flat ? Math.PI : 0.52 * Math.PI; // not below the ground
+    this.setFov(FOV);
+    this.anchor = anchorOf(view, stage, now.body);
+    if (view !== "eye" && !stays) {
+      const { target, back, distance } = standing(view, stage, now.body, camera.aspect, this.room());
+      const place = this.toThree(plus(target, back, distance)).toArray();
+      controls.setLookAt(...place, ...this.toThree(target).toArray(), false);
+    }
+    camera.updateProjectionMatrix();
+    this.viewer.requestRender();
+  }
+
+  setFov(fov) {
+    const degrees = (fov * 180) / Math.PI;
+    if (Math.abs(this.camera.fov - degrees) < 1e-6) return;
+    this.camera.fov = degrees;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Moves the camera with what is shown now; just before each picture. */
+  follow(stage, now) {
+    if (this.view === "eye") {
+      if (now.eye) this.lookThrough(now.eye);
+      return;
+    }
+    // The picture's shape has changed, as a panel has become wider: what was in view stays in view.
+    if (!this.touched && Math.abs(this.camera.aspect - this.aspect) > 0.01) this.choose(this.view, stage, now);
+    const anchor = anchorOf(this.view, stage, now.body);
+    const target = this.controls.getTarget(this.other.clone());
+    const wanted = this.view === "follow" ? this.toThree(anchor).clone() : this.toThree(plus(anchor, this.anchor, -1), true).clone().add(target);
+    this.anchor = anchor;
+    const way = wanted.clone().sub(target);
+    if (way.length() > SLIGHT) {
+      this.controls.moveTo(...wanted.toArray(), false);
+      this.camera.position.add(way); // the controls do so only for the next picture
+    }
+    if (this.flat) this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+  }
+
+  /** Looks where an eye looks, as high as it sees; how wide a browser sees depends on its window. */
+  lookThrough({ place, forward, up, fov }) {
+    const { camera } = this;
+    this.setFov(Math.min(fov, 2.6));
+    const left = cross(up, forward);
+    camera.position.copy(this.toThree(place));
+    const axes = [left.map((x) => -x), up, forward.map((x) => -x)].map((axis) => this.toThree(axis, true).clone());
+    camera.quaternion.setFromRotationMatrix(this.matrix.makeBasis(...axes));
+    camera.updateMatrixWorld();
+  }
+
+  /** Replaces the projection by one without perspective, as high as the picture was at what the camera looks at. */
+  flatten() {
+    const { camera } = this;
+    const high = this.controls.distance * Math.tan(FOV / 2);
+    const wide = high * camera.aspect;
+    camera.projectionMatrix.makeOrthographic(-wide, wide, high, -high, -DEEP, DEEP, camera.coordinateSystem, camera.reversedDepth);
+    camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
+  }
+
+  /** Returns where a place of the world is in the picture: x and y from 0 to 1, from the left and from above, and its depth [m]. */
+  at(place) {
+    const point = this.toThree(place).applyMatrix4(this.camera.matrixWorldInverse);
+    const depth = this.flat ? 1 : -point.z;
+    point.applyMatrix4(this.camera.projectionMatrix);
+    return { x: (1 + point.x) / 2, y: (1 - point.y) / 2, depth };
+  }
+
+  /** Returns how high in the picture one metre is at a depth, as a part of its height. */
+  scaleAt(depth) {
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    return 1 / (2 * half * (this.flat ? this.controls.distance : Math.max(depth, 0.05)));
+  }
+
+  /** Returns where the horizon is in the picture, from 0 above to 1 below; without perspective, where the ground of the stage is. */
+  horizon(stage) {
+    const { camera } = this;
+    const forward = camera.getWorldDirection(this.other.clone());
+    const pitch = Math.asin(Math.max(-1, Math.min(1, forward.dot(camera.up))));
+    if (this.flat) return this.view === "top" ? -1 : this.at([stage.start[0], stage.start[1], stage.ground]).y;
+    if (Math.abs(pitch) > 1.4) return pitch > 0 ? 2 : -1;
+    return 0.5 + Math.tan(pitch) / Math.tan((camera.fov * Math.PI) / 360) / 2;
+  }
+}

@@ -1,0 +1,83 @@
+// The labels in the 3D view: text of the page over the picture, which never covers another label or a head.
+
+const GAP = 3; // between labels [px]
+const LIFT = 10; // how far above its place a label stands [px]
+const STEPS = 40; // so many places are tried for each
+const AWAY = 26; // a label farther from its place than this has a line to it [px]
+
+const overlap = (a, b) => a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height && b.top < a.top + a.height;
+
+/**
+ * Returns for each label its rectangle, or null where there is no room; earlier ones come first.
+ * @param wanted Labels: `x` and `y` of their places, `width` and `height` [px].
+ * @param blocked Rectangles that stay free.
+ * @param size Width and height of the picture [px].
+ */
+export function placed(wanted, blocked, size) {
+  const taken = [...blocked];
+  return wanted.map(({ x, y, width, height }) => {
+    if (x < 0 || x > size.width || y < 0 || y > size.height || width > size.width) return null;
+    const left = Math.max(0, Math.min(size.width - width, x - width / 2));
+    for (let step = 0; step < STEPS; step++) {
+      // Above its place, higher and higher; then below, lower and lower.
+      for (const top of [y - LIFT - height - step * 6, y + LIFT + step * 6]) {
+        const box = { left: left - GAP, top: top - GAP, width: width + 2 * GAP, height: height + 2 * GAP };
+        if (top < 0 || top + height > size.height || taken.some((other) => overlap(box, other))) continue;
+        const found = { left, top, width, height };
+        taken.push(found);
+        return found;
+      }
+    }
+    return null;
+  });
+}
+
+export class Labels {
+  constructor() {
+    this.layer = document.createElement("div");
+    this.layer.className = "scene-labels";
+    document.body.append(this.layer);
+    this.shown = [];
+  }
+
+  /**
+   * @param labels What is told: `text`, `place` in the world, whether attention was given to it (`chosen`).
+   * @param heads Spheres that no label covers: x, y, z, radius.
+   */
+  draw(labels, heads, camera) {
+    const size = { width: innerWidth, height: innerHeight };
+    while (this.shown.length < labels.length) {
+      const label = document.createElement("p");
+      this.layer.append(label);
+      this.shown.push({ label, text: "", width: 0, height: 0, style: "" });
+    }
+    const blocked = heads.map(([x, y, z, radius]) => {
+      const at = camera.at([x, y, z]);
+      const half = radius * camera.scaleAt(at.depth) * size.height;
+      return at.depth > 0 ? { left: at.x * size.width - half, top: at.y * size.height - half, width: 2 * half, height: 2 * half } : null;
+    });
+    const wanted = labels.map(({ text, place, chosen }, n) => {
+      const one = this.shown[n];
+      if (one.text !== text) {
+        one.text = one.label.textContent = text;
+        ({ offsetWidth: one.width, offsetHeight: one.height } = one.label);
+      }
+      one.label.classList.toggle("chosen", chosen);
+      const at = camera.at(place);
+      return { x: at.depth > 0 ? at.x * size.width : -1, y: at.y * size.height, width: one.width, height: one.height };
+    });
+    const boxes = placed(wanted, blocked.filter(Boolean), size);
+    this.shown.forEach((one, n) => {
+      const box = boxes[n];
+      let style = "visibility:hidden";
+      if (box) {
+        const { x, y } = wanted[n];
+        const above = y - (box.top + box.height);
+        const below = box.top - y;
+        const line = above > AWAY ? `--line-top:100%;--line:${above.toFixed(0)}px;` : below > AWAY ? `--line-top:${-below.toFixed(0)}px;--line:${below.toFixed(0)}px;` : "";
+        style = `transform:translate(${box.left.toFixed(1)}px,${box.top.toFixed(1)}px);${line}--line-left:${(x - box.left).toFixed(0)}px`;
+      }
+      if (one.style !== style) one.label.style = one.style = style;
+    });
+  }
+}

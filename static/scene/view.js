@@ -1,0 +1,100 @@
+// What the 3D view does beside viser, in viser's page: this browser's camera, ground and sky, labels. What is told comes from the
+// server with each state (`window.scene`, see `framed.js`); what is drawn is changed just before each picture, so that all of it is of one moment.
+
+import { SceneCamera } from "./camera.js";
+import { Ground } from "./ground.js";
+import { Labels } from "./labels.js";
+import { VIEWS } from "./stage.js";
+
+const { scene: given } = window;
+const HIDDEN = ["/overlays/frustum"]; // what is not drawn where one looks through the eye
+
+/** Returns viser's own objects, once there is a scene and something is told of it. */
+async function ready() {
+  for (;;) {
+    const viewer = window.__viserMutable;
+    if (viewer?.scene && viewer.cameraControl && viewer.backgroundMaterial && viewer.nodeRefFromName[""] && given.told.stage && given.told.now) return viewer;
+    await new Promise((done) => setTimeout(done, 15));
+  }
+}
+
+/** Returns "dark" or "light", as the page around has it, or viser's own. */
+function theme() {
+  const { theme: around } = parent === window ? {} : parent.document.documentElement.dataset;
+  return around ?? (document.documentElement.dataset.mantineColorScheme === "dark" ? "dark" : "light");
+}
+
+const viewer = await ready();
+const camera = new SceneCamera(viewer);
+const ground = new Ground(viewer);
+const labels = new Labels();
+const { told } = given;
+let { stage } = told;
+let shaded = null;
+let leftOut = false;
+
+/** Hides what a view leaves out, and shows it again in others, as far as viser shows it. */
+function leaveOut() {
+  const through = camera.view === "eye";
+  if (!through && !leftOut) return;
+  leftOut = through;
+  const nodes = window.__viserSceneTree.getState();
+  for (const [name, object] of Object.entries(viewer.nodeRefFromName)) {
+    if (object && HIDDEN.some((one) => name.startsWith(one))) object.visible = !through && nodes[name]?.effectiveVisibility !== false;
+  }
+}
+
+/** Returns how much of the picture's width the retina over it leaves free. */
+function room() {
+  const inset = parent === window ? null : parent.document.querySelector(".inset");
+  return inset ? Math.max(0.5, (innerWidth - inset.offsetWidth - 8) / innerWidth) : 1;
+}
+
+camera.room = room;
+
+function choose() {
+  camera.choose(given.view, told.stage, told.now);
+}
+
+viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
+  if (seenBy !== viewer.camera) return;
+  if (renderer.toneMapping) renderer.toneMapping = 0; // colours as they are told
+  if (told.stage !== stage) {
+    // Another scene: where it is set up differently, the camera begins anew.
+    const same = JSON.stringify({ ...told.stage, grounds: 0 }) === JSON.stringify({ ...stage, grounds: 0 });
+    stage = told.stage;
+    if (!same) choose();
+  }
+  const { now } = told;
+  camera.follow(stage, now);
+  leaveOut();
+  if (now !== shaded) {
+    ground.shade(now.shade, stage.ground);
+    shaded = now;
+  }
+  const shade = theme();
+  labels.layer.dataset.theme = shade;
+  ground.draw(shade, camera.horizon(stage), stage, camera.flat);
+  labels.draw(now.labels, now.heads, camera);
+};
+
+/** Without a page around it, it has switches of its own. */
+function addSwitches() {
+  const bar = document.createElement("div");
+  bar.className = "scene-views";
+  const select = document.createElement("select");
+  select.setAttribute("aria-label", "Camera");
+  select.append(...Object.entries(VIEWS).map(([view, title]) => new Option(title, view, false, view === given.view)));
+  select.onchange = () => given.choose(select.value);
+  const reset = document.createElement("button");
+  reset.textContent = "Reset view";
+  reset.onclick = () => given.choose(given.view);
+  bar.append(select, reset);
+  document.body.append(bar);
+}
+
+if (parent === window && new URLSearchParams(location.search).get("panel") !== "hidden") addSwitches();
+given.onview = choose;
+given.camera = camera;
+choose();
+new MutationObserver(() => viewer.requestRender()).observe((parent === window ? document : parent.document).documentElement, { attributeFilter: ["data-theme", "data-mantine-color-scheme"] });

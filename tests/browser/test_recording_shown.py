@@ -1,0 +1,105 @@
+"""A recording in a real browser: all of it is there at once, it is said to be one, and what was shown before stays reachable."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.looking import drawn, open_tab, shows
+from tests.browser.test_runs_panel import recorded, row
+from tests.server.serving import Served
+
+Pages = Callable[..., Page]
+
+FAILS = "raise ValueError('unlucky')\n"
+
+
+def sessions(workbench: Served) -> list[str]:
+    return [one["id"] for one in workbench.get("/api/sessions").json()["sessions"]]
+
+
+def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "doorway.py")
+    page = pages("counting.py", tab="runs")
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    row(page, name).click()
+    page.get_by_role("button", name="Open", exact=True).click()
+    banner = page.locator(".recording-banner")
+    expect(banner).to_contain_text(name)
+    expect(banner).to_contain_text("6.80 s are known")
+    shows(page, "#time", "t = 0.00 s")
+    assert page.url.endswith(f"/?recording={name}")
+    open_tab(page, "Productions")
+    expect(page.locator("#events tbody tr.ahead")).not_to_have_count(0)  # what will happen is there before it does
+    page.get_by_role("button", name="Newest moment").click()
+    shows(page, "#time", "t = 6.80 s")
+    shows(page, "#status", "ended: the model called stop")
+    page.get_by_role("button", name="Run again").click()  # from its start, and the recording stays one
+    shows(page, "#status", "ended: the model called stop")
+    expect(banner).to_contain_text(name)
+    before = sessions(workbench)
+    page.reload()
+    expect(banner).to_contain_text(name)
+    shows(page, "#time", "t = 6.80 s")
+    assert sessions(workbench) == before
+    page.go_back()
+    expect(banner).to_have_count(0)
+    shows(page, "#time", "t = 0.05 s")  # the run of before, where it was
+    assert page.url.endswith("/?model=counting.py")
+    page.go_forward()
+    expect(banner).to_contain_text(name)
+    banner.get_by_role("button", name="Back to the run of counting.py").click()
+    shows(page, "#time", "t = 0.05 s")
+    assert sessions(workbench) == before
+    page.get_by_label("Model", exact=True).select_option("doorway.py")  # which is no recording
+    shows(page, "#status", "at its start")
+    expect(banner).to_have_count(0)
+    page.goto(f"{workbench.url}/?recording={name}")
+    expect(banner).to_contain_text(name)
+    shows(page, "#time", "t = 6.80 s")
+    page.click("#restart")  # a new run of the model is no recording, and has the address of the model
+    expect(banner).to_have_count(0)
+    expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
+
+
+def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browser: Browser, workbench: Served) -> None:
+    with browser.new_context() as context:  # of its own: a browser always complains of what is not found
+        page = context.new_page()
+        page.goto(f"{workbench.address}&model=counting.py")
+        shows(page, "#status", "paused")
+        page.goto(f"{workbench.url}/?recording=gone")
+        open_tab(page, "Messages")
+        shows(page, "#log", "The recording «gone» cannot be opened: there is no such recording")
+        shows(page, "#status", "paused")
+
+
+def test_what_was_settled_does_not_come_back_with_a_reload(pages: Pages, workbench: Served) -> None:
+    (workbench.folder / "unlucky.py").write_text(FAILS, encoding="utf-8")
+    page = pages("unlucky.py", tab="buffers")
+    page.click("#run")
+    expect(page.locator(".toast")).to_contain_text("unlucky")
+    page.get_by_role("button", name="Close", exact=True).click()
+    badge = page.get_by_role("tab", name="Messages").locator(".badge")
+    expect(badge).to_have_text("1")
+    page.reload()
+    shows(page, "#status", "failed")
+    drawn(page)
+    expect(page.locator(".toast")).to_have_count(0)
+    expect(badge).to_have_text("1")  # it was not read yet
+    open_tab(page, "Messages")
+    shows(page, "#log", "unlucky")
+    open_tab(page, "Buffers")
+    page.reload()
+    shows(page, "#status", "failed")
+    expect(badge).to_have_count(0)
+    open_tab(page, "Messages")
+    page.get_by_role("button", name="Clear", exact=True).click()
+    page.reload()
+    shows(page, "#status", "failed")
+    shows(page, ".messages", "No messages")
+    page.get_by_role("button", name="Run again").click()
+    shows(page, "#log", "unlucky")  # but what goes wrong anew is told

@@ -1,0 +1,352 @@
+"""The camera of the 3D view, its keys and its labels in a real browser."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from itertools import combinations
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+from mujoco import MjData, MjModel
+from playwright.sync_api import Browser, Frame, Page, expect
+
+from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
+from actr3d.world.world import World
+from tests.browser.looking import PATIENCE, drawn, shows, until
+from tests.server.serving import Served
+from workbench.stage import Stage
+
+ASPECT = 1.5
+FOV = np.radians(50)
+
+
+# -- where cameras stand, computed without a picture
+
+
+class Standing:
+    """Where the page places cameras in a scene, and whether they see what they are to see.
+
+    Args:
+        page: A page of the workbench, whose modules compute it.
+        parts: What stands there beside the floor and a walker.
+    """
+
+    def __init__(self, page: Page, *parts: Any) -> None:
+        self.page = page
+        self.model: MjModel = World(Scene(parts=(Floor(), Mannequin(name="walker"), *parts))).mj_model
+        self.data = MjData(self.model)
+        mujoco.mj_forward(self.model, self.data)
+        self.stage = Stage(self.model).told([])
+
+    def see(self, view: str, x: float = 0.0) -> None:
+        """Moves the walker, and the camera of a view that was chosen at the start."""
+        root = self.model.body("walker")
+        self.data.qpos[self.model.jnt_qposadr[root.jntadr[0]]] = x
+        mujoco.mj_forward(self.model, self.data)
+        body = self.data.body("walker").xpos.tolist()
+        self.told = self.page.evaluate(
+            """async ([view, stage, body, aspect]) => {
+                const { standing, anchorOf } = await import("/static/scene/stage.js");
+                const { plus, minus } = await import("/static/scene/space.js");
+                const found = standing(view, stage, stage.start, aspect);
+                const way = minus(anchorOf(view, stage, body), anchorOf(view, stage, stage.start));
+                return { ...found, target: plus(found.target, way) };
+            }""",
+            [view, self.stage, body, ASPECT],
+        )
+        self.back = np.array(self.told["back"])
+        self.position = np.array(self.told["target"]) + self.told["distance"] * self.back
+
+    def at(self, place: Any) -> tuple[float, float]:
+        """Returns where a place is in the picture: from -1 to 1 from the left to the right, and from below to above."""
+        right = np.cross((0, 0, 1), self.back)
+        right /= np.linalg.norm(right)
+        way = np.array(place) - self.position
+        edge = np.tan(FOV / 2) * (self.told["distance"] if self.told["flat"] else -way @ self.back)
+        assert edge > 0
+        return float(way @ right / edge / ASPECT), float(way @ np.cross(self.back, right) / edge)
+
+    def inside(self, place: Any) -> bool:
+        return max(abs(part) for part in self.at(place)) < 1
+
+    def plain(self, part: str) -> bool:
+        """Tells whether nothing stands before a part of the walker's body."""
+        way = self.data.body(part).xipos - self.position
+        hit = np.zeros(1, dtype=np.int32)
+        mujoco.mj_ray(self.model, self.data, self.position, way, None, 1, -1, hit, None)
+        return self.model.body(self.model.geom_bodyid[hit[0]]).name.startswith("walker")
+
+
+@pytest.fixture
+def blank(browser: Browser, workbench: Served) -> Iterator[Page]:
+    """A page that imports the modules, and shows nothing."""
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto(workbench.address)
+        yield page
+
+
+@pytest.mark.parametrize("width", [0.4, 0.8])
+@pytest.mark.parametrize("view", ["follow", "free"])
+def test_walker_and_doorway_are_seen_well_from_the_start_to_behind_it(blank: Page, view: str, width: float) -> None:
+    seen = Standing(blank, Aperture(width=width))
+    seen.see(view)
+    corners = [(7.0, side * (2.5 + width / 2), height) for side in (-1, 1) for height in (0.0, 2.5)]
+    assert all(seen.inside(corner) for corner in corners)
+    for x in np.arange(0, 8.25, 0.25):
+        seen.see(view, float(x))
+        assert seen.inside((x, 0, 0)), x
+        assert seen.inside((x, 0, 1.75)), x
+        assert seen.plain("walker_torso"), x
+        assert seen.plain("walker_head"), x
+        assert view == "free" or seen.at((x, 0, 1.75))[1] - seen.at((x, 0, 0))[1] > 0.45  # of 2: about a quarter of the height, or more
+        assert view == "free" or seen.at(seen.data.body("walker").xpos + seen.stage["middle"]) == pytest.approx((0, 0), abs=1e-3)
+
+
+def test_from_above_and_from_the_side_all_is_in_the_picture_and_ahead_is_to_the_right(blank: Page) -> None:
+    seen = Standing(blank, Aperture(width=0.5, position=(0.0, 7.0), heading=np.pi / 2))  # to the left of a body that faces along x
+    for view in ("top", "side"):
+        seen.see(view)
+        assert seen.told["flat"]
+        assert all(seen.inside(place) for place in [(0, 0, 0), (0, 0, 1.75), (-2.7, 7, 2.5), (2.7, 7, 2.5)])
+        assert seen.at((0, 7, 0))[0] > seen.at((0, 0, 0))[0] + 0.5
+        seen.see(view, 30.0)
+        assert seen.inside((30, 0, 1))
+
+
+def test_what_is_far_away_does_not_make_all_small(blank: Page) -> None:
+    for view in ("follow", "free"):
+        alone = Standing(blank)
+        alone.see(view)
+        far = Standing(blank, Wall(name="far", start=(200.0, -100.0), end=(200.0, 100.0)))
+        far.see(view)
+        assert np.allclose(alone.position, far.position)
+        assert np.linalg.norm(alone.position) < 6
+        assert alone.inside((0, 0, 0))
+        assert alone.inside((0, 0, 1.75))
+
+
+# -- where labels stand
+
+PLACED = """async ([wanted, blocked, size]) => {
+    const { placed } = await import("/static/scene/labels.js");
+    return placed(wanted, blocked, size);
+}"""
+
+
+def overlap(a: dict[str, float], b: dict[str, float]) -> bool:
+    across = a["left"] < b["left"] + b["width"] and b["left"] < a["left"] + a["width"]
+    return across and a["top"] < b["top"] + b["height"] and b["top"] < a["top"] + a["height"]
+
+
+def test_labels_never_cover_each_other_or_a_head_or_leave_the_picture(blank: Page) -> None:
+    chance, size, found = random.Random(1), {"width": 600, "height": 400}, 0
+    for _ in range(40):
+        close = chance.choice([5, 50, 300])
+        place = [{"x": 300 + chance.uniform(-close, close), "y": 200 + chance.uniform(-close, close)} for _ in range(chance.randint(1, 24))]
+        wanted = [{**one, "width": chance.uniform(30, 150), "height": 20} for one in place]
+        head = {"left": chance.uniform(200, 350), "top": chance.uniform(100, 250), "width": 60, "height": 60}
+        boxes = [box for box in blank.evaluate(PLACED, [wanted, [head], size]) if box is not None]
+        assert not any(overlap(one, other) for one, other in combinations([*boxes, head], 2))
+        assert all(box["left"] >= 0 and box["top"] >= 0 and box["top"] + box["height"] <= 400 for box in boxes)
+        found += len(boxes)
+    assert found > 200
+
+
+def test_the_retina_has_the_colours_of_the_edges_in_the_scene(blank: Page) -> None:
+    from workbench.palette import label_colours
+
+    colours = """async () => {
+        const { channels, labelColour } = await import("/static/scene/palette.js");
+        return [1, 2, 3, 9, 20].map((label) => channels(labelColour(label)));
+    }"""
+    assert blank.evaluate(colours) == label_colours([1, 2, 3, 9, 20]).tolist()
+
+
+# -- the picture itself
+
+AT = """() => {
+    const { camera, nodeRefFromName } = window.__viserMutable, { now, stage } = window.scene.told;
+    const at = (place) => camera.position.clone().set(...place).applyMatrix4(nodeRefFromName[""].matrixWorld).project(camera).toArray();
+    const middle = now.body.map((x, axis) => x + stage.middle[axis]);
+    return { middle: at(middle), x: now.body[0], view: window.scene.camera.view, position: camera.position.toArray(),
+        distance: window.__viserMutable.cameraControl.distance, projection: [...camera.projectionMatrix.elements],
+        foot: at([now.body[0], 0, 0]), top: at([now.body[0], 0, 2]), eye: now.eye };
+}"""
+
+
+def frame_of(page: Page) -> Frame:
+    """Returns the frame of the 3D view, once it shows the scene."""
+    found = page.wait_for_selector("iframe[title='3D view']", state="attached", timeout=PATIENCE)
+    assert found is not None
+    frame = found.content_frame()
+    assert frame is not None
+    frame.wait_for_function("() => window.scene?.camera", timeout=PATIENCE)
+    return frame
+
+
+def look(page: Page, frame: Frame) -> dict[str, Any]:
+    drawn(page)
+    return frame.evaluate(AT)
+
+
+def in_the_middle(page: Page, frame: Frame) -> dict[str, Any]:
+    """Asserts that the body is where the view with the body has it: in the middle of the picture."""
+    told = look(page, frame)
+    assert told["view"] == "follow"
+    assert np.abs(told["middle"][:2]).max() < 0.04, told
+    return told
+
+
+def steps(page: Page, frame: Frame, ticks: int) -> None:
+    """Runs on for some ticks, and waits until the 3D view shows that."""
+    before = frame.evaluate("() => window.scene.told.now.body[0]")
+    page.evaluate("async (ticks) => (await import('/static/server.js')).order({ type: 'step', ticks })", ticks)
+    until(page, lambda: frame.evaluate("() => window.scene.told.now.body[0]") > before)
+
+
+def drag(page: Page, x: float, y: float, button: Any = "left") -> None:
+    box = page.locator("#scene").bounding_box()
+    assert box is not None
+    middle = box["x"] + box["width"] / 3, box["y"] + box["height"] / 2
+    page.mouse.move(*middle)
+    page.mouse.down(button=button)
+    for part in (0.5, 1):
+        page.mouse.move(middle[0] + part * x, middle[1] + part * y)
+    page.mouse.up(button=button)
+    page.wait_for_timeout(200)
+
+
+def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    begun = in_the_middle(page, frame)
+    for _ in range(3):
+        steps(page, frame, 60)
+        in_the_middle(page, frame)
+    assert in_the_middle(page, frame)["x"] > begun["x"] + 1
+    # Turned by the mouse, it turns about the body; so far away as before.
+    before = in_the_middle(page, frame)
+    drag(page, 80, 10)
+    turned = in_the_middle(page, frame)
+    assert np.linalg.norm(np.subtract(turned["position"], before["position"])) > 0.5
+    assert turned["distance"] == pytest.approx(before["distance"], rel=0.01)
+    page.keyboard.press("Shift+v")
+    until(page, lambda: np.allclose(look(page, frame)["position"], before["position"], atol=0.02))
+    # From whatever view there was, turned and shifted there, too.
+    chosen = page.get_by_label("Camera")
+    for view in ("free", "top", "side", "eye"):
+        chosen.select_option(view)
+        until(page, lambda view=view: look(page, frame)["view"] == view)
+        drag(page, -60, 20)
+        drag(page, 40, 20, "right")
+        chosen.select_option("follow")
+        until(page, lambda: look(page, frame)["view"] == "follow")
+        in_the_middle(page, frame)
+    page.click("#restart")
+    shows(page, "#time", "t = 0.00 s")
+    until(page, lambda: abs(frame.evaluate("() => window.scene.told.now.body[0]")) < 0.01)
+    in_the_middle(page, frame)
+    page.reload()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    steps(page, frame, 60)
+    in_the_middle(page, frame)
+
+
+def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_own(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    page.get_by_label("Camera").select_option("top")
+    until(page, lambda: look(page, frame)["view"] == "top")
+    told = look(page, frame)
+    assert np.subtract(told["top"], told["foot"])[:2] == pytest.approx([0, 0], abs=2e-3)  # what is above each other is at one place
+    assert told["projection"][11] == 0
+    assert told["projection"][15] == 1
+    page.get_by_label("Camera").select_option("eye")
+    until(page, lambda: look(page, frame)["view"] == "eye")
+    told = look(page, frame)
+    assert told["projection"][11] == -1
+    assert told["projection"][5] == pytest.approx(1 / np.tan(told["eye"]["fov"] / 2), rel=1e-4)
+    page.get_by_role("button", name="Overlays").click()
+    page.get_by_label("field of view").check()
+    seen = "(name) => Boolean(window.__viserMutable.nodeRefFromName[name]?.visible)"
+    until(page, lambda: frame.evaluate("() => '/overlays/frustum/0' in window.__viserMutable.nodeRefFromName"))
+    drawn(page)
+    assert not frame.evaluate(seen, "/overlays/frustum/0")  # nothing hangs before the eye
+    page.keyboard.press("v")
+    until(page, lambda: look(page, frame)["view"] == "follow")
+    until(page, lambda: frame.evaluate(seen, "/overlays/frustum/0"))
+
+    labels = """(far) => {
+        const { told, camera } = window.scene, [x, y] = told.stage.start;
+        const places = [[x, y, 1.7], [x, y, 1.6], [x + 0.2, y, 1.65], [x, y + 0.1, 1.9], [x + 7, y, 1.5]];
+        const labels = places.map((place, n) => ({ text: `opening ${n} of ${far}`, place, chosen: n < 2 }));
+        window.scene.tell("now", { ...told.now, labels });
+        window.__viserMutable.cameraControl.dollyTo(far, false);
+    }"""
+    rectangles = """() => {
+        const { camera, told } = window.scene, [x, y, z, radius] = told.now.heads[0], at = camera.at([x, y, z]);
+        const half = radius * camera.scaleAt(at.depth) * innerHeight;
+        const shown = [...document.querySelectorAll(".scene-labels p")].filter((one) => getComputedStyle(one).visibility === "visible");
+        const boxes = shown.map((one) => one.getBoundingClientRect()).map(({ left, top, width, height }) => ({ left, top, width, height }));
+        return [...boxes, { left: at.x * innerWidth - half, top: at.y * innerHeight - half, width: 2 * half, height: 2 * half }];
+    }"""
+    for far in (2, 5, 12, 40):
+        frame.evaluate(labels, far)
+        page.wait_for_timeout(300)
+        drawn(page)
+        boxes = frame.evaluate(rectangles)
+        assert len(boxes) >= 3, far
+        assert not any(overlap(one, other) for one, other in combinations(boxes, 2)), far
+
+
+def test_keys_work_after_a_click_into_the_3d_view_and_do_nothing_in_a_field_of_text(page: Page) -> None:
+    frame = frame_of(page)
+    page.get_by_label("Speed", exact=True).select_option("1 x")
+    box = page.locator("#scene").bounding_box()
+    assert box is not None
+    inside = box["x"] + box["width"] / 3, box["y"] + box["height"] / 2
+    page.mouse.click(*inside)
+    assert page.evaluate("document.activeElement.tagName") == "IFRAME"
+    page.keyboard.press("ArrowRight")
+    shows(page, "#time", "t = 0.01 s")
+    before = look(page, frame)["position"]
+    page.keyboard.press("ArrowRight")
+    shows(page, "#time", "t = 0.02 s")
+    assert look(page, frame)["position"] == pytest.approx(before, abs=0.05)  # arrows do not turn the camera
+    page.keyboard.press(" ")
+    expect(page.locator("#run")).to_contain_text("Pause")
+    page.keyboard.press(" ")
+    expect(page.locator("#run")).to_contain_text("Run")
+    page.keyboard.press("3")
+    expect(page.get_by_role("tab", name="Productions")).to_have_attribute("aria-selected", "true")
+    page.keyboard.press("?")
+    keys = page.get_by_role("dialog")
+    expect(keys).to_contain_text("Reset view")
+    expect(keys).to_contain_text("Move the camera, where it is free")
+    page.keyboard.press("Escape")
+
+    page.locator("#step").click()  # arrows are keys of the run beside a button, too
+    page.keyboard.press("ArrowLeft")
+    page.mouse.click(*inside)
+
+    page.get_by_label("Camera").select_option("free")
+    for focus in ("frame", "page"):
+        page.mouse.click(*inside) if focus == "frame" else page.locator("#run").focus()
+        before = look(page, frame)["position"]
+        page.keyboard.down("d")
+        until(page, lambda before=before: bool(np.linalg.norm(np.subtract(look(page, frame)["position"], before)) > 0.01))
+        page.keyboard.up("d")
+        page.wait_for_timeout(200)
+        before = look(page, frame)["position"]
+        page.wait_for_timeout(200)
+        assert look(page, frame)["position"] == pytest.approx(before, abs=1e-3), "it stops with the key"
+    page.get_by_role("textbox", name="Filter").first.click()
+    page.keyboard.type("dv ")
+    assert look(page, frame)["position"] == pytest.approx(before, abs=1e-3)
+    assert page.get_by_label("Camera").input_value() == "free"
+    expect(page.locator("#run")).to_contain_text("Run")

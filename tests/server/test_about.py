@@ -1,0 +1,156 @@
+"""What a model's docstring says is sent as a tree of elements, in which whatever a docstring has is text."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.desk import Desk
+from tests.server.serving import MODELS
+from workbench.about import LONGEST, about_of
+from workbench.loader import listing_of
+
+SHOWN = {"p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"}
+ALL_MODELS = sorted(path.relative_to(MODELS).as_posix() for path in MODELS.rglob("*.py"))
+
+
+def texts(nodes: list[Any]) -> str:
+    """Returns all texts of a tree."""
+    return "".join(node if isinstance(node, str) else texts(node["children"]) for node in nodes)
+
+
+def elements(nodes: list[Any]) -> list[dict[str, Any]]:
+    """Returns all elements of a tree."""
+    return [one for node in nodes if not isinstance(node, str) for one in (node, *elements(node["children"]))]
+
+
+def about(docstring: str, code: str = "") -> dict[str, Any]:
+    return about_of(f"{docstring!r}\n{code}", "model.py")
+
+
+def test_a_docstring_is_shown_with_its_headings_lists_and_values_to_try() -> None:
+    told = about(
+        "A *title*.\n\nText.\n\nWhat to try\n-----------\n- `width = 0.5, speed=2`: narrow\n- `other = 1`\n", "width = 0.8\nspeed = 1\n"
+    )
+    assert texts(told["title"]) == "A title."
+    assert [one["tag"] for one in elements(told["nodes"])] == ["p", "h3", "ul", "li", "code", "li", "code"]
+    assert [one.get("settings") for one in elements(told["nodes"]) if one["tag"] == "code"] == [{"width": 0.5, "speed": 2}, None]
+
+
+@pytest.mark.parametrize(
+    "code", ["width", "width == 1", "f(width=1)", "1, width=2", "**{}", "width=open('x')", "width=[1]", "width=1); (", "width=" + "(" * 500]
+)
+def test_code_that_gives_no_plain_values_to_parameters_is_nothing_to_try(code: str) -> None:
+    assert all("settings" not in one for one in elements(about(f"T\n\n`{code}`", "width = 0.8\n")["nodes"]))
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [
+        "<script>alert(1)</script>",
+        "<img src=x onerror=alert(1)>",
+        "[x](javascript:alert(1))",
+        "[x](java&#115;cript:alert(1)) [y](data:text/html,<script>) [z](JAVASCRIPT:1) [w](vbscript:1) [v](//evil.example)",
+        "![x](https://evil.example/x.png)",
+        "<https://evil.example>",
+        "[x]: javascript:alert(1)\n\n[x]",
+        '[x](https://ok.example "onclick=alert(1)")',
+        "&lt;b&gt;",
+        "\ud800 half a character",
+        "\x00\x1b[31m",
+    ],
+)
+def test_a_hostile_docstring_is_text(hostile: str) -> None:
+    told = about(f"T\n\n{hostile}")
+    json.dumps(told).encode()
+    assert {one["tag"] for one in elements(told["nodes"])} <= {"p", "a"}
+    for one in elements(told["nodes"]):
+        assert set(one) <= {"tag", "children", "href"}
+        assert one.get("href", "https://").startswith("https://ok.") or "href" not in one
+
+
+@pytest.mark.parametrize("part", ["[", "![[", "*", "**a", "_a", "`", "> ", "- ", "1. ", "[](", "[a](<", "<", "&", "\\", "\t", "# "])
+def test_a_docstring_of_any_length_is_shown_in_part(part: str) -> None:
+    told = about("T\n\n" + part * (4 * LONGEST // len(part)))
+    assert told["cut"]
+    assert {one["tag"] for one in elements(told["nodes"])} <= SHOWN
+    assert len(json.dumps(told)) < 20 * LONGEST
+
+
+def test_a_model_without_a_description_and_a_text_that_is_no_python_say_so() -> None:
+    assert about_of("x = 1\n", "model.py") == {"model": "model.py", "title": [], "nodes": [], "cut": False, "readable": True}
+    assert not about_of("x = = 1\n", "model.py")["readable"]
+
+
+@pytest.mark.parametrize("name", ALL_MODELS)
+def test_a_shipped_model_says_what_to_expect_and_what_to_try(name: str) -> None:
+    source = (MODELS / name).read_text(encoding="utf-8")
+    told = about_of(source, name)
+    headings = [texts(one["children"]) for one in elements(told["nodes"]) if one["tag"] == "h3"]
+    assert "What to expect" in headings
+    assert "What to try" in headings
+    assert listing_of(source, name).title.endswith((".", "?"))
+    if listing_of(source, name).parameters:
+        assert any("settings" in one for one in elements(told["nodes"])), "there is something to try with one click"
+
+
+def test_a_session_tells_of_the_text_that_its_run_was_made_of(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, '"""Before."""\nx = 1\n')
+    (tmp_path / "model.py").write_text('"""After."""\nx = 1\n', encoding="utf-8")
+    assert talk.session.source is not None
+    assert about_of(talk.session.source, "model.py")["title"] == ["Before."]
+
+
+BODY = """
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name='walker'))), seed=1)
+"""
+
+
+def test_a_model_with_a_body_begins_at_real_time_where_that_is_wished_until_a_speed_is_chosen(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BODY, real_time=True)
+    assert talk.state["wanted"] == 1.0
+    talk.say("restart")
+    talk.wait(lambda: talk.session.run == 2)
+    assert talk.state["wanted"] == 1.0
+    talk.say("speed", factor=None)
+    assert talk.state["wanted"] is None
+    talk.say("restart")
+    talk.wait(lambda: talk.session.run == 3)
+    assert talk.state["wanted"] is None
+    assert desk.begin(tmp_path, "print('a mind')\n", name="mind.py", real_time=True).state["wanted"] is None
+    assert desk.begin(tmp_path, BODY, name="body.py").state["wanted"] is None
+
+
+def test_what_is_told_of_a_run_says_after_how_many_events_it_came(desk: Desk, tmp_path: Path) -> None:
+    source = "import warnings\nprint('one')\nprint('two')\nwarnings.warn('beware')\nprint('  three  ')\nraise ValueError('no')\n"
+    talk = desk.begin(tmp_path, source, run=True, wait="failed")
+    printed = [event[3]["text"] for event in talk.events if event[2] == "output"]
+    assert printed == ["one", "two", "  three  "]
+    assert {notice["text"]: notice["events"] for notice in talk.notices} == {"beware": 2, "ValueError: no": 3}
+
+
+def test_the_largest_seed_is_told_without_loss(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print(1)\n", seed=2**63 - 1)
+    assert talk.facts["seed"] == str(2**63 - 1)
+    talk.say("restart", seed=str(2**63 - 2))
+    talk.wait(lambda: talk.session.run == 2)
+    assert talk.facts["seed"] == str(2**63 - 2)
+    talk.say("restart")
+    talk.wait(lambda: talk.session.run == 3)
+    assert talk.facts["seed"] == str(2**63 - 2)
+    talk.say("restart", seed=7)
+    talk.wait(lambda: talk.session.run == 4)
+    assert talk.facts["seed"] == 7
+
+
+def test_earlier_prints_can_be_asked_for_with_the_numbers_of_their_events(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "for n in range(5):\n    print(n)\n", run=True, wait="ended")
+    told = talk.say("events", first=1, most=3, kinds=["output"])
+    assert (told["numbers"], [event[3]["text"] for event in told["events"]]) == ([1, 2, 3], ["1", "2", "3"])

@@ -1,0 +1,105 @@
+"""Changing something in the past of a run: how it had gone on is kept as a branch, or the change is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from actr3d.recording import Recorded
+from tests.server.desk import Desk, RefusedError, Talk
+from tests.server.test_curves import PUSHED
+from workbench import branches
+from workbench.keeping import is_unnamed
+from workbench.summaries import summary_json
+
+
+def folder(talk: Talk) -> Path:
+    start = talk.session.start
+    assert start is not None
+    assert start.record is not None
+    return Path(start.record).parent
+
+
+def found(talk: Talk) -> list[Path]:
+    return sorted(path for path in folder(talk).glob("*.sqlite") if branches.branched_at(path) is not None)
+
+
+def there(talk: Talk, tick: int) -> None:
+    """Goes on to a tick."""
+    talk.say("until", time=tick / 100)
+    talk.until("paused", tick=tick)
+
+
+def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED, record=True)
+    there(talk, 40)
+    before = talk.say("curves", names=["walker x"])
+    talk.say("seek", time=0.1)
+    with pytest.raises(RefusedError):
+        talk.say("say", word="wlak", values=[1.0])
+    assert found(talk) == []  # nothing was changed
+    assert talk.say("curves", names=["walker x"]) == before
+    talk.say("aperture", width=0.3)
+    talk.say("aperture", width=0.35)  # there is nothing ahead any more
+    (branch,) = found(talk)
+    origin = Path(talk.session.start.record).stem  # type: ignore[union-attr]
+    assert branch.stem.startswith(f"{origin}-at-0.100s-")
+    told = talk.session.branched
+    assert told is not None
+    assert (told.recording, told.at, told.until) == (branch.stem, 0.1, 0.4)
+    with Recorded(branch) as recorded:
+        recorded.check()
+        assert recorded.ticks == 40
+        assert list(recorded.commands()) == []
+    assert b'"branched":0.1' in summary_json(branch)
+    assert is_unnamed(branch)  # so that it goes, one day
+    there(talk, 50)
+    assert talk.say("curves", names=["walker x"])["times"][-1] == 0.5
+    with Recorded(branch) as recorded:
+        assert recorded.ticks == 40
+    talk.say("seek", time=0.2)
+    talk.say("aperture", width=0.4)
+    assert len(found(talk)) == 2
+
+
+def test_what_is_not_recorded_is_lost_only_where_that_is_allowed(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED)
+    there(talk, 40)
+    talk.say("seek", time=0.1)
+    with pytest.raises(RefusedError, match=r"is not recorded: what lies ahead, from 0.1 to 0.4 s, would be lost"):
+        talk.say("aperture", width=0.3)
+    assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
+    talk.say("aperture", width=0.3, drop=True)
+    assert talk.say("curves", names=["walker x"])["times"][-1] == 0.1
+    assert talk.session.branched is None
+
+
+def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED, record=True)
+    there(talk, 40)
+    talk.say("seek", time=0.1)
+    where = folder(talk)
+    aside = where.rename(where.with_name("aside"))  # no file can be made there
+    with pytest.raises(RefusedError, match=r"nothing was changed, for what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
+        talk.say("aperture", width=0.3)
+    aside.rename(where)
+    assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
+    talk.say("aperture", width=0.3)
+    assert len(found(talk)) == 1
+
+
+def test_branches_of_one_run_are_not_without_number(tmp_path: Path) -> None:
+    origin = tmp_path / "doorway-20260101-101010-abcd.sqlite"
+    made = [branches.new_branch(origin, 0.01 * n) for n in range(branches.MOST + 3)]
+    for path in (
+        *made,
+        origin,
+        tmp_path / "doorway-20260101-101010-abcd-at-home.sqlite",
+        branches.new_branch(tmp_path / "other.sqlite", 1.0),
+    ):
+        path.touch()
+    assert len(branches.superfluous_branches(origin)) == 3
+    assert set(branches.superfluous_branches(origin)) <= set(made)
+    assert branches.branched_at(made[2]) == 0.02
+    assert branches.branched_at(origin) is None

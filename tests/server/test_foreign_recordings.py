@@ -1,0 +1,249 @@
+"""Recordings that somebody made to hurt, or that come from elsewhere: nothing blocks or crashes the server, and nothing runs unasked."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import shutil
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.recording import Recorded
+from actr3d.recording.key import key_file
+from tests.forging import forge
+from tests.server.asking import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
+from tests.server.desk import Desk, RefusedError, Talk
+from tests.server.test_runs import firing, written
+from workbench import listing
+from workbench.app import make_app
+from workbench.compiled import to_text
+from workbench.readers import Readers, ReadingError
+from workbench.worker.messages import LONGEST
+
+ENDLESS = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)"
+WORLD: dict[str, Any] = {"walls": {}, "bodies": {}, "ground": []}
+
+
+def altered(script: str) -> Callable[[Path], None]:
+    def alter(path: Path) -> None:
+        with closing(sqlite3.connect(path)) as file:
+            file.executescript(script)
+
+    return alter
+
+
+def fact(name: str, value: str) -> Callable[[Path], None]:
+    """Returns what gives a recording a fact, with checksums and seal as its maker would write them."""
+
+    def give(path: Path) -> None:
+        forge(path, lambda file: file.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value)))
+
+    return give
+
+
+def row(data: str) -> Callable[[Path], None]:
+    def put(path: Path) -> None:
+        forge(path, lambda file: file.execute("UPDATE events SET data = ?", (data,)))
+
+    return put
+
+
+def linked(path: Path) -> None:
+    path.rename(path.with_suffix(".moved"))
+    path.symlink_to(path.with_suffix(".moved"))
+
+
+def torn(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:5000])
+
+
+HOSTILE: dict[str, Callable[[Path], None]] = {
+    "endless": altered(f"DROP TABLE facts; CREATE VIEW facts AS {ENDLESS} SELECT x AS name, x AS value FROM n"),
+    "computed": altered("DROP TABLE facts; CREATE TABLE facts (name TEXT, value AS (hex(zeroblob(400000000))))"),
+    "trigger": altered("CREATE TRIGGER t AFTER INSERT ON facts BEGIN DELETE FROM facts; END"),
+    "nested": fact("parameters", '{"a":' + "[" * 200_000 + "]" * 200_000 + "}"),
+    "long": fact("parameters", json.dumps({"a": "x" * 3_000_000})),
+    "list": fact("versions", "[1]"),
+    "events": row("[" * 200_000 + "]" * 200_000),
+    "torn": torn,
+}
+
+
+@pytest.fixture
+def hostile(tmp_path: Path) -> Path:
+    """A models folder with all of these, and a good one that is older."""
+    written(tmp_path, "good", firing(3))
+    for name, change in HOSTILE.items():
+        change(written(tmp_path, name, firing(3)))
+    linked(written(tmp_path, "linked", firing(3)))
+    return tmp_path
+
+
+def test_whatever_is_among_the_recordings_all_are_listed(desk: Desk, hostile: Path) -> None:
+    total, found = desk.listed(hostile)
+    assert (total, {summary.id for summary in found}) == (9, {"good", *HOSTILE})  # a link is left out
+    problems = {summary.id: summary.problem for summary in found}
+    assert problems.pop("good") is None
+    assert all(problems.values()), problems
+    assert problems["endless"] == problems["computed"] == problems["trigger"] == "no recording: it has other tables than a recording"
+    assert problems["long"] == "what it tells of its run is too long to be listed"
+
+
+def test_nothing_can_be_had_of_them_but_the_file_and_a_clear_error(desk: Desk, hostile: Path) -> None:
+    for name in HOSTILE:
+        for part in ("file?form=events.csv", "file?form=states.csv", "file?form=replay.html", "curves", "code"):
+            place, _, query = part.partition("?")
+            answer = desk.ask(hostile, f"/api/recordings/{name}/{place}", query=query)
+            told: dict[str, Any] = json.loads(answer.body) if answer.status != 200 else {}
+            assert answer.status == 409 or name in ("long", "events"), (name, part, answer.body)
+            assert "/" not in told.get("error", ""), told
+        assert desk.ask(hostile, f"/api/recordings/{name}/file").body == desk.sessions(hostile).recordings.path(name).read_bytes()
+    assert desk.ask(hostile, "/api/recordings/linked").status == 404
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        "no scene",
+        to_text(b"no scene"),
+        to_text(b"\0" * LONGEST + b"\0"),
+        to_text(os.urandom(5000)),
+    ],
+    ids=["text", "bytes", "huge", "random"],
+)
+def test_a_damaged_scene_has_no_curves(desk: Desk, tmp_path: Path, scene: str) -> None:
+    path = written(tmp_path, "m", firing(3), kind="simulation", period_us=10_000, timestep_us=2000, world=WORLD)
+    fact("compiled", json.dumps(scene))(path)
+    for place in ("curves", "file"):
+        answer = desk.ask(tmp_path, f"/api/recordings/m/{place}", query="form=replay.html" if place == "file" else "")
+        assert answer.status == 409, answer.body
+        assert desk.ask(tmp_path, "/api/recordings/m").status == 200
+
+
+def test_a_file_that_takes_too_long_is_left_out_and_holds_up_no_other(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(listing, "LONGEST", 1.0)
+    paths = {name: written(tmp_path, name, firing(3)) for name in ("a", "b", "c")}
+    sessions = desk.sessions(tmp_path)
+
+    async def both() -> tuple[Any, Any]:
+        whole = asyncio.create_task(sessions.listing.some())
+        await asyncio.sleep(0.05)
+        written(tmp_path, "late", firing(2))
+        return await sessions.listing.one("late"), await whole
+
+    with closing(sqlite3.connect(paths["b"], isolation_level=None)) as holder:
+        holder.execute("BEGIN EXCLUSIVE")
+        late, (total, found) = desk.do(both())
+        holder.execute("COMMIT")
+    assert late.events == 2
+    assert (total, {summary.id: summary.problem for summary in found}) == (
+        3,
+        {"a": None, "b": "it takes longer than 1 s to read", "c": None},
+    )
+
+
+def test_what_takes_too_much_memory_is_told(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("workbench.readers.MEMORY", 50)
+    path = written(tmp_path, "m", firing(3))
+    row(json.dumps([[0, "a", "fire", {"x": "y" * 100_000_000}]]))(path)
+    with pytest.raises(ReadingError, match=r"it takes more memory to read than there may be|used more memory than it may"):
+        desk.do(Readers(desk.workers).make("events.csv", path))
+
+
+# -- whose code is run
+
+MARKING = """from pathlib import Path
+Path({mark!r}).touch()
+from actr3d.actr import *
+print("begun")
+"""
+
+
+@pytest.fixture
+def foreign(desk: Desk, tmp_path: Path) -> Callable[[], bool]:
+    """A recording «far» of a program, made by another installation; returns whether its code has been run since."""
+    mark = tmp_path / "mark"
+    talk = desk.begin(tmp_path, MARKING.format(mark=str(mark)), record=True, run=True, wait="ended")
+    desk.do(talk.session.stop())
+    talk.sessions.recordings.rename(talk.facts["recording"], "far")
+    path = talk.sessions.recordings.path("far")
+    with Recorded(path) as recorded:
+        assert recorded.made_here
+    forge(path, key=b"another key")
+    mark.unlink()
+    return mark.exists
+
+
+def post(desk: Desk, app: Any, place: str, **body: Any) -> Answer:
+    return desk.do(call(app, f"/api{place}", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=json.dumps(body).encode()))
+
+
+def test_code_from_elsewhere_is_run_only_if_the_user_says_so(desk: Desk, tmp_path: Path, foreign: Callable[[], bool]) -> None:
+    app = make_app(tmp_path, GATE)
+    app.state.sessions = sessions = desk.sessions(tmp_path)
+    code = json.loads(desk.ask(tmp_path, "/api/recordings/far/code").body)
+    assert (code["made_here"], code["source"], code["helpers"]) == (False, MARKING.format(mark=str(tmp_path / "mark")), {})
+    for word in ("open", "replay"):
+        answer = post(desk, app, f"/recordings/far/{word}")
+        assert answer.status == 403
+        assert "this installation did not make the recording" in json.loads(answer.body)["error"]
+    for place in ("", "/file?form=events.csv", "/file?form=replay.html", "/curves", "/code", "/file"):
+        path, _, query = f"/api/recordings/far{place}".partition("?")
+        assert desk.ask(tmp_path, path, query=query).status == 200
+    assert post(desk, app, "/compare", first="far", second="far").status == 200
+    assert desk.listed(tmp_path)[0] == 1
+    assert sessions.all() == []
+    assert not foreign()
+    assert json.loads(post(desk, app, "/recordings/far/replay", trust=True).body)["agrees"] is True
+    assert foreign()
+    assert post(desk, app, "/recordings/far/open", trust=True).status == 201
+
+
+def test_a_recording_of_this_installation_is_run_without_asking(desk: Desk, tmp_path: Path) -> None:
+    assert key_file().parent.parent.name  # the data folder of the tests, not the user's
+    written(tmp_path, "near", firing(1))
+    app = make_app(tmp_path, GATE)
+    app.state.sessions = desk.sessions(tmp_path)
+    assert json.loads(desk.ask(tmp_path, "/api/recordings/near/code").body)["made_here"] is True
+    assert post(desk, app, "/recordings/near/open").status == 201
+    shutil.copy(tmp_path / ".workbench/recordings/near.sqlite", tmp_path / ".workbench/recordings/copy.sqlite")
+    assert post(desk, app, "/recordings/copy/open").status == 201
+
+
+HELPED = """from helper import WORD
+from actr3d.actr import *
+try:
+    import other
+    WORD = "the folder of the user"
+except ImportError:
+    pass
+print(WORD)
+"""
+
+
+def test_an_opened_recording_runs_nothing_but_what_it_holds(desk: Desk, tmp_path: Path) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "helper.py").write_text('WORD = "recorded"\n', encoding="utf-8")
+    talk = desk.begin(elsewhere, HELPED, record=True, run=True, wait="ended")
+    desk.do(talk.session.stop())
+    models = tmp_path / "models"
+    (models / ".workbench" / "recordings").mkdir(parents=True)
+    talk.sessions.recordings.path(talk.facts["recording"]).rename(models / ".workbench" / "recordings" / "far.sqlite")
+    for name in ("helper.py", "other.py", "model.py"):
+        (elsewhere / name).write_text('raise ValueError("run from the real folder")\n', encoding="utf-8")
+    sessions = desk.sessions(models)
+    again = Talk(desk, desk.do(sessions.reopen("far")), sessions)
+    again.until("paused")
+    again.say("run")
+    again.until("ended")
+    again.wait(lambda: again.session.log.next == again.state["events"])
+    assert [data["text"] for _, _, kind, data in again.events if kind == "output"] == ["recorded"]
+    with pytest.raises(RefusedError, match=r"model\.py"):  # a new run is of the user's own model of that name, and there is none
+        again.say("restart")

@@ -1,0 +1,245 @@
+"""Going back shows what was: every answer at a past moment is the one that was given when that moment was the present."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, cast, get_args
+
+import pytest
+
+from actr3d.actr.limits import RunLimits
+from actr3d.actr.memory import Memory
+from actr3d.actr.picture import picture_of
+from actr3d.actr.shared_random import shared_random
+from actr3d.printing import ModelOutput, printing_to
+from actr3d.running.building import build
+from actr3d.simulation import Simulation
+from actr3d.values import to_json
+from tests.server.desk import Desk, Talk
+from workbench import protocol as say
+from workbench.worker.shown import Shown
+
+MODELS = Path(__file__).parents[2] / "models"
+KINDS = get_args(say.OverlayName)
+
+LOOKING = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    base, noise = DMBaseLevel(memory), DMNoise(memory, noise=0.3)
+    felt = Buffer()
+    body = BodyPort(felt)
+    def init():
+        goal.set("go 0")
+        body.set("walk", 0.7, 0.1)
+    def look(goal="go ?n"):
+        body.request("view", rows=9 + int(n) % 3, horizontal_fov=0.5 + 0.2 * (int(n) % 5), own_limbs=int(n) > 4)
+        goal.set("next ?n")
+    def feel(goal="go ?n"):
+        body.request("contacts")
+        body.request("joints", noise=0.1)
+        memory.add("felt number:?n")
+        goal.set("next ?n")
+    def hold(goal="next 3"):
+        body.set("grasp", "cup")
+        memory.request("felt")
+        goal.set("go 4")
+    def release(goal="next 9"):
+        body.set("release")
+        body.set("posture", {"torso_yaw": 0.6, "left_upper_arm_pitch": -1.0})
+        goal.set("go 10")
+    def on(goal="next ?n"):
+        goal.set("go %d" % (int(n) + 1))
+
+def build() -> Simulation:
+    cup = Loose(name="cup", size=(0.05, 0.05, 0.2), position=(0.05, -0.24, 0.66), mass=0.5)
+    parts = (Floor(), Mannequin(name="walker", noise=(("pose", 0.01),)), cup, Aperture(width=1.2, position=(1.5, 0.2)))
+    return Simulation(Scene(parts=parts), {"walker": Walker})
+"""
+"""Looks in other and other ways, feels, holds something and lets go of it."""
+
+
+def questions(shown: Shown) -> list[Any]:
+    """Returns every question that a page can ask of a moment; a new kind of question is to be added here."""
+    minds = shown.simulation.minds.values()
+    memories = [part._path for mind in minds for part in mind._tree() if isinstance(part, Memory)]
+    bodies = [*shown.simulation.world.bodies]
+    asked: list[Any] = [say.Explain(), *(say.Explain(at=share * shown.simulation.time) for share in (0.3, 0.9)), say.Events(most=20_000)]
+    asked += [say.Rows(memory=memory) for memory in memories]
+    asked += [kind(body=body) for body in bodies for kind in (say.Look, say.Body)]
+    assert {type(one) for one in asked} | {say.Rows, say.Look, say.Body, say.Curves} == {*say.QUESTIONS}
+    return asked
+
+
+def told(shown: Shown) -> dict[str, Any]:
+    """Returns all that is shown of the present, as JSON by what it is."""
+    physics, apertures = shown.scene()
+    parts: dict[str, Any] = {}
+    for mind in shown.simulation.minds.values():
+        parts |= picture_of(mind)
+    drawn = {kind: _plain(value) for kind, value in shown.drawn(KINDS).items()}
+    now: dict[str, Any] = {"physics": physics.hex(), "apertures": apertures, "parts": parts, "result": shown.result()}
+    now |= {f"drawn {kind}": value for kind, value in drawn.items()}
+    now |= {"touches": sorted(shown.touches()), "time": shown.simulation.time}
+    now |= {repr(question): shown.answer(question) for question in questions(shown)}
+    return {name: json.loads(to_json(value)) for name, value in now.items()} | {"curves": curves_until(shown, shown.simulation.time)}
+
+
+def curves_until(shown: Shown, time: float) -> dict[float, Any]:
+    """Returns the curves up to a time: what lies ahead may be known or not."""
+    answer = json.loads(to_json(shown.answer(say.Curves(most=5_000))))
+    names = sorted(answer["curves"])
+    return {at: [answer["curves"][name][n] for name in names] for n, at in enumerate(answer["times"]) if at <= time}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value.hex()
+    return {name: _plain(one) for name, one in cast("dict[str, Any]", value).items()} if isinstance(value, dict) else value
+
+
+@contextmanager
+def shown_of(source: str, seed: int, **settings: Any) -> Generator[Shown]:
+    """Builds what a text describes, as a worker does."""
+    with RunLimits(seed=seed), shared_random(seed), printing_to(ModelOutput(lambda _: None)):
+        simulation, _ = build(source, str(MODELS / "model.py"), settings, MODELS)
+        simulation.traced()
+        yield Shown(simulation)
+
+
+def go(simulation: Simulation, tick: int) -> None:
+    """Goes on to a tick, if the run comes so far."""
+    while simulation.ticks < tick and simulation.run(simulation.period).ended_by != "stop":
+        pass
+
+
+def check_going_back(shown: Shown, ticks: int, moments: int, random_seed: int) -> None:
+    """Runs a simulation, asks everything at random moments, and again after going there in a random order, by every way there is."""
+    chance, simulation = random.Random(random_seed), shown.simulation
+    chosen = sorted({0, 1, ticks, *chance.sample(range(ticks), moments)})
+    first: dict[int, dict[str, Any]] = {}
+    for tick in chosen:
+        go(simulation, tick)
+        first[simulation.ticks] = told(shown)
+    seek(shown, first, chance)
+    # A command in the past makes the run go another way; what lies before is still as it was.
+    middle = sorted(first)[len(first) // 2]
+    simulation.seek(middle * simulation.period)
+    body, word, values = command_of(simulation)
+    before = {tick: answers for tick, answers in first.items() if tick <= middle}
+    simulation.command(word, *values, body=body)
+    after: dict[int, dict[str, Any]] = {}
+    for more in (7, 60):
+        go(simulation, middle + more)
+        after[simulation.ticks] = told(shown)
+    assert all(after[tick] != first[tick] for tick in after.keys() & first.keys() if tick > middle)
+    seek(shown, before | after, chance)
+
+
+def seek(shown: Shown, known: dict[int, dict[str, Any]], chance: random.Random) -> None:
+    simulation = shown.simulation
+    order = [*known]
+    for tick in chance.sample(order, len(order)):
+        way = chance.choice(("seek", "step"))
+        simulation.seek((tick if way == "seek" or tick == 0 else tick - 1) * simulation.period)
+        go(simulation, tick)
+        now = told(shown)
+        wrong = [name for name in known[tick].keys() | now.keys() if known[tick].get(name) != now.get(name)]
+        assert wrong == [], f"after going to tick {tick} by {way}: {wrong}"
+
+
+def command_of(simulation: Simulation) -> tuple[str | None, str, tuple[Any, ...]]:
+    if not simulation.world.bodies:
+        return None, "parameter", (f"{next(iter(simulation.minds))}.production_time", 0.06)
+    return next(iter(simulation.world.bodies)), "teleport", (-0.3, 0.2, 0.1)
+
+
+def test_every_answer_is_that_of_its_moment_for_a_model_that_looks_in_many_ways() -> None:
+    with shown_of(LOOKING, 3) as shown:
+        check_going_back(shown, 160, 5, random_seed=1)
+
+
+@pytest.mark.parametrize("variant", ["human", "replication"])
+def test_every_answer_is_that_of_its_moment_for_a_walk_to_a_doorway(variant: str) -> None:
+    source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
+    with shown_of(source, 1, variant=variant, aperture=0.45) as shown:
+        check_going_back(shown, 620, 3, random_seed=2)
+
+
+def test_the_eye_sees_what_its_field_of_view_shows_from_the_start_on(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, (MODELS / "aperture_passage.py").read_text(encoding="utf-8"), settings={"aperture": 0.45})
+    seen = {time: at(talk, time, "until") for time in (0.0, 4.0, 6.0)}
+    assert {time: at(talk, time, "seek") for time in (4.0, 0.0)} == {time: seen[time] for time in (4.0, 0.0)}
+
+
+def at(talk: Talk, time: float, way: str) -> Any:
+    if talk.state["time"] != time:
+        talk.say(way, time=time)
+        talk.until("paused", time=time)
+    return talk.say("view")
+
+
+def told_of_program(talk: Talk) -> dict[str, Any]:
+    """Returns all that is shown of the present of a program."""
+    state = talk.state
+    memories = [name for name, part in state["parts"].items() if part["is"] == "memory"]
+    now: dict[str, Any] = {name: state[name] for name in ("tick", "time", "events", "parts", "result", "apertures")}
+    now |= {"explain": talk.say("explain"), "at first": talk.say("explain", at=0), "log": talk.say("events", most=20_000)}
+    return now | {memory: talk.say("memory", memory=memory) for memory in memories}
+
+
+def check_program(talk: Talk, moments: int) -> None:
+    """Runs a program to random times, and again after going there in a random order."""
+    chance = random.Random(moments)
+    talk.say("run")
+    end = talk.until("ended")["time"]
+    seen: dict[float, dict[str, Any]] = {}
+    talk.say("restart")
+    talk.until("paused", time=0)
+    for time in sorted({0.0, *(round(chance.uniform(0, end), 3) for _ in range(moments))}):
+        if time:
+            talk.say("until", time=time)
+            talk.until("paused", time=time)
+        seen[time] = told_of_program(talk)
+    order = [*seen]
+    for time in chance.sample(order, len(order)):
+        talk.say("seek", time=time)
+        talk.until("paused", time=time)
+        now = told_of_program(talk)
+        assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
+
+
+@pytest.mark.parametrize("name", ["compilation", "sgoms", "two_agents"])
+def test_every_answer_is_that_of_its_moment_for_tutorial_models(desk: Desk, tmp_path: Path, name: str) -> None:
+    check_program(desk.begin(tmp_path, (MODELS / f"tutorial/{name}.py").read_text(encoding="utf-8")), 3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted((MODELS / "tutorial").glob("*.py")), ids=lambda path: path.stem)
+def test_every_answer_is_that_of_its_moment_for_all_tutorial_models(desk: Desk, tmp_path: Path, path: Path) -> None:
+    check_program(desk.begin(tmp_path, path.read_text(encoding="utf-8")), 12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("variant", ["human", "replication"])
+def test_every_answer_is_that_of_its_moment_in_whole_runs(variant: str, seed: int) -> None:
+    source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
+    with shown_of(source, seed, variant=variant, aperture=0.4 + 0.1 * seed) as shown:
+        check_going_back(shown, 1_300, 40, random_seed=seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_every_answer_is_that_of_its_moment_in_long_runs_of_other_models(seed: int) -> None:
+    for source in ((MODELS / "doorway.py").read_text(encoding="utf-8"), LOOKING):
+        with shown_of(source, seed) as shown:
+            check_going_back(shown, 900, 30, random_seed=seed)

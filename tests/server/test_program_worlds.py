@@ -1,0 +1,173 @@
+"""Programs that make their own simulations, as the examples of the README do: they are shown, and go back, like any other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.desk import Desk, RefusedError, Talk
+
+EXAMPLE = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.vision import Vision
+from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
+
+class Walker(ACTR):
+    goal = Buffer()
+    visual = Buffer()
+    vision = Vision(visual, horizontal_fov=1.2)
+    body = BodyPort()
+    def init():
+        goal.set("judge")
+    def ask(goal="judge"):
+        vision.request("feature:opening", width=">0.5")
+        goal.set("wait")
+    def go(goal="wait", visual="feature:opening width:?w"):
+        print(f"{w} m wide")
+        body.set("walk", 1.2)
+        goal.set("walk")
+    def walk(goal="walk", visual="feature:opening"):
+        vision.request("feature:opening", width=">0.5")
+        visual.clear()
+"""
+ONE = (
+    EXAMPLE
+    + """
+print("begins")
+scene = Scene(parts=(Floor(), Aperture(width=0.7), Mannequin(name="walker")))
+Simulation(scene, {"walker": Walker}, seed=1).run(1.5)
+print("is over")
+"""
+)
+TRIALS = (
+    EXAMPLE
+    + """
+class Silent(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("x")
+    def once(goal="x"):
+        goal.set("y")
+Silent().run(0.1)
+for width in (0.6, 0.9):
+    walls = [Wall(name=f"wall{n}", start=(8, n), end=(9, n)) for n in range(int(10 * width) - 5)]
+    parts = (Floor(), Aperture(width=width), Mannequin(name="walker"), *walls)
+    Simulation(Scene(parts=parts), {"walker": Walker}).run(0.4)
+"""
+)
+KINDS = ("frustum", "edges", "features", "path", "posture")
+
+
+def told(talk: Talk) -> dict[str, Any]:
+    """Returns what is shown of the present."""
+    state, session = talk.state, talk.session
+    assert session.state is not None
+    assert session.facts is not None
+    now = {name: state[name] for name in ("tick", "time", "apertures", "parts", "events")}
+    drawn = {kind: repr(value) for kind, value in session.state.drawn.items()}
+    now |= {"physics": session.state.physics, "drawn": drawn, "world": session.facts.world, "mj_model": session.facts.mj_model}
+    asked: list[dict[str, Any]] = [{"type": "explain"}, {"type": "events"}]
+    asked += [{"type": kind, "body": "walker"} for kind in ("view", "body")] if session.state.physics is not None else []
+    answers = {str(one): talk.say(one["type"], **{name: value for name, value in one.items() if name != "type"}) for one in asked}
+    curves = talk.say("curves", most=5_000)
+    upto = [n for n, at in enumerate(curves["times"]) if at <= state["time"]]
+    return now | answers | {"curves": {name: [values[n] for n in upto] for name, values in curves["curves"].items()}}
+
+
+def draw(talk: Talk) -> None:
+    async def ask() -> None:
+        talk.sessions._views[talk.session.name]._task.cancel()
+        talk.session.draw(KINDS)
+
+    talk.desk.do(ask())
+
+
+def test_a_program_that_makes_a_simulation_stands_at_its_start_with_its_scene(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, ONE)
+    assert talk.session.facts is not None
+    assert talk.session.facts.mj_model is not None
+    assert (talk.facts["kind"], list(talk.facts["world"]["bodies"]), talk.facts["world"]["widths"]) == ("program", ["walker"], {})
+    assert (talk.state["time"], talk.state["apertures"]) == (0, {"aperture": pytest.approx(0.7)})
+    assert [event[3]["text"] for event in talk.events if event[2] == "output"] == ["begins"]
+    assert talk.say("view")["extents"]
+    assert talk.say("body")["joints"]
+    assert [*talk.state["parts"]][:2] == ["walker", "walker.body"]
+
+
+def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, ONE)
+    draw(talk)
+    talk.wait(lambda: talk.session.state is not None and talk.session.state.drawn)
+    seen = {0.0: told(talk)}
+    for ticks in (1, 20, 7):
+        talk.say("step", ticks=ticks)
+        now = talk.until("paused", time=round(max(seen) + ticks / 100, 6))
+        seen[now["time"]] = told(talk)
+    talk.say("until", time=1.2)
+    talk.until("paused", time=1.2)
+    seen[1.2] = told(talk)
+    assert seen[1.2]["drawn"]["path"] != seen[0.28]["drawn"]["path"]
+    talk.say("run")
+    assert talk.until("ended", time=1.5)["reason"] == "the program is over"
+    assert [event[3]["text"] for event in talk.events if event[2] == "output"] == ["begins", "0.7 m wide", "is over"]
+    for time in (0.28, 1.2, 0.0, 0.01):
+        talk.say("seek", time=time)
+        talk.until("paused", time=time)
+        now = told(talk)
+        assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
+    talk.say("step", ticks=20)
+    talk.until("paused", time=0.21)
+    talk.say("back", ticks=20)
+    talk.until("paused", time=0.01)
+    assert told(talk) == seen[0.01]
+
+
+def test_a_program_stops_where_a_body_touches_something(desk: Desk, tmp_path: Path) -> None:
+    source = ONE.replace("Scene(parts=(", "Scene(parts=(Wall(name='w', start=(0.6, -2), end=(0.6, 2)), ")
+    talk = desk.begin(tmp_path, source.replace('goal.set("wait")', 'goal.set("wait")\n        body.set("walk", 1.2)'))
+    talk.say("until", contact="walker")
+    talk.wait(lambda: "touches w" in talk.state["reason"])
+    with pytest.raises(RefusedError, match="no body 'walkr'; did you mean 'walker'"):
+        talk.say("until", contact="walkr")
+
+
+def test_of_several_simulations_the_latest_is_shown_and_the_scene_changes_with_the_time(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, TRIALS)
+    seen: dict[float, Any] = {}
+    for time in (0.05, 0.3, 0.5, 0.55, 0.8):
+        talk.say("until", time=time)
+        talk.until("paused", time=time)
+        seen[time] = told(talk)
+    widths = [[round(width, 6) for width in now["apertures"].values()] for now in seen.values()]
+    assert widths == [[], [0.6], [0.6], [0.9], [0.9]]
+    assert len({seen[time]["mj_model"] for time in seen}) == 3
+    parts, sources = talk.state["parts"], {event[1] for event in talk.events}
+    assert {"top#3.walker.goal", "top#2.walker.goal", "goal"} < parts.keys() & sources
+    assert talk.say("explain", agent="top#3.walker")[0]["agent"] == "top#3.walker"
+    for time in (0.3, 0.8, 0.05, 0.55):
+        talk.say("seek", time=time)
+        talk.until("paused", time=time)
+        now = told(talk)
+        assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
+
+
+def test_a_command_to_a_program_is_refused_in_words(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, ONE)
+    with pytest.raises(RefusedError, match="a program takes no commands while it runs"):
+        talk.say("aperture", width=0.5)
+
+
+def test_a_program_that_makes_a_simulation_and_fails_before_that_says_so(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "from actr3d.simulation import Simulation\n1 / 0\nSimulation(1)\n", wait="failed")
+    assert "division by zero" in talk.state["reason"]
+    assert talk.facts["world"] is None
+
+
+def test_a_build_that_is_not_right_is_told_with_its_line(desk: Desk, tmp_path: Path) -> None:
+    source = "from actr3d.simulation import Simulation\n\ndef build():\n    return Simulation(1)\n"
+    talk = desk.begin(tmp_path, source, wait=None)
+    notice = talk.wait_for_notice("build()")
+    assert (notice["level"], notice["file"], notice["line"]) == ("error", "model.py", 3)
+    assert notice["text"].startswith("build() does not say what it returns, not a Simulation; it must be")

@@ -1,0 +1,168 @@
+"""A recording that is opened is known whole at once, can be sent to any time of it, and does again what it did."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.errors import Actr3dError
+from tests.server.desk import Desk, Talk
+from tests.server.serving import MODELS
+
+BUILT = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    skin = BodyPort(felt)
+    def init():
+        goal.set('walk')
+        skin.set('walk', 1.0)
+    def feel(goal='walk', felt=None, skin='busy:False'):
+        skin.request('pose')
+    def look(goal='walk', felt='pose x:?x'):
+        felt.clear()
+        print(round(float(x), 3))
+        if float(x) > 0.8:
+            self.stop()
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Aperture(width=0.9), Mannequin(name='walker'))), {'walker': Walker})
+"""
+COUNTING = (MODELS / "tutorial" / "counting.py").read_text(encoding="utf-8")
+
+
+def reopened(talk: Talk, recording: str | None = None) -> Talk:
+    """Opens the recording of a session, which is over then."""
+    name = recording or talk.facts["recording"]
+    talk.desk.do(talk.sessions.close(talk.session.name))
+    session = talk.desk.do(talk.sessions.reopen(name))
+    again = Talk(talk.desk, session, talk.sessions)
+    again.until("paused")
+    return again
+
+
+def whole(talk: Talk) -> list[list[Any]]:
+    return [json.loads(event) for event in list(talk.session.log._events)]
+
+
+@pytest.mark.parametrize("source", [BUILT, COUNTING], ids=["built", "program"])
+def test_a_recording_shows_all_its_time_at_its_start_and_does_again_what_it_did(desk: Desk, tmp_path: Path, source: str) -> None:
+    talk = desk.begin(tmp_path, source, record=True)
+    if source == BUILT:
+        talk.say("until", time=0.3)
+        talk.until("paused", time=0.3)
+        talk.say("aperture", width=0.7)
+    talk.say("run")
+    talk.until("ended")
+    end, events = talk.state, talk.events
+    middle = round(end["time"] / 2, 2)
+    talk.say("seek", time=middle)
+    talk.until("paused", time=middle)
+    at_middle = talk.state
+    curves = talk.say("curves") if source == BUILT else None
+    again = reopened(talk)
+    assert again.session.log.first == 0
+    assert whole(again) == events
+    assert (again.state["time"], again.state["furthest"], again.state["reason"]) == (0, end["furthest"], "at its start")
+    assert again.facts["recorded"] == talk.facts["recording"]
+    if curves is not None:
+        assert again.say("curves") == curves
+    again.say("seek", time=middle)
+    again.until("paused", time=middle)
+    assert {**again.state, "wanted": None} == at_middle
+    again.say("seek", time=0)
+    again.until("paused", time=0)
+    again.say("run")
+    again.until("ended")
+    assert whole(again) == events
+    assert {name: again.state[name] for name in ("time", "furthest", "reason", "result", "events")} == {
+        name: end[name] for name in ("time", "furthest", "reason", "result", "events")
+    }
+    assert again.facts["cuts"] == []
+    assert again.notices == []
+
+
+def test_the_end_of_a_recording_is_where_it_ended(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True, run=True, wait="ended")
+    end = talk.state["time"]
+    again = reopened(talk)
+    again.say("seek", time=end)
+    again.until("ended", time=end)
+    assert again.state["result"] == talk.state["result"]
+
+
+def test_another_way_than_the_recorded_one_leaves_what_was_recorded_ahead(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True, run=True, wait="ended")
+    events = talk.events
+    again = reopened(talk)
+    again.say("seek", time=0.2)
+    again.until("paused", time=0.2)
+    again.say("aperture", width=0.5)
+    again.until("paused", time=0.2, furthest=0.2)
+    assert len(whole(again)) < len(events)
+    assert again.facts["cuts"] != []
+    again.say("step")
+    again.until("paused", time=0.21, furthest=0.21)
+    assert again.notices == []
+
+
+def test_a_run_that_differs_from_its_recording_says_from_when_on(desk: Desk, tmp_path: Path) -> None:
+    source = "from pathlib import Path\nprint('one')\nprint(Path('said.txt').read_text())\nprint('three')\n"
+    said = tmp_path / "said.txt"
+    said.write_text("two", encoding="utf-8")
+    source = source.replace("'said.txt'", repr(str(said)))
+    talk = desk.begin(tmp_path, source, record=True, run=True, wait="ended")
+    name = talk.facts["recording"]
+    said.write_text("another", encoding="utf-8")
+    again = reopened(talk, name)
+    assert [event[3]["text"] for event in whole(again) if event[2] == "output"] == ["one", "two", "three"]
+    again.say("run")
+    again.until("ended")
+    assert "differs from its recording" in again.wait_for_notice("differs")["text"]
+    assert [event[3]["text"] for event in whole(again) if event[2] == "output"] == ["one", "another", "three"]
+
+
+def test_a_run_that_ends_before_its_recording_says_so(desk: Desk, tmp_path: Path) -> None:
+    many = tmp_path / "many.txt"
+    many.write_text("3", encoding="utf-8")
+    source = f"from pathlib import Path\nfor n in range(int(Path({str(many)!r}).read_text())):\n    print(n)\n"
+    talk = desk.begin(tmp_path, source, record=True, run=True, wait="ended")
+    name = talk.facts["recording"]
+    many.write_text("1", encoding="utf-8")
+    again = reopened(talk, name)
+    assert len(whole(again)) == 3
+    again.say("run")
+    again.until("ended")
+    assert "it ends, and the recording goes on" in again.wait_for_notice("differs")["text"]
+    assert len(whole(again)) == 1
+
+
+def test_who_opens_a_recording_twice_gets_one_session(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING, record=True, run=True, wait="ended")
+    again = reopened(talk)
+    name = again.facts["recorded"]
+    assert desk.do(talk.sessions.reopen(name)) is again.session
+    again.say("restart")
+    again.wait(lambda: again.session.run == 2)
+    assert again.facts["recorded"] is None
+    assert desk.do(talk.sessions.reopen(name)) is not again.session
+
+
+def test_a_damaged_recording_is_not_opened(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING, record=True, run=True, wait="ended")
+    name = talk.facts["recording"]
+    path = talk.sessions.recordings.path(name)
+    desk.do(talk.sessions.close(talk.session.name))
+    with sqlite3.connect(path) as file:
+        file.execute('UPDATE events SET data = \'[["soon", "top", "start", {}]]\'')
+    file.close()
+    with pytest.raises(Actr3dError, match="is damaged"):
+        desk.do(talk.sessions.reopen(name))

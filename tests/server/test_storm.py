@@ -1,0 +1,153 @@
+"""Every route under several clients at once, while what they ask for is renamed, deleted and made again.
+
+Each answer is whole, or a clear error.
+
+The routes are those of the application's own description, and requests are made from it: a new route is asked as soon as it is there.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import random
+import shutil
+import sqlite3
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.server.serving import Served, served
+from tests.server.test_bad_input import DESCRIPTION, OPERATIONS, resolved, valid
+
+SOURCE = "counting.py"
+RECORDINGS = tuple(f"r{number}" for number in range(5))
+MODELS = tuple(f"m{number}.py" for number in range(3))
+CLEAR = {400, 404, 409, 415, 422}
+"""What an error may be called; 500 is one of the server."""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with served(tmp_path_factory.mktemp("storm") / "models") as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def whole(server: Served) -> Path:
+    """A recording of 0.5 s of the doorway, from which all others are copied."""
+    session = server.post("/api/sessions", {"model": "doorway.py", "seed": 1}).json()["id"]
+    server.post(f"/api/sessions/{session}/say", {"say": {"type": "step", "ticks": 50}})
+    name = server.get(f"/api/sessions/{session}").json()["session"]["recording"]
+    server.post(f"/api/sessions/{session}/close")
+    folder = server.folder / ".workbench" / "recordings"
+    return (folder / f"{name}.sqlite").rename(server.folder / "whole.sqlite")
+
+
+class Storm:
+    """Asks everything of a server, and renames, deletes and makes again what it asks for.
+
+    Args:
+        server: The server.
+        whole: The recording that is copied.
+        seed: Of what is chosen at random.
+    """
+
+    def __init__(self, server: Served, whole: Path, seed: int) -> None:
+        self._server = server
+        self._whole = whole
+        self._random = random.Random(seed)
+        self._client = httpx.Client(base_url=server.url, headers=server.headers, timeout=120)
+        self.counts: Counter[tuple[str, int]] = Counter()
+        self.problems: list[str] = []
+
+    def blow(self, rounds: int) -> None:
+        """Sends each request so many times, in any order."""
+        for _ in range(rounds):
+            for method, path in self._random.sample(OPERATIONS, len(OPERATIONS)):
+                self._make_again()
+                for query in self._queries(method, path):
+                    self._ask(method, path, query)
+        self._client.close()
+
+    def _make_again(self) -> None:
+        """Puts some recording and some model where none is, as a new run does."""
+        folder = self._server.folder / ".workbench" / "recordings"
+        beside = folder / f".{self._random.random()}"
+        shutil.copy(self._whole, beside)
+        beside.rename(folder / f"{self._random.choice(RECORDINGS)}.sqlite")
+        model = self._server.folder / self._random.choice(MODELS)
+        if not model.exists():
+            model.write_bytes((self._server.folder / SOURCE).read_bytes())
+
+    def _ask(self, method: str, path: str, query: dict[str, str]) -> None:
+        operation = DESCRIPTION["paths"][path][method]
+        session = self._random.choice(self._client.get("/api/sessions").json()["sessions"] or [{"id": "none"}])["id"]
+        place = path.format(recording=self._random.choice(RECORDINGS), session=session)
+        body: Any = None
+        if "requestBody" in operation:
+            body = self._body(operation["requestBody"]["content"]["application/json"]["schema"])
+        elif method != "get":
+            body = {}
+        try:
+            answer = self._client.request(method, place, params=query, json=body)
+        except httpx.HTTPError as error:
+            self.problems.append(f"{method} {place} {query}: {type(error).__name__}: {error}")
+            return
+        self.counts[f"{method} {path}", answer.status_code] += 1
+        told = self._problem(answer)
+        if told:
+            self.problems.append(f"{method} {place} {query} {body}: {answer.status_code} {told}")
+
+    def _problem(self, answer: httpx.Response) -> str:
+        """Says what is not as it should be; nothing where all is."""
+        if not answer.is_success:
+            clear = answer.status_code in CLEAR and set(answer.json()) == {"error"} and str(self._server.folder) not in answer.text
+            return "" if clear else answer.text[:300]
+        if int(answer.headers["content-length"]) != len(answer.content):
+            return "it is not as long as it says"
+        kind = answer.headers["content-type"].partition(";")[0]
+        if kind == "application/json":
+            answer.json()
+        elif kind == "application/vnd.sqlite3":
+            with closing(sqlite3.connect(":memory:")) as file:
+                file.deserialize(answer.content)
+                return "" if file.execute("PRAGMA integrity_check").fetchone() == ("ok",) else "it is damaged"
+        elif kind == "text/csv":
+            return "" if answer.content.count(b"\r\n") > 50 and answer.content.endswith(b"\r\n") else "it is cut off"
+        elif kind == "text/html":
+            return "" if answer.text.rstrip().endswith("</html>") else "it is cut off"
+        return ""
+
+    def _queries(self, method: str, path: str) -> Iterator[dict[str, str]]:
+        """Yields what stands after the address: each choice where there are some."""
+        known = [one for one in DESCRIPTION["paths"][path][method].get("parameters", []) if one["in"] == "query"]
+        needed = {one["name"]: self._random.choice(MODELS) for one in known if one["required"]}
+        chosen = [[(one["name"], value) for value in one["schema"]["enum"]] for one in known if "enum" in one["schema"]]
+        for some in itertools.product(*chosen):
+            yield {**needed, **dict(some)}
+
+    def _body(self, schema: dict[str, Any]) -> Any:
+        schema = resolved(schema)
+        required = {name: json.loads(valid(schema["properties"][name])) for name in schema.get("required", [])}
+        own = {"path": MODELS, "model": (*MODELS, SOURCE), "first": RECORDINGS, "second": RECORDINGS, "to": (*RECORDINGS, *MODELS)}
+        chosen = {name: self._random.choice(values) for name, values in own.items() if name in required}
+        return {**required, **chosen, **({"text": "x = 1\n"} if "text" in required else {})}
+
+
+@pytest.mark.parametrize(("clients", "rounds"), [(3, 1), pytest.param(8, 5, marks=pytest.mark.slow)])
+def test_every_answer_is_whole_or_a_clear_error(server: Served, whole: Path, clients: int, rounds: int) -> None:
+    storms = [Storm(server, whole, seed) for seed in range(clients)]
+    with ThreadPoolExecutor(clients) as pool:
+        list(pool.map(Storm.blow, storms, [rounds] * clients))
+    problems = [problem for storm in storms for problem in storm.problems]
+    assert not problems, "\n".join(problems)
+    counts = sum((storm.counts for storm in storms), Counter[tuple[str, int]]())
+    assert {name for name, _ in counts} == {f"{method} {path}" for method, path in OPERATIONS}
+    if clients > 3:
+        assert {name for name, status in counts if status < 300} == {f"{method} {path}" for method, path in OPERATIONS}

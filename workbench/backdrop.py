@@ -1,0 +1,132 @@
+"""What is around the shapes of a scene: light, the ground, the outlines of walls, and soft shade where things stand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import MjData, MjModel, mjtGeom
+
+from workbench.overlays.overlay import Lines
+from workbench.palette import channels, palette
+
+LIGHTS = (((-4.0, -6.0, 10.0), 2.4), ((-6.0, 6.0, 2.0), 2.0), ((6.0, 2.0, 3.0), 1.2))
+"""The directions from which light comes, and how strong it is: the first casts the shadows; the others brighten the sides."""
+HIGHEST = 2.0
+"""What is higher above the ground than this [m] casts no shade on it."""
+DARKEST, FADING = 0.36, 0.45
+"""How dark the shade of what touches the ground is, and by how much higher it is about a third of that [m]."""
+SOFT, SOFTER = 0.1, 0.4
+"""How far shade reaches beyond what casts it [m], and how much farther for each metre above the ground."""
+MOST_SHADES = 64
+MOST_OUTLINES = 200
+LEAST_OUTLINED = 0.5
+"""Boxes that are nowhere longer than this [m] have no outline."""
+CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+EDGES = np.array([(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 2])
+
+
+def light(client: Any, *, shadows: bool) -> None:
+    """Lights the scene of one browser from three sides.
+
+    Args:
+        client: Viser's client.
+        shadows: Whether shapes cast shadows, which costs a browser without a graphics card half its time.
+    """
+    client.scene.configure_default_lights(enabled=False, cast_shadow=False)
+    for number, (place, intensity) in enumerate(LIGHTS):
+        client.scene.add_light_directional(f"/light/{number}", intensity=intensity, position=place, cast_shadow=shadows and not number)
+
+
+def lay_grounds(server: Any, model: MjModel) -> list[str]:
+    """Replaces the level planes of a scene by soft ground; returns their names in viser's tree.
+
+    Their colours are the theme's, which each browser sets for itself.
+    """
+    from mjviser.conversions import get_body_name
+
+    colours = palette()["light"]
+    names: list[str] = []
+    for geom in np.flatnonzero(model.geom_type == mjtGeom.mjGEOM_PLANE).tolist():
+        body = int(model.geom_bodyid[geom])
+        if model.body_weldid[body] or model.body_mocapid[body] >= 0:
+            continue
+        name = f"/fixed_bodies/{get_body_name(model, body)}/{mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, geom)}"
+        names.append(name)
+        server.scene.add_grid(
+            name,
+            infinite_grid=True,
+            fade_distance=60.0,
+            cell_size=1.0,
+            section_size=5.0,
+            cell_thickness=0.7,
+            section_thickness=0.9,
+            cell_color=channels(colours["line"]),
+            section_color=channels(colours["line"]),
+            plane_color=channels(colours["ground"]),
+            plane_opacity=1.0,
+            shadow_opacity=0.2,
+            position=model.geom_pos[geom],
+            wxyz=model.geom_quat[geom],
+        )
+    return names
+
+
+class Outlines:
+    """The edges of large boxes that stand, as walls do, so that they look like parts of a building.
+
+    Args:
+        server: Viser's server.
+        model: The compiled scene.
+    """
+
+    def __init__(self, server: Any, model: MjModel) -> None:
+        standing = (model.geom_type == mjtGeom.mjGEOM_BOX) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)
+        standing &= (model.body_weldid[model.geom_bodyid] == 0) | (model.body_mocapid[model.body_rootid[model.geom_bodyid]] >= 0)
+        standing &= model.geom_size.max(axis=1) * 2 > LEAST_OUTLINED
+        self._geoms = np.flatnonzero(standing)[:MOST_OUTLINES]
+        self._corners = CORNERS * model.geom_size[self._geoms][:, None, :]
+        self._lines = Lines(server, "/outlines", channels(palette()["outline"]), 1.2)
+
+    def draw(self, data: MjData) -> None:
+        """Draws them where the boxes are now."""
+        if not len(self._geoms):
+            return
+        turned = data.geom_xmat[self._geoms].reshape(-1, 3, 3)
+        places = np.einsum("nij,nkj->nki", turned, self._corners) + data.geom_xpos[self._geoms][:, None, :]
+        self._lines.set(places[:, EDGES].reshape(-1, 2, 3).astype(np.float32))
+
+
+class Shades:
+    """The soft shade on the ground under what stands there or is near to it.
+
+    Args:
+        model: The compiled scene.
+        ground: How high the ground lies [m].
+    """
+
+    def __init__(self, model: MjModel, ground: float) -> None:
+        self._ground = ground
+        shown = (model.geom_type != mjtGeom.mjGEOM_PLANE) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)
+        self._geoms = np.flatnonzero(shown)
+        self._boxes = model.geom_aabb[self._geoms]
+
+    def told(self, data: MjData) -> list[list[float]]:
+        """Returns the darkest: each x, y, cosine and sine of the direction of its first side, two half sides, softness [m], darkness."""
+        turned = data.geom_xmat[self._geoms].reshape(-1, 3, 3)
+        middle = data.geom_xpos[self._geoms] + np.einsum("nij,nj->ni", turned, self._boxes[:, :3])
+        sides = turned * self._boxes[:, None, 3:]  # half sides, as columns
+        low = middle[:, 2] - np.abs(sides[:, 2]).sum(axis=1) - self._ground
+        under = np.maximum(low, 0)
+        dark = DARKEST * np.exp(-under / FADING) * ((low > -HIGHEST) & (low < HIGHEST))
+        chosen = np.argsort(-dark, kind="stable")[:MOST_SHADES]
+        chosen = chosen[dark[chosen] > 0.01]
+        sides, flat = sides[chosen], np.linalg.norm(sides[chosen][:, :2], axis=1)
+        longest = sides[np.arange(len(chosen)), :2, flat.argmax(axis=1)]
+        length = np.linalg.norm(longest, axis=1, keepdims=True)
+        along = np.divide(longest, length, out=np.tile((1.0, 0.0), (len(chosen), 1)), where=length > 1e-9)
+        across = np.stack((-along[:, 1], along[:, 0]), axis=1)
+        halves = [np.abs(np.einsum("ni,nij->nj", way, sides[:, :2])).sum(axis=1) for way in (along, across)]
+        numbers = np.column_stack((middle[chosen, :2], along, *halves, SOFT + SOFTER * under[chosen], dark[chosen]))
+        return numbers.round(3).tolist()

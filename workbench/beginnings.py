@@ -1,0 +1,69 @@
+"""With what a recorded run began, and what users did: all that is needed to run it again in a session."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from actr3d.errors import RecordingError
+from actr3d.recording import Recorded
+
+
+class Beginning(msgspec.Struct, frozen=True, kw_only=True):
+    """With what a recorded run began."""
+
+    made_here: bool
+    """Whether this installation made it, and nobody has changed it since: only then its code has been run here before."""
+    file: str
+    """Where the model file was."""
+    source: str
+    seed: int | str
+    parameters: dict[str, Any]
+    helpers: dict[str, tuple[str, str]]
+    """The file and text of each helper module, by name."""
+    commands: list[tuple[int, dict[str, Any]]]
+    """What users did: after which tick, and what."""
+
+
+def beginning_of(path: Path) -> Beginning:
+    """Returns with what the run of a recording began.
+
+    Raises:
+        RecordingError: If it cannot be read, or does not say which model file made it.
+        ValidationError: If its commands or facts are others than those of a run.
+    """
+    with Recorded(path) as recorded:
+        facts = recorded.facts
+        file = facts.get("file")
+        if not isinstance(file, str) or file not in facts.get("sources", {}):
+            raise RecordingError("the recording does not say which model file made it")
+        told = {
+            "made_here": recorded.made_here,
+            "file": file,
+            "source": facts["sources"][file],
+            "seed": facts["program_seed"] if "program_seed" in facts else facts["seed"],
+            "parameters": facts.get("parameters", {}),
+            "helpers": facts.get("helpers", {}),
+            "commands": [(command.tick, command.data) for command in recorded.commands()],
+        }
+    return msgspec.convert(told, Beginning)
+
+
+def written(began: Beginning) -> str:
+    """Returns it as JSON, also with numbers and texts that strict JSON does not have."""
+    return json.dumps(msgspec.structs.asdict(began))
+
+
+def parsed(text: bytes) -> Beginning:
+    """Returns what `written` has made text of.
+
+    Raises:
+        RecordingError: If it is nested too deeply.
+    """
+    try:
+        return msgspec.convert(json.loads(text), Beginning)
+    except RecursionError:
+        raise RecordingError("the recording cannot be read: its values are nested too deeply") from None

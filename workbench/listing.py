@@ -1,0 +1,172 @@
+"""Summaries of recordings: read by workers from each file once, and again only when it has changed."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import msgspec
+
+from workbench.jobs import Job, doing
+from workbench.readers import MEMORY
+from workbench.recordings import NoSuchRecordingError, Recordings
+from workbench.summaries import Summary, unreadable
+from workbench.worker.messages import Reply, Start
+from workbench.worker.workers import Workers
+
+MOST = 1_000
+"""So many recordings are listed at once."""
+LONGEST = 10.0
+"""A summary may take so long to be read [s]."""
+MOST_READERS = 4
+"""So many workers read summaries at once."""
+_Stamp = tuple[int, ...]
+
+
+class Listing:
+    """Reads summaries of recordings, and keeps them for as long as their files stay as they are.
+
+    Args:
+        recordings: The recordings.
+        workers: Who gives workers.
+    """
+
+    def __init__(self, recordings: Recordings, workers: Workers) -> None:
+        self._recordings = recordings
+        self._workers = workers
+        self._known: dict[str, tuple[_Stamp, Summary]] = {}
+        self._coming: dict[str, asyncio.Future[Summary]] = {}
+        """Those that are being read; who asks for one meanwhile waits for the same."""
+        self._turns = asyncio.Semaphore(MOST_READERS)
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def some(self, first: int = 0, most: int = MOST) -> tuple[int, list[Summary]]:
+        """Returns how many recordings there are, and the summaries of some, the newest first; also of files that cannot be read.
+
+        Args:
+            first: How many of the newest are left out.
+            most: How many are listed.
+
+        Raises:
+            OSError: If no worker can be started.
+        """
+        paths = await asyncio.to_thread(self._recordings.all)
+        names = {path.name for path in paths}
+        self._known = {name: known for name, known in self._known.items() if name in names}
+        found = await self._of(paths[first : first + most])
+        there = [summary for path, summary in found if summary.problem is None or path.is_file()]
+        return len(paths) - len(found) + len(there), there
+
+    async def one(self, name: str) -> Summary:
+        """Returns the summary of a recording.
+
+        Raises:
+            NoSuchRecordingError: If there is none of that name.
+            OSError: If no worker can be started.
+        """
+        path = self._recordings.path(name)
+        ((_, summary),) = await self._of([path])
+        if summary.problem is not None and not path.is_file():
+            raise NoSuchRecordingError
+        return summary
+
+    async def _of(self, paths: Sequence[Path]) -> list[tuple[Path, Summary]]:
+        stamps = await asyncio.to_thread(lambda: {path: _stamp(path) for path in paths})
+        there: dict[Path, Summary] = {}
+        fresh: list[Path] = []
+        for path, stamp in stamps.items():
+            known = self._known.get(path.name)
+            if known is not None and known[0] == stamp:
+                there[path] = known[1]
+            elif path.name not in self._coming:
+                self._coming[path.name] = asyncio.get_running_loop().create_future()
+                fresh.append(path)
+        waiting = {path: self._coming[path.name] for path in paths if path not in there}
+        if fresh:
+            task = asyncio.create_task(self._read(fresh, stamps))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
+        for path, coming in waiting.items():
+            there[path] = await asyncio.shield(coming)
+        return [(path, there[path]) for path in paths]
+
+    async def _read(self, paths: list[Path], stamps: dict[Path, _Stamp]) -> None:
+        """Reads summaries; where a file takes too long or ends its reader, another worker goes on with the next one."""
+
+        def found(path: Path, summary: Summary) -> None:
+            self._known[path.name] = stamps[path], summary
+            self._coming.pop(path.name).set_result(summary)
+
+        left = list(paths)
+        try:
+            async with self._turns:
+                while left:
+                    reading = _Reading(left, found)
+                    start = Start(job="list", recordings=tuple(map(str, left)))
+                    async with doing(self._workers, start, reading, memory=MEMORY):
+                        await reading.end()
+                    left = left[reading.count :]
+                    if left:
+                        slow = f"it takes longer than {LONGEST:g} s to read"
+                        found(left[0], unreadable(left[0], reading.problem_of_reader if reading.over_by_itself else slow))
+                        del left[0]
+        except Exception as error:  # noqa: BLE001 - who waits is told
+            self._give_up(left, error)
+        except asyncio.CancelledError:
+            self._give_up(left, OSError("the workbench ends"))
+            raise
+
+    def _give_up(self, paths: Sequence[Path], error: Exception) -> None:
+        """Tells those who wait for summaries why they do not come."""
+        for path in paths:
+            coming = self._coming.pop(path.name, None)
+            if coming is not None:
+                coming.set_exception(error)
+                coming.exception()  # nobody may wait for it any more
+
+
+class _Reading(Job):
+    """The summaries that one worker reads.
+
+    Args:
+        paths: Of which files.
+        found: Called with each.
+    """
+
+    def __init__(self, paths: Sequence[Path], found: Callable[[Path, Summary], None]) -> None:
+        super().__init__()
+        self.count = 0
+        """How many have come."""
+        self.over_by_itself = False
+        self._paths = paths
+        self._found = found
+
+    def reply(self, message: Reply) -> None:
+        """Takes one."""
+        path = self._paths[self.count]
+        self.count += 1
+        error = message.error
+        self._found(path, unreadable(path, error) if error is not None else msgspec.json.decode(message.result, type=Summary))
+
+    async def end(self) -> None:
+        """Waits until the worker has ended, or has read at one file for too long."""
+        count = -1
+        while not self.over_by_itself and count != self.count:
+            count = self.count
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self.over.wait(), LONGEST)
+                self.over_by_itself = True
+
+
+def _stamp(path: Path) -> _Stamp:
+    """Returns numbers that differ when the file has changed; while a run goes on, what is new lies in a file beside it."""
+    numbers: list[int] = []
+    for each in (path, path.with_name(f"{path.name}-wal")):
+        try:
+            told = each.lstat()
+        except OSError:
+            continue
+        numbers += told.st_ino, told.st_mtime_ns, told.st_size
+    return tuple(numbers)

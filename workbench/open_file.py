@@ -1,0 +1,69 @@
+"""Sends a file that is open already: whatever happens meanwhile to its name, the answer is whole."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Mapping
+from io import FileIO
+
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
+
+PART = 256 * 1024
+"""So much is read and sent at once [bytes]."""
+
+
+class OpenFile(Response):
+    """An answer that is the content of an open file, with its length; closes the file at the end, or when the client has gone.
+
+    Args:
+        file: The file.
+        media_type: What it is.
+        name: What it is called where it is kept; None where it is not meant to be kept.
+    """
+
+    def __init__(self, file: FileIO, media_type: str, name: str | None = None) -> None:
+        self._file = file
+        self._size = os.fstat(file.fileno()).st_size
+        self.status_code = 200
+        self.media_type = media_type
+        self.background = None
+        headers: Mapping[str, str] = {} if name is None else {"content-disposition": f'attachment; filename="{name}"'}
+        self.init_headers({"content-length": str(self._size), **headers})
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Sends it."""
+        sending, leaving = asyncio.ensure_future(self._send(send)), asyncio.ensure_future(gone(receive))
+        try:
+            await asyncio.wait([sending, leaving], return_when=asyncio.FIRST_COMPLETED)
+            if sending.done():
+                sending.result()
+        finally:
+            sending.cancel()
+            leaving.cancel()
+            await asyncio.gather(sending, leaving, return_exceptions=True)
+            self._file.close()
+
+    async def _send(self, send: Send) -> None:
+        await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+        left = self._size
+        while left:
+            # To the end also where it is cancelled: the file must not be closed under it.
+            reading = asyncio.ensure_future(asyncio.to_thread(self._file.read, min(PART, left)))
+            try:
+                part = await asyncio.shield(reading)
+            except asyncio.CancelledError:
+                await asyncio.wait([reading])
+                raise
+            if not part:
+                return  # somebody has cut the file; the client sees that the answer is shorter than it should be
+            left -= len(part)
+            await send({"type": "http.response.body", "body": part, "more_body": True})
+        await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+
+async def gone(receive: Receive) -> None:
+    """Waits until the client of a request has gone."""
+    while (await receive())["type"] != "http.disconnect":
+        pass

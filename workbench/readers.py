@@ -1,0 +1,121 @@
+"""Has workers read recordings: the server itself opens none of them, so that no file can block, fill or crash it."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import tempfile
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from io import FileIO
+from pathlib import Path
+from typing import Any, TypeVar
+from weakref import WeakValueDictionary
+
+from actr3d.errors import Actr3dError
+from workbench.jobs import Job, doing
+from workbench.recordings import NoSuchRecordingError
+from workbench.worker.messages import Start
+from workbench.worker.workers import Workers
+
+T = TypeVar("T")
+MEMORY = 2_000
+"""How much memory reading a recording may take [MB]."""
+PATIENCE = 120.0
+"""Making a file is given up when nothing more has been written for so long [s]."""
+LOOK = 0.25
+"""How often it is looked whether more has been written [s]."""
+MOST = 8
+"""So many files are made at once; others wait for their turn."""
+MOST_OF_ONE = 2
+"""So many of them of one recording: one that takes long does not hold up others."""
+
+
+class ReadingError(Actr3dError):
+    """A recording cannot be read, or nothing made of it."""
+
+    status = 409
+
+
+class Readers:
+    """Has workers read recordings, and write what is asked for to files.
+
+    Args:
+        workers: Who gives workers.
+    """
+
+    def __init__(self, workers: Workers) -> None:
+        self._workers = workers
+        self._turns = asyncio.Semaphore(MOST)
+        self._turns_of: WeakValueDictionary[Path, asyncio.Semaphore] = WeakValueDictionary()
+
+    async def make(self, form: str, *paths: Path, **options: Any) -> FileIO:
+        """Returns an open file with what was made of recordings; it has no name any more, and is gone when it is closed.
+
+        Args:
+            form: What is made: one of `workbench.forms`.
+            paths: The recordings.
+            options: What the form takes.
+
+        Raises:
+            NoSuchRecordingError: If one of them is gone meanwhile.
+            ReadingError: If it cannot be made.
+            OSError: If no file or worker can be had.
+        """
+        turns = self._turns_of.setdefault(paths[0], asyncio.Semaphore(MOST_OF_ONE))
+        async with turns, self._turns:
+            folder = Path(tempfile.mkdtemp(prefix="actr3d-"))
+            try:
+                to = folder / "made"
+                await self._made(Start(job="make", form=form, recordings=tuple(map(str, paths)), to=str(to), settings=options))
+                return to.open("rb", buffering=0)
+            except ReadingError:
+                if not all(path.is_file() for path in paths):
+                    raise NoSuchRecordingError from None
+                raise
+            finally:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    async def _made(self, start: Start) -> None:
+        job, loop = Job(), asyncio.get_running_loop()
+        async with doing(self._workers, start, job, memory=MEMORY):
+            size, since = 0, loop.time()
+            while not job.over.is_set():
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(job.over.wait(), LOOK)
+                now = _size(start.to)
+                if now > size:
+                    size, since = now, loop.time()
+                elif loop.time() - since > PATIENCE:
+                    raise ReadingError(f"it was given up, as nothing came of it for {PATIENCE:g} s")
+        if job.result is None:
+            raise ReadingError(job.problem_of_reader)
+
+
+def _size(path: str) -> int:
+    try:
+        return Path(path).stat().st_size
+    except OSError:
+        return 0
+
+
+async def while_wanted(work: Awaitable[T], gone: Callable[[], Awaitable[Any]]) -> T:
+    """Returns what comes of some work, which is cancelled as soon as who asked for it has gone.
+
+    Args:
+        work: The work.
+        gone: Waits until who asked for it has gone.
+
+    Raises:
+        ReadingError: If who asked has gone.
+    """
+    working, going = asyncio.ensure_future(work), asyncio.ensure_future(gone())
+    try:
+        await asyncio.wait([working, going], return_when=asyncio.FIRST_COMPLETED)
+        if working.done():
+            return working.result()
+        raise ReadingError("nobody waits for it any more")
+    finally:
+        for task in (working, going):
+            task.cancel()
+        await asyncio.gather(working, going, return_exceptions=True)

@@ -1,0 +1,96 @@
+"""What a recorded run did, known to a run that lives through it again: its events, how far it came, and its physics."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from actr3d.clock import seconds
+from actr3d.recording import Recorded
+from actr3d.trace import TraceEvent
+from workbench.worker.bounds import event_json
+from workbench.worker.messages import Notice, notice
+
+MOST_EVENTS = 50_000
+"""So many of the last events are shown before the run has come to them; as many as the server has at hand."""
+
+
+class Foreknown:
+    """Reads a recording once.
+
+    Args:
+        path: The recording.
+        keep: Is given the physics at the end of each tick, of a single simulation.
+
+    Raises:
+        RecordingError: If it cannot be read.
+    """
+
+    def __init__(self, path: Path, keep: Callable[[int, bytes], object] | None = None) -> None:
+        self._digests = array("q")
+        """What tells each event from others."""
+        self.events: list[bytes] = []
+        """The last events, as pages take them."""
+        with Recorded(path) as recorded:
+            self.facts: dict[str, Any] = recorded.facts
+            self.ticks: int = recorded.ticks
+            times: list[int] = []
+            for event in recorded.events():
+                self._take(event, times)
+            if keep is not None:
+                for _, tick, data, _ in recorded.states():
+                    keep(tick, data)
+        self.time = sum(times)
+        """How long it took, of all its runs one after the other [us]."""
+
+    @property
+    def count(self) -> int:
+        """How many events there are."""
+        return len(self._digests)
+
+    @property
+    def first(self) -> int:
+        """The number of the first of `events`."""
+        return self.count - len(self.events)
+
+    def _take(self, event: TraceEvent, times: list[int]) -> None:
+        if event.kind == "start" or not times:
+            times.append(0)
+        times[-1] = max(times[-1], event.time_us)
+        text = event_json(event)
+        self._digests.append(hash(text))
+        self.events.append(text)
+        if len(self.events) > 2 * MOST_EVENTS:
+            del self.events[:-MOST_EVENTS]
+
+    def difference(self, number: int, events: Sequence[TraceEvent]) -> int | None:
+        """Returns the number of the first event that is not the recorded one; None where all are.
+
+        Args:
+            number: The number of the first of the events.
+            events: What happens now.
+        """
+        known = zip(self._digests[number : number + len(events)], events, strict=False)
+        return next((n for n, (digest, event) in enumerate(known, number) if hash(event_json(event)) != digest), None)
+
+
+def difference_notice(now: float, event: TraceEvent | None) -> Notice:
+    """Returns what the user is told where a run does something else than its recording.
+
+    Args:
+        now: When [s].
+        event: What it does; None where it has ended and the recording has not.
+    """
+    when = now if event is None else seconds(event.time_us)
+    does = (
+        "it ends, and the recording goes on"
+        if event is None
+        else f"it has the event '{event.kind}' of '{event.source}', which the recording has not"
+    )
+    text = (
+        f"from {when:g} s on this run differs from its recording, which was made with other versions or other files: {does}. "
+        "What is shown from there on is what happens now; «Replay» in the tab Runs compares everything."
+    )
+    return notice("error", text)

@@ -1,0 +1,183 @@
+"""What is shown of one simulation, whoever runs it: its scene, overlays, curves, and answers to questions. Nothing changes by asking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import asdict
+from functools import cached_property
+from typing import Any
+
+from actr3d.actr.answers import plain_answer
+from actr3d.camera import EXTENT_FIELDS, CameraParameters, Sight, glance
+from actr3d.clock import microseconds, seconds
+from actr3d.errors import Actr3dError, did_you_mean
+from actr3d.simulation import Simulation
+from actr3d.vision import visions
+from actr3d.world import Aperture, Floor, World
+from actr3d.world.body import Body
+from actr3d.world.sensors import SENSORS
+from actr3d.world.sensors.touch import present
+from workbench import protocol as say
+from workbench.compiled import loaded, saved
+from workbench.curves import Curves, stretch
+from workbench.loader import Parameter
+from workbench.worker.answers import answer
+from workbench.worker.drawings import Drawings
+from workbench.worker.past import Past
+from workbench.worker.surroundings import surroundings
+from workbench.worker.tops import Top
+from workbench.worker.walked import Walked
+from workbench.worker.watch import Touches
+from workbench.worker.widths import widths
+
+
+class Kept:
+    """What is kept of a simulation's past. It may serve a simulation that is made once more, and then does the same again.
+
+    Args:
+        period: A tick [us].
+    """
+
+    def __init__(self, period: int) -> None:
+        self.states = Past()
+        self.walked = Walked(period)
+
+    def keep(self, tick: int, world: World) -> None:
+        """Takes the end of a tick, or the start of the run (tick 0); what is known already stays."""
+        self.states.keep(tick, world)
+        self.walked.keep(tick, world)
+
+    def cut(self, tick: int) -> None:
+        """Forgets what came after a tick: the run goes another way."""
+        self.states.cut(tick)
+        self.walked.cut(tick)
+
+
+class Shown:
+    """Shows a simulation.
+
+    Args:
+        simulation: The simulation, at its start.
+        kept: What is known of its past and future from an earlier time through it.
+    """
+
+    def __init__(self, simulation: Simulation, kept: Kept | None = None) -> None:
+        self.simulation = simulation
+        self.period = microseconds(simulation.period)
+        """A tick [us]."""
+        self.kept = kept or Kept(self.period)
+        self.kept.keep(0, simulation.world)
+        simulation._journal.keeper = self.kept
+        self.mj_model = saved(simulation.world.mj_model)
+        """The compiled scene at the start, as MuJoCo saves it."""
+        self.surroundings = surroundings(simulation.world)
+        self._openings = self.scene()[1]
+        """How wide apertures are at the start [m]."""
+        self._drawings = Drawings(simulation, self.eyesight, self.kept.walked)
+
+    def world(self, parameters: Iterable[Parameter] | None = None) -> dict[str, Any]:
+        """Returns what pages must know of the world, as plain values.
+
+        Args:
+            parameters: Those of the model, which say how wide doorways can be set while it runs; None where they cannot be.
+        """
+        return {
+            **self.surroundings,
+            "openings": self._openings,
+            "widths": {} if parameters is None else widths(self.surroundings["apertures"], parameters),
+        }
+
+    def scene(self) -> tuple[bytes, dict[str, float]]:
+        """Returns the state of the physics, and how wide apertures are."""
+        world = self.simulation.world
+        names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
+        return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+
+    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
+        """Returns what overlays show of the present, by kind; nothing where it cannot be computed, as after a physics that diverged."""
+        with suppress(Actr3dError):
+            return self._drawings.told(kinds)
+        return {}
+
+    def result(self) -> dict[str, Any] | None:
+        """Returns what was measured of the run, if anything was."""
+        result = self.simulation.result()
+        return None if result is None else asdict(result)
+
+    def touches(self) -> Touches:
+        """Returns what touches a body now, the ground left out."""
+        world = self.simulation.world
+        ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
+        return frozenset(
+            (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
+        )
+
+    # -- questions
+
+    def answer(self, question: Any) -> Any:
+        """Returns what is asked, as plain values.
+
+        Raises:
+            Actr3dError: If there is nothing of that name, or it cannot be told.
+        """
+        match question:
+            case say.Look():
+                return self._look(self._body(question.body))
+            case say.Body():
+                return _stand(self._body(question.body))
+            case say.Curves():
+                return self.curves(question)
+            case _:
+                return answer(question, self.simulation.trace, [Top(mind) for mind in self.simulation.minds.values()])
+
+    def curves(self, question: say.Curves, begin: int = 0) -> dict[str, Any]:
+        """Returns curves of all that is known of the run.
+
+        Args:
+            question: Which, and from when on.
+            begin: When the simulation began, for the page [us].
+        """
+        first, last = stretch(question.first, question.last, self.period, begin)
+        moments = ((seconds(begin + tick * self.period), state) for tick, state in self.kept.states.within(first, last, question.most))
+        return self._curves.told(moments, question.names)
+
+    @cached_property
+    def _curves(self) -> Curves:
+        """What makes curves of its past, once somebody asks; from a copy of the scene."""
+        return Curves(loaded(self.mj_model), self.surroundings)
+
+    def eyesight(self, name: str) -> CameraParameters:
+        """Returns how an agent sees with the eye of its body: as its vision does, or else as it has looked first."""
+        mind, body = self.simulation.minds.get(name), self.simulation.world.bodies[name]
+        own = None if mind is None else next((vision.eyesight for vision in visions(mind)), None)
+        return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
+
+    def _look(self, body: Body) -> dict[str, Any]:
+        view = glance(body, self.eyesight(body.name))
+        fields = [{"name": field.name, "title": field.title, "unit": field.unit, "about": field.about} for field in EXTENT_FIELDS]
+        return {"body": body.name, "rows": view.rows, "fields": fields, "extents": view.as_array().tolist()}
+
+    def _body(self, name: str | None) -> Body:
+        bodies = self.simulation.world.bodies
+        if not bodies:
+            raise Actr3dError("the run has no body")
+        if name is None:
+            return next(iter(bodies.values()))
+        if name not in bodies:
+            raise Actr3dError(f"no body '{name}'{did_you_mean(name, bodies)}; there are: {', '.join(bodies)}")
+        return bodies[name]
+
+
+def _stand(body: Body) -> dict[str, Any]:
+    """Returns how a body stands."""
+    limits = {joint.name: joint.limits for joint in body.joints.values()}
+    joints = plain_answer(SENSORS["joints"](body))
+    box = body.bounding_box("body")
+    return {
+        "body": body.name,
+        "pose": plain_answer(SENSORS["pose"](body)),
+        "joints": {name: {"now": reading, "limits": limits.get(name)} for name, reading in joints.items()},
+        "contacts": [plain_answer(touch) for touch in present(body)],
+        "box": {"lower": box.lower, "upper": box.upper, "size": box.size},
+    }

@@ -1,0 +1,39 @@
+"""The top models of a run, with the names that their parts have in its trace."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from actr3d.actr.model import Model
+
+PATHS = frozenset(("agent", "system", "memory", "module"))
+"""What answers call the paths of parts."""
+
+
+class Top(NamedTuple):
+    """A top model, or the agents of a simulation."""
+
+    model: Model
+    prefix: str = ""
+    """What stands before the paths of its parts in the trace of a program: `top#2` of its second run, if that is a simulation."""
+
+    def parts(self) -> Iterator[tuple[str, Any]]:
+        """Yields all its parts with their names."""
+        for part in self.model._tree():
+            yield self.name(part._path), part
+
+    def name(self, path: str) -> str:
+        """Returns the name of the part at a path."""
+        return path if not self.prefix else self.prefix if path == "top" else f"{self.prefix}.{path}"
+
+    def named(self, told: Any) -> Any:
+        """Returns an answer in plain values with the names of parts in place of their paths."""
+        if not self.prefix:
+            return told
+        if isinstance(told, dict):
+            entries: list[tuple[str, Any]] = list(told.items())  # pyright: ignore[reportUnknownArgumentType,reportUnknownVariableType]
+            return {key: self.name(value) if key in PATHS and isinstance(value, str) else self.named(value) for key, value in entries}
+        if isinstance(told, (list, tuple)):
+            return [self.named(one) for one in told]  # pyright: ignore[reportUnknownVariableType]
+        return told
