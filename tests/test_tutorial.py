@@ -1,22 +1,15 @@
-"""Every model does what its golden trace says, again and again, and prints the same under python_actr.
+"""Every model does what its golden trace says, and does it again.
 
-After a wanted change of behaviour, `python tests/golden/make.py` writes the golden traces anew.
-
-All models but those with bodies or planning units run under python_actr 1.9.5. One of them, tutorial/imaginal, only with
-the help of `peer.py`: python_actr's ImaginalModule asks for `collections.Callable`, which Python has had under another name since 3.10.
+After an intended change of behaviour, `python tests/golden/make.py` records the golden traces again.
 """
 
 from __future__ import annotations
 
-import os
-import re
-import subprocess
-import sys
 from itertools import zip_longest
-from pathlib import Path
 
 import pytest
-from golden.make import EMBODIED, GOLDEN, MODELS, OURS, ROOT, command, golden_file, golden_names, model_file, model_names, options, record
+from golden.make import GOLDEN, MODELS, ROOT, command, golden_file, golden_names, model_file, model_names, options
+from helpers.commands import run_command
 
 from actr3d.actr.sweep import parameters
 from actr3d.cli import main
@@ -33,6 +26,13 @@ NOISY = {
 """The models that draw random numbers which make a difference."""
 LARGEST = 300_000
 """No golden trace is larger [bytes]."""
+
+
+def record(name: str, *words: str) -> bytes:
+    """Runs a model in a process of its own, and returns what it printed."""
+    done = run_command(*command(name, *words), folder=ROOT)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout.encode()
 
 
 def compare(name: str, found: bytes) -> None:
@@ -80,24 +80,6 @@ def test_does_the_same_twice_in_one_process(name: str, capsys: pytest.CaptureFix
 def test_another_seed_changes_noisy_models_only(name: str) -> None:
     same = without_start(record(name, *options(name, seed=2))) == without_start(golden_file(name).read_bytes())
     assert same == (name not in NOISY)
-
-
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in EMBODIED | OURS])
-@pytest.mark.parametrize("seed", ["1", "7"])
-def test_prints_the_same_under_python_actr(name: str, seed: str, tmp_path: Path) -> None:
-    source = (MODELS / f"{name}.py").read_text(encoding="utf-8")
-    ported, replaced = re.subn(r"^from actr3d\.actr import \*$", "from python_actr import *", source, flags=re.MULTILINE)
-    assert replaced == 1
-    file = tmp_path / Path(f"{name}.py").name
-    file.write_text(ported, encoding="utf-8")
-    environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8"}
-    arguments = [sys.executable, "-W", "ignore", str(ROOT / "tests" / "peer.py"), str(file), seed]
-    done = subprocess.run(arguments, capture_output=True, encoding="utf-8", env=environment, cwd=tmp_path, timeout=60, check=False)
-    assert done.returncode == 0, done.stderr
-    ours = record(name, "--seed", seed).decode()
-    assert ours
-    # python_actr prints a last line of its own when a program that imports it ends.
-    assert ours + "end...\n" == done.stdout
 
 
 @pytest.mark.parametrize("until", ["0.01", "0.12", "3"])

@@ -1,6 +1,6 @@
 """Runs a model file under the real python_actr, seeded as `actr3d run --seed` seeds it.
 
-Usage: `python tests/peer.py FILE SEED`. The n-th top model of the program draws from `Random(SEED)` for n = 1 and from
+Usage: `python tests/golden/peer.py FILE SEED`. The n-th top model of the program draws from `Random(SEED)` for n = 1 and from
 `Random("SEED/n")` after that, and the program's own `random` is seeded with SEED; nothing else about python_actr changes,
 except what keeps parts of it from running at all on the Pythons of today.
 """
