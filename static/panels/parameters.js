@@ -4,7 +4,7 @@ import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
 import { boundsText, read, written } from "../parameters/values.js";
-import { call, isLeft, order, say } from "../server.js";
+import { call, isLeft, order } from "../server.js";
 import { standing } from "../standing.js";
 import { complain, session, state } from "../store.js";
 

@@ -45,6 +45,10 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
         if message.type == "error":
             complaints.append(message.text)
 
+    def note_unless_refused(message: Any) -> None:
+        if not REFUSED.match(message.text):
+            note(message)
+
     def fault(error: Any) -> None:
         complaints.append(str(error))
 
@@ -57,13 +61,14 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
         theme: Any = "light",
         tab: str | None = "buffers",
         paced: bool = False,
+        refusals: bool = False,
     ) -> Page:
         contexts.append(browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme))
         if tab is not None:
             contexts[-1].add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
         page = contexts[-1].new_page()
         page.set_default_timeout(PATIENCE)
-        page.on("console", note)
+        page.on("console", note_unless_refused if refusals else note)
         page.on("pageerror", fault)
         if not paced and not any(one["model"] == model for one in workbench.get("/api/sessions").json()["sessions"]):
             workbench.post("/api/sessions", {"model": model})

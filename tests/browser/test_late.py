@@ -265,7 +265,7 @@ def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Ca
     page.locator("tr.present").click()
     asked: list[Route] = []
     page.route(re.compile("form=replay.html"), lambda route: asked.append(route))
-    link, told = page.get_by_role("link", name="HTML replay"), page.get_by_text("Making the HTML replay")
+    link, told = page.get_by_role("link", name="HTML replay"), page.get_by_text("being made")
     link.click()
     expect(told).to_be_visible()
     link.click()  # one is enough

@@ -12,7 +12,9 @@ from workbench.shipped import static
 
 VENDOR = static() / "vendor"
 SHARED = static() / "style.css"
-SCOPED = sorted(path for path in static().rglob("*.css") if VENDOR not in path.parents and path != SHARED)
+FRAME = static() / "scene" / "view.css"
+"""The styles of the 3D view, which is a page of its own in a frame: no panel is there."""
+SCOPED = sorted(path for path in static().rglob("*.css") if VENDOR not in path.parents and path not in (SHARED, FRAME))
 MODULES = sorted(path for path in static().rglob("*.js") if VENDOR not in path.parents)
 ROOT = re.compile(r"[a-z]*\.([A-Za-z][\w-]*)")
 """What a rule outside all others may select: one class, perhaps of one kind of element."""
