@@ -344,4 +344,5 @@ class Conductor:
     def _halt(self) -> None:
         self.pacer.halt()
         self.watch.begin()
+        self.run.flush()
         self.show()
