@@ -50,10 +50,10 @@ def record(path: Path, first: str = "pass", last: str = "pass") -> None:
 @pytest.mark.parametrize(
     ("does", "how"),
     [
-        ("os._exit(0)", "the model ended its process, with exit code 0"),
-        ("os._exit(7)", "the model ended its process, with exit code 7"),
+        ("os._exit(0)", "the model's process ended with exit code 0"),
+        ("os._exit(7)", "the model's process ended with exit code 7"),
         ("os.kill(os.getpid(), signal.SIGKILL)", "the model's process was ended by SIGKILL"),
-        ("os.execv(sys.executable, [sys.executable, '-c', 'print(1)'])", "the model ended its process, with exit code 0"),
+        ("os.execv(sys.executable, [sys.executable, '-c', 'print(1)'])", "the model's process ended with exit code 0"),
         ("threading.Timer(0.05, os._exit, [0]).start(); threading.Event().wait()", "exit code 0"),
     ],
 )

@@ -114,7 +114,7 @@ def _answered(file: str, work: Callable[[], T]) -> T | Verdict:
 def _ended(status: int) -> str:
     """Says how a process ended that has given no verdict."""
     if status >= 0:
-        return f"the model ended its process, with exit code {status}"
+        return f"the model's process ended with exit code {status}"
     name = signal.Signals(-status).name if -status in set(signal.Signals) else f"signal {-status}"
     return f"the model's process was ended by {name}"
 
