@@ -26,8 +26,10 @@ FAR = 1e12
 """Delays up to here [s] need no further look."""
 NO_PART = 1e-9
 """A smaller part of a microsecond is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
-MOST_LEFT = 8
-"""Of so many different delays an event carries what rounding has left over; a model has few that come again and again."""
+MOST_LEFT = 32
+"""Of so many different delays an event carries what rounding has left over; a model has fewer that come again and again. One sum of
+all that is left over would do for any number, but moves the times of random delays by a microsecond: printed with few digits, some
+then differ from python_actr's."""
 
 Ending = Literal["limit", "until", "stop", "done"]
 """What ended a run: its own limit, the limits of the program, `stop`, or that nothing was left to do."""
