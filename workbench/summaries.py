@@ -88,7 +88,7 @@ def unreadable(path: Path, reason: str) -> Summary:
 def _read(recorded: Recorded, size: int) -> Summary:
     facts, path = recorded.facts, recorded.path
     ended: dict[str, Any] | None = facts.get("ended")
-    last = _last_events(recorded)
+    last = [event for text in recorded.last_events() for event in EVENTS.decode(text)]  # what was measured is told at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
     return Summary(
@@ -108,12 +108,6 @@ def _read(recorded: Recorded, size: int) -> Summary:
         size=size,
         made=begun(path),
     )
-
-
-def _last_events(recorded: Recorded) -> list[Event]:
-    """Returns the last two rows of events: what was measured is told at the very end."""
-    rows = recorded._file.execute("SELECT data FROM events ORDER BY first DESC LIMIT 2").fetchall()
-    return [event for (text,) in reversed(rows) for event in EVENTS.decode(text)]
 
 
 def _result(events: list[Event]) -> dict[str, Any] | None:

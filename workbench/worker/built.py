@@ -275,6 +275,11 @@ class BuiltRun:
         self._conclude()
         self._conductor.end("ended", ENDINGS[self._end[1]])
 
+    def flush(self) -> None:
+        """Writes what is still to be recorded."""
+        if self._recording is not None:
+            self._recording.flush()
+
     def forget_ahead(self) -> None:
         """Forgets that it has been further than it is now."""
         self._simulation.forget_ahead()

@@ -316,6 +316,14 @@ class Conductor:
             time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
             self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
+    def say_all(self) -> None:
+        """Records and sends what has happened up to now, from whatever thread of the model: it may be about to end its process."""
+        if not self.link.left:  # a copy of the process has nothing to send
+            with suppress(Exception):  # there may be no run yet
+                self.run.flush()
+            self.show_busy()
+            self.link.flush()
+
     def _tell(self, state: State, trace: Trace | None) -> None:
         """Gives the server a state and the events up to it that it does not have."""
         count = state.events
@@ -344,4 +352,5 @@ class Conductor:
     def _halt(self) -> None:
         self.pacer.halt()
         self.watch.begin()
+        self.run.flush()
         self.show()
