@@ -345,7 +345,7 @@ def test_keys_work_after_a_click_into_the_3d_view_and_do_nothing_in_a_field_of_t
         before = look(page, frame)["position"]
         page.wait_for_timeout(200)
         assert look(page, frame)["position"] == pytest.approx(before, abs=1e-3), "it stops with the key"
-    page.get_by_role("textbox", name="Filter").first.click()
+    page.get_by_role("searchbox", name="Filter rows").click()
     page.keyboard.type("dv ")
     assert look(page, frame)["position"] == pytest.approx(before, abs=1e-3)
     assert page.get_by_label("Camera").input_value() == "free"
