@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.looking import drawn, open_tab, shows
+from tests.browser.looking import drawn, open_tab, shows, until
 from tests.browser.test_runs_panel import recorded, row
 from tests.server.serving import Served
 
@@ -64,6 +64,37 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     page.click("#restart")  # a new run of the model is no recording, and has the address of the model
     expect(banner).to_have_count(0)
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
+
+
+def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "doorway.py")
+    page = pages("doorway.py", tab="runs")
+    shows(page, "#status", "at its start")
+    banner, scene = page.locator(".recording-banner"), page.locator("iframe[title='3D view']")
+    expect(scene).to_have_attribute("src", re.compile("/viser/"))
+    before = str(scene.get_attribute("src"))
+    in_frame(page, before)
+    row(page, name).click()
+    for _ in range(2):
+        page.get_by_role("button", name="Open", exact=True).click()
+        expect(banner).to_contain_text(name)
+        expect(scene).not_to_have_attribute("src", before)
+        recording = str(scene.get_attribute("src"))
+        in_frame(page, recording)
+        page.go_back()
+        expect(banner).to_have_count(0)
+        expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
+        expect(scene).to_have_attribute("src", before)
+        in_frame(page, before)
+    page.go_forward()
+    expect(banner).to_contain_text(name)
+    in_frame(page, recording)
+
+
+def in_frame(page: Page, address: str) -> None:
+    """Waits until the 3D view has a picture of the scene of an address."""
+    until(page, lambda: any(frame.url.partition("?")[0].endswith(address.partition("?")[0]) for frame in page.frames[1:]))
+    expect(page.locator(".scene-cover")).to_have_count(0)
 
 
 def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browser: Browser, workbench: Served) -> None:
