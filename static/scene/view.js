@@ -52,8 +52,20 @@ function room() {
 
 camera.room = room;
 
+/** Returns what is told of the moment that the shapes are drawn at: viser moves them some pictures after that has come (`Moments` in
+ * `workbench/viser_server.py`). */
+function drawnNow() {
+  let number = Infinity; // as long as there are no shapes
+  viewer.nodeRefFromName["/moment"]?.traverse((object) => {
+    if (object.instancesCount) number = object.getPositionAt(0).x;
+  });
+  const later = given.heard.findIndex(({ moment }) => moment > number);
+  given.heard.splice(0, (later < 0 ? given.heard.length : Math.max(later, 1)) - 1);
+  return given.heard[0];
+}
+
 function choose() {
-  camera.choose(given.view, told.stage, told.now);
+  camera.choose(given.view, told.stage, drawnNow());
 }
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
@@ -65,7 +77,8 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
     stage = told.stage;
     if (!same) choose();
   }
-  const { now } = told;
+  const now = drawnNow();
+  given.shown = now;
   camera.follow(stage, now);
   leaveOut();
   if (now !== shaded) {
