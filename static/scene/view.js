@@ -2,6 +2,7 @@
 // server with each state (`window.scene`, see `framed.js`); what is drawn is changed just before each picture, so that all of it is of one moment.
 
 import { SceneCamera } from "./camera.js";
+import { Cutaway } from "./cutaway.js";
 import { Ground } from "./ground.js";
 import { Labels } from "./labels.js";
 import { VIEWS } from "./stage.js";
@@ -28,6 +29,7 @@ const viewer = await ready();
 const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Labels();
+const cutaway = new Cutaway(viewer);
 const { told } = given;
 let { stage } = told;
 let shaded = null;
@@ -81,6 +83,7 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   given.shown = now;
   camera.follow(stage, now);
   leaveOut();
+  cutaway.draw(stage, now, camera);
   if (now !== shaded) {
     ground.shade(now.shade, stage.ground);
     shaded = now;

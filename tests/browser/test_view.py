@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator
+from io import BytesIO
 from itertools import combinations
 from typing import Any
 
@@ -11,6 +12,7 @@ import mujoco
 import numpy as np
 import pytest
 from mujoco import MjData, MjModel
+from PIL import Image
 from playwright.sync_api import Browser, Frame, Page, expect
 
 from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
@@ -328,6 +330,42 @@ def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages:
     in_the_middle(page, frame)
     until(page, lambda: frame.evaluate(WATCH) < 1e-3)
     watched(page, frame, to(2), 0.5)
+
+
+HIDDEN = """([hidden, name]) => new Promise((done) => {
+    const viewer = window.__viserMutable;
+    for (const [at, node] of Object.entries(viewer.nodeRefFromName)) {
+        if (at.startsWith(name)) node?.traverse((one) => { if (one.isMesh) one.layers.mask = hidden ? 0 : 1; });
+    }
+    viewer.scene.onAfterRender = (renderer, scene, camera) => camera === viewer.camera && requestAnimationFrame(() => done());
+    viewer.requestRender();
+})"""
+
+
+def part_seen(page: Page, frame: Frame, body: str) -> float:
+    """Returns how large the part of the picture is that changes where a body is not drawn."""
+    pictures: list[Any] = []
+    for hidden in (False, True, False):
+        frame.evaluate(HIDDEN, [hidden, body])
+        drawn(page)
+        with Image.open(BytesIO(page.locator("#scene iframe").screenshot())) as picture:
+            pictures.append(np.asarray(picture.convert("RGB"), dtype=int))
+    return float((np.abs(pictures[0] - pictures[1]).max(axis=2) > 12).mean())
+
+
+def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    page.evaluate("async () => (await import('/static/server.js')).order({ type: 'until', time: 4 })")
+    shows(page, "#time", "t = 4.00 s")
+    until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > 4)
+    plain = part_seen(page, frame, "/bodies/walker")
+    assert plain > 0.01
+    frame.evaluate("() => window.__viserMutable.cameraControl.rotate(2.6, 0, false)")
+    assert part_seen(page, frame, "/bodies/walker") > 0.75 * plain  # from behind the wall
+    page.get_by_label("Camera").select_option("free")  # where the camera stays, but nothing is promised
+    until(page, lambda: look(page, frame)["view"] == "free")
+    assert part_seen(page, frame, "/bodies/walker") < 0.5 * plain
 
 
 def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_own(pages: Callable[..., Page]) -> None:
