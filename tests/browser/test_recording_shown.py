@@ -91,6 +91,55 @@ def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before
     in_frame(page, recording)
 
 
+def test_from_a_recording_one_can_go_to_any_run_that_is_open(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "counting.py")
+    page = pages("counting.py", tab="runs")
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    page.get_by_label("Model", exact=True).select_option("doorway.py")
+    shows(page, "#time", "t = 0.00 s")
+    row(page, name).click()
+    page.get_by_role("button", name="Open", exact=True).click()
+    runs = page.locator(".recording-banner").get_by_label("Open runs")
+    expect(runs.locator("option")).to_have_text(["2 other runs are open", "run of counting.py", "run of doorway.py"])
+    runs.select_option("run of counting.py")
+    expect(page.locator(".recording-banner")).to_have_count(0)
+    shows(page, "#time", "t = 0.05 s")
+
+
+def test_what_is_lost_is_asked_about_and_what_is_dragged_by_two_is_the_same_for_both(pages: Pages, workbench: Served) -> None:
+    session = workbench.post("/api/sessions", {"model": "doorway.py", "seed": 1, "record": False}).json()["id"]
+    page, other = pages("doorway.py", tab="buffers"), pages("doorway.py", tab="buffers")
+    until(page, lambda: workbench.get(f"/api/sessions/{session}").json()["state"] is not None)
+    for command in ({"type": "until", "time": 2}, {"type": "seek", "time": 1}):
+        workbench.post(f"/api/sessions/{session}/say", {"say": command})
+        shows(page, "#time", rf"t = {2 if command['type'] == 'until' else 1}\.00 s")
+    told = workbench.get(f"/api/sessions/{session}").json()["session"]
+    slider = page.locator("#aperture")
+    slider.focus()
+    slider.press("End")
+    asked = page.get_by_role("dialog")
+    if told["recording"]:  # it is kept without a question
+        expect(asked).to_have_count(0)
+    else:
+        expect(asked).to_contain_text("The run stands at 1.00 s and has come to 2.00 s. It is not recorded")
+        asked.get_by_role("button", name="Cancel").click()
+        shows(page, "#width", "50 cm")
+        slider.focus()
+        slider.press("End")
+        asked.get_by_role("button", name="Change it, and lose the rest").click()
+    shows(page, "#status", "paused: changed at 1.00 s; " + ("a branch was kept" if told["recording"] else "the rest was lost"))
+    for one in (page, other):
+        one.locator("#aperture").focus()
+    for key in ("ArrowLeft", "Home", "ArrowRight"):
+        page.locator("#aperture").press(key)
+        other.locator("#aperture").press(key)
+    until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text())
+    expect(page.locator("dialog[open]")).to_have_count(0)
+    expect(other.locator("dialog[open]")).to_have_count(0)
+
+
 def in_frame(page: Page, address: str) -> None:
     """Waits until the 3D view has a picture of the scene of an address."""
     until(page, lambda: any(frame.url.partition("?")[0].endswith(address.partition("?")[0]) for frame in page.frames[1:]))
