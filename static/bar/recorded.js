@@ -48,10 +48,10 @@ export function RecordingBanner() {
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
     <span>${fileOf(model)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
-    <span class="quiet">
+    <span class="quiet" title=${changed ? "" : "Running it shows again what happened."}>
       ${changed
         ? "You have changed its course: what follows is new, and is not recorded."
-        : `${(state.value?.furthest ?? 0).toFixed(2)} s are known. Running it shows again what happened.`}
+        : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
     </span>
     <span class="stretch"></span>
     <${Others} id=${id} model=${model} />

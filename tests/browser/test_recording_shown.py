@@ -108,36 +108,49 @@ def test_from_a_recording_one_can_go_to_any_run_that_is_open(pages: Pages, workb
     shows(page, "#time", "t = 0.05 s")
 
 
-def test_what_is_lost_is_asked_about_and_what_is_dragged_by_two_is_the_same_for_both(pages: Pages, workbench: Served) -> None:
-    session = workbench.post("/api/sessions", {"model": "doorway.py", "seed": 1, "record": False}).json()["id"]
-    page, other = pages("doorway.py", tab="buffers"), pages("doorway.py", tab="buffers")
-    until(page, lambda: workbench.get(f"/api/sessions/{session}").json()["state"] is not None)
-    for command in ({"type": "until", "time": 2}, {"type": "seek", "time": 1}):
-        workbench.post(f"/api/sessions/{session}/say", {"say": command})
-        shows(page, "#time", rf"t = {2 if command['type'] == 'until' else 1}\.00 s")
-    told = workbench.get(f"/api/sessions/{session}").json()["session"]
-    slider = page.locator("#aperture")
-    slider.focus()
-    slider.press("End")
-    asked = page.get_by_role("dialog")
-    if told["recording"]:  # it is kept without a question
-        expect(asked).to_have_count(0)
-    else:
-        expect(asked).to_contain_text("The run stands at 1.00 s and has come to 2.00 s. It is not recorded")
-        asked.get_by_role("button", name="Cancel").click()
-        shows(page, "#width", "50 cm")
-        slider.focus()
-        slider.press("End")
-        asked.get_by_role("button", name="Change it, and lose the rest").click()
-    shows(page, "#status", "paused: changed at 1.00 s; " + ("a branch was kept" if told["recording"] else "the rest was lost"))
+def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two_drag_is_the_same_for_both(
+    pages: Pages, workbench: Served
+) -> None:
+    name = recorded(workbench, "doorway.py")
+    page, other = pages("counting.py", tab="buffers"), pages("counting.py", tab="buffers")
     for one in (page, other):
-        one.locator("#aperture").focus()
-    for key in ("ArrowLeft", "Home", "ArrowRight"):
-        page.locator("#aperture").press(key)
-        other.locator("#aperture").press(key)
-    until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text())
-    expect(page.locator("dialog[open]")).to_have_count(0)
-    expect(other.locator("dialog[open]")).to_have_count(0)
+        one.goto(f"{workbench.url}/?recording={name}")
+        expect(one.locator(".recording-banner")).to_contain_text("6.80 s are known")
+        shows(one, "#time", "t = 0.00 s")
+    asked = page.get_by_role("dialog")
+
+    def order(kind: str, time: float) -> None:
+        page.evaluate("async (said) => (await import('/static/server.js')).order(said)", {"type": kind, "time": time})
+        page.wait_for_timeout(3000); print("DBG", page.url, page.locator("#status").inner_text(), page.locator("#time").inner_text(), page.locator(".toast").all_inner_texts())
+        shows(page, "#time", f"t = {time:.2f} s")
+
+    def drag(key: str) -> None:
+        page.locator("#aperture").focus()
+        page.keyboard.press(key)
+
+    order("seek", 1)
+    drag("End")
+    shows(page, "#status", r"paused: changed at 1\.00 s; the recording keeps the rest")  # without a question
+    expect(page.locator(".recording-banner")).to_contain_text("You have changed its course")
+    width = page.locator("#width").inner_text()
+    order("until", 2)
+    order("seek", 1.5)
+    drag("Home")
+    expect(asked).to_contain_text("The run stands at 1.50 s and has come to 2.00 s. It is not recorded")
+    asked.get_by_role("button", name="Cancel").click()
+    expect(asked).to_have_count(0)
+    expect(page.locator("#width")).to_have_text(width)
+    drag("Home")
+    asked.get_by_role("button", name="Change it, and lose the rest").click()
+    shows(page, "#status", r"paused: changed at 1\.50 s; the rest was lost")
+    expect(page.locator("#width")).not_to_have_text(width)
+    for key in ("ArrowRight", "End", "ArrowLeft"):
+        for one in (page, other):
+            one.locator("#aperture").focus()
+            one.keyboard.press(key)
+    until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text() != width)
+    for one in (page, other):
+        expect(one.get_by_role("dialog")).to_have_count(0)
 
 
 def in_frame(page: Page, address: str) -> None:
