@@ -121,7 +121,6 @@ def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two
 
     def order(kind: str, time: float) -> None:
         page.evaluate("async (said) => (await import('/static/server.js')).order(said)", {"type": kind, "time": time})
-        page.wait_for_timeout(3000); print("DBG", page.url, page.locator("#status").inner_text(), page.locator("#time").inner_text(), page.locator(".toast").all_inner_texts())
         shows(page, "#time", f"t = {time:.2f} s")
 
     def drag(key: str) -> None:

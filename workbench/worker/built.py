@@ -104,7 +104,7 @@ class BuiltRun:
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
         if start.recorded is not None:
-            self._foreknown = foreknown = Foreknown(Path(start.recorded), self._shown.kept.states.add)
+            self._foreknown = foreknown = Foreknown(Path(start.recorded), partial(self._shown.kept.foresee, world=simulation.world))
             simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], foreknown.ticks)
             ended: dict[str, Any] | None = foreknown.facts.get("ended")
             if ended is not None and ended.get("by") in ENDINGS:

@@ -48,6 +48,11 @@ class Kept:
         self.states.keep(tick, world)
         self.walked.keep(tick, world)
 
+    def foresee(self, tick: int, state: bytes, world: World) -> None:
+        """Takes the end of a tick that the run has not come to yet, as its recording has it."""
+        self.states.add(tick, state)
+        self.walked.keep(tick, world, state)
+
     def cut(self, tick: int) -> None:
         """Forgets what came after a tick: the run goes another way."""
         self.states.cut(tick)

@@ -33,11 +33,17 @@ class Walked:
         self._count = 0
         self._data: MjData | None = None
 
-    def keep(self, tick: int, world: World) -> None:
-        """Takes the end of a tick, or the start of the run (tick 0); what is known already stays."""
+    def keep(self, tick: int, world: World, state: bytes | None = None) -> None:
+        """Takes the end of a tick, or the start of the run (tick 0); what is known already stays.
+
+        Args:
+            tick: The tick.
+            world: The world.
+            state: Its state at that tick; None for the present one.
+        """
         if tick != self._count * self._every:
             return
-        for name, place in self._places(world).items():
+        for name, place in self._places(world, state).items():
             self._points.setdefault(name, array("d")).extend(place)
         self._count += 1
 
@@ -56,11 +62,11 @@ class Walked:
         here = {} if tick % (self._every * stride) == 0 else self._places(world)
         return {name: [*_pairs(points, count, stride), *([here[name]] if here else [])] for name, points in self._points.items()}
 
-    def _places(self, world: World) -> dict[str, list[float]]:
+    def _places(self, world: World, state: bytes | None = None) -> dict[str, list[float]]:
         """Returns where bodies are. What the world itself has computed is of the positions before its last step."""
         if self._data is None:
             self._data = MjData(world.mj_model)
-        numbers = np.frombuffer(world.state_bytes())
+        numbers = np.frombuffer(world.state_bytes() if state is None else state)
         mujoco.mj_setState(world.mj_model, self._data, numbers, INTEGRATION)
         mujoco.mj_kinematics(world.mj_model, self._data)
         places: Any = self._data.xpos
