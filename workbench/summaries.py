@@ -14,7 +14,6 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
-from workbench.branches import branched_at
 from workbench.keeping import begun, size_of
 from workbench.loader import Parameter, listing_of
 
@@ -98,7 +97,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         seed=facts.get("program_seed", facts.get("seed")),
         parameters=parameters,
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
-        branched=branched_at(path),
+        branched=facts.get("branched"),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),

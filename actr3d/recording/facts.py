@@ -49,6 +49,10 @@ def _failed(value: Any) -> bool:
     return value is None or _text(value)
 
 
+def _time(value: Any) -> bool:
+    return value is None or (type(value) in (int, float) and isfinite(value) and 0 <= value < LARGEST)
+
+
 def _seed(value: Any) -> bool:
     return isinstance(value, str) or type(value) is int
 
@@ -100,6 +104,7 @@ _KINDS = {
     "ended": _Kind('{"by": a text}, or null', _ended),
     "failed": _Kind("a text, or null", _failed),
     "whole": _FLAG,
+    "branched": _Kind("a number from 0 on, or null", _time),
 }
 """Facts that this library or the workbench reads; what others are, whoever writes them knows."""
 _SHOWN = 60

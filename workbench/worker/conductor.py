@@ -159,16 +159,18 @@ class Conductor:
         self.status, self.reason = "paused", "went to this time"
         self._halt()
 
-    def goes_another_way(self, events: int, *, ahead: bool) -> None:
+    def goes_another_way(self, events: int, changed: str | None) -> None:
         """Tells the server that what was known of the run after the present moment holds no more.
 
         Args:
             events: How many events there were until this moment.
-            ahead: Whether the run had been beyond this moment; perhaps without any event there.
+            changed: What has become of the run beyond this moment; None where it had not been there.
         """
         with self._telling:
             self._foreknown = None
-            if ahead or events < self._sent:
+            if changed is not None and self.status == "paused":
+                self.reason = changed
+            if changed is not None or events < self._sent:
                 self._sent = min(self._sent, events)
                 self.link.cut(Cut(events=events), events)
 
