@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr import logger as logs
 from actr3d.actr.limits import RunLimits
 from actr3d.actr.reading import read_source
-from actr3d.errors import Actr3dError, SettingError, UntrustedError
+from actr3d.errors import SettingError
 from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
@@ -128,21 +128,12 @@ def _complain_of_output(error: OSError) -> int:
 
 def replay_command(options: argparse.Namespace) -> int:
     """Runs a recording again, and says whether every byte agrees: returns 0 where it does, 1 where not, 2 where that cannot be told."""
-    from actr3d.recording import Recorded
-    from actr3d.running.replay import replay
+    from actr3d.running.verdict import UNKNOWN, verdict_of
 
-    try:
-        with Recorded(options.file) as recorded:
-            comparison = replay(recorded, trust=options.trust, any_version=options.any_version)
-    except UntrustedError:
-        reason = "was not made by this installation (or was changed since), and a replay runs the code that it holds"
-        print(f"error: '{options.file}' {reason}; if you trust where it comes from, add --trust", file=sys.stderr)
-        return 2
-    except (Actr3dError, OSError) as error:
-        _complain(error)
-        return 2
-    print(comparison)
-    return 0 if comparison.difference is None else 1
+    verdict = verdict_of(options.file, trust=options.trust, any_version=options.any_version)
+    out = sys.stderr if verdict.code == UNKNOWN else sys.stdout
+    out.write(verdict.text.encode(out.encoding, "backslashreplace").decode(out.encoding))
+    return verdict.code
 
 
 def _complain(error: BaseException) -> int:
@@ -205,7 +196,8 @@ def _parser() -> argparse.ArgumentParser:
         description="Runs a recording again: does every byte agree? It runs the code that the recording holds, with modules that "
         "are recorded or installed.",
         epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, of "
-        "another form, made with other versions, or made elsewhere and not trusted; 130 it was interrupted.",
+        "another form, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that ran it; "
+        "130 it was interrupted.",
     )
     again.add_argument("file", metavar="RECORDING", help="the recording")
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
@@ -231,7 +223,7 @@ def _bench(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if arguments is None and sys.argv[1:2] in (["run"], ["replay"]):
+    if arguments is None and sys.argv[1:2] == ["run"]:
         _order_sets()
     if sys.stdout is None:  # it was closed before we came
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays until the end

@@ -6,12 +6,15 @@
   document.hasFocus = () => true;
 
   // What the server tells of the scene beside its shapes, and the view that is chosen: `scene/view.js` shows both.
+  const MOST_HEARD = 64;
   window.scene = {
     told: {},
+    heard: [], // what was told of the newest moments; some of them are not drawn yet
     view: "follow",
     onview: null,
     tell(name, value) {
       this.told[name] = value;
+      if (name === "now") this.heard = [...this.heard, value].slice(-MOST_HEARD);
     },
     /** Puts the camera where a view begins, also where it is that view already. */
     choose(view) {

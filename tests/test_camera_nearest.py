@@ -7,7 +7,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from seeing import JUST, Floats, Oracle, compiled
+from seeing import JUST, Floats, Oracle, compiled, seen
 
 from actr3d.camera import CameraParameters, GeometricCamera
 
@@ -57,3 +57,21 @@ def test_nothing_between_two_edges_is_nearer_than_the_nearest_point_that_is_told
         assert told <= ground.min() * (1 + NEARLY) + 1e-4
         rounder += told < 0.99 * min(ground[0], ground[-4])
     assert rounder > 10, "in many extents it is not an edge"
+
+
+FACE = '<geom type="box" size="1 .00000001 .5" pos="3 0 1.5"/>'
+"""So thin that less than a ten-millionth of the screen shows it."""
+EDGE = 0.3 / math.sqrt(4.0**2 - 0.3**2) - 2e-8
+"""A tangent just within the right edge of a ball of 0.3 m that is 4 m away."""
+PEEPING = f'<geom type="box" size=".1 .5 .5" pos="2.1 {0.5 - 2 * EDGE} 1.5"/><geom type="sphere" size=".3" pos="4 0 1.5"/>'
+"""A box, and a ball behind it that stands out by as little."""
+
+
+@pytest.mark.parametrize(("sliver", "before"), [(FACE, 0), (PEEPING, 1)], ids=["flat", "round"])
+def test_a_sliver_that_is_left_out_lends_its_nearest_point_to_nothing(sliver: str, before: int) -> None:
+    ball = '<geom type="sphere" size=".5" pos="8 -2 1.5"/>'
+    alone = seen(ball, rows=1)[1].as_array()
+    view = seen(sliver + ball, rows=1)[1].as_array()
+    assert len(view) == before + 1, "the sliver is left out"
+    for field in ("x1", "x2", "d1", "d2", "xn", "dn"):
+        assert view[field][-1] == alone[field][0]

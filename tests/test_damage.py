@@ -130,11 +130,24 @@ FACTS = [
     ("DELETE FROM facts WHERE name = 'seed'", "cannot be run again: it lacks 'seed'"),
     ("DELETE FROM facts WHERE name IN ('until', 'sources')", "it lacks 'sources', 'until'"),
     ("UPDATE facts SET value = '{}' WHERE name = 'sources'", "it lacks the source of "),
-    ("UPDATE facts SET value = '[1]' WHERE name = 'versions'", "the fact 'versions' of a recording must be texts by their names (got [1])"),
+    (
+        "UPDATE facts SET value = '[1]' WHERE name = 'versions'",
+        "the fact 'versions' of a recording must be texts by their names, without NUL characters (got [1])",
+    ),
     ("UPDATE facts SET value = '7' WHERE name = 'kind'", "must be 'simulation' or 'program' (got 7)"),
     ("UPDATE facts SET value = '[[]]' WHERE name = 'seed'", "must be a whole number or a text"),
     ("UPDATE facts SET value = 'NaN' WHERE name = 'until'", "must be a number above 0, or null"),
     ("INSERT OR REPLACE INTO facts VALUES ('helpers', '{\"a\": [1, 2]}')", "must be a file and a text by the names of modules"),
+    (
+        r"""UPDATE facts SET value = '"a\u0000b"' WHERE name = 'file'""",
+        r"the fact 'file' of a recording must be a text without NUL characters (got 'a\x00b')",
+    ),
+    (r"""UPDATE facts SET value = '{"a\u0000b": "pass"}' WHERE name = 'sources'""", "must be texts by their names, without NUL characters"),
+    (
+        r"""INSERT OR REPLACE INTO facts VALUES ('helpers', '{"a": ["b\u0000", "pass"]}')""",
+        "must be a file and a text by the names of modules",
+    ),
+    ("UPDATE seal SET first = 7", "is damaged: it has no checksum"),
     ("UPDATE facts SET value = '\"now\"' WHERE name = 'ended'", "the fact 'ended' of a recording must be"),
     (
         "INSERT INTO facts VALUES ('period_us', '\"soon\"')",
@@ -195,6 +208,6 @@ def test_a_file_that_would_keep_a_reader_busy_for_ever_is_refused_at_once(progra
 
 
 def test_a_fact_that_no_reader_understands_is_not_written(tmp_path: Path) -> None:
-    with pytest.raises(RecordingError, match=r"the fact 'file' of a recording must be a text \(got 7\)"):
+    with pytest.raises(RecordingError, match=r"the fact 'file' of a recording must be a text without NUL characters \(got 7\)"):
         Recording(tmp_path / "run", {"kind": "program", "file": 7})
     assert not (tmp_path / "run").exists()

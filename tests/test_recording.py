@@ -134,6 +134,40 @@ def test_a_killed_run_leaves_all_but_the_last_second(wait: float, tmp_path: Path
     assert [event.to_json() for event in again.trace] == [event.to_json() for event in events[: states[-1].events]]
 
 
+FAST = """
+import os, signal
+from actr3d.actr import *
+class Counter(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count")
+    def count(goal="count"):
+        if self.now() >= 40.5:
+            os.kill(os.getpid(), signal.SIGKILL)
+Counter().run()
+"""
+FALLING = """
+import os, signal
+from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Loose, Scene
+simulation = Simulation(Scene(parts=(Floor(), Loose(name="box", position=(0, 0, 1)))))
+simulation.observe(lambda seen: simulation.ticks == 4_050 and os.kill(os.getpid(), signal.SIGKILL))
+simulation.run(60)
+"""
+
+
+@pytest.mark.parametrize("source", [FAST, FALLING], ids=["without a body", "without events"])
+def test_a_fast_run_that_is_killed_lacks_no_more_than_its_last_second(source: str, tmp_path: Path) -> None:
+    (tmp_path / "fast.py").write_text(source, encoding="utf-8")
+    command = [sys.executable, "-m", "actr3d", "run", str(tmp_path / "fast.py"), "--record", str(tmp_path / "run")]
+    assert subprocess.run(command, timeout=120, check=False).returncode == -signal.SIGKILL
+    with Recorded(tmp_path / "run") as recorded:
+        recorded.check()
+        last = max([event.time for event in recorded.events()] + [state.tick / 100 for state in recorded.states()])
+    assert 39.5 <= last <= 40.5
+
+
 def test_a_paused_run_is_written_too(tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):

@@ -359,6 +359,19 @@ def test_delays_that_take_turns_do_not_drift() -> None:
     assert abs(world.now() - STEPS * (1 / 60 + 0.01 + 1 / 7)) <= 1e-6
 
 
+def test_a_dozen_delays_that_take_turns_do_not_drift() -> None:
+    delays = [1 / prime for prime in (3, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43)]
+
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            for _ in range(STEPS // 10):
+                yield from delays
+
+    world = World()
+    world.run()
+    assert abs(world.now() - STEPS // 10 * sum(delays)) <= 1e-6
+
+
 def test_delays_that_differ_are_each_rounded_alone() -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:

@@ -24,6 +24,13 @@ MOST_PRINTED = 200
 """So many lines that a worker prints past its model's `print` are told of; the rest is left out."""
 
 
+_MEANINGS = {
+    "SIGKILL": ", which it sent itself, or another program did, or the system for want of memory",
+    "SIGSEGV": ": a crash in compiled code",
+}
+"""What is told of signals."""
+
+
 class Told(Protocol):
     """Who is told of it."""
 
@@ -78,7 +85,7 @@ class Attendant:
             status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
             worker.kill()  # and what it has started
             await asyncio.wait([printing], timeout=1)
-            self._told.take_end(worker, "" if over else _why(status))
+            self._told.take_end(worker, "" if over else _why(status, subject_of(self._start)))
         finally:
             printing.cancel()
             watching.cancel()
@@ -150,19 +157,28 @@ class Attendant:
                 self._told.take(self._worker, self._start, At(file=None, line=None))
 
 
-def _why(status: int) -> str:
-    """Says how a process ended that nobody has asked to end."""
+def subject_of(start: Start) -> str:
+    """Returns what a process that does this is called."""
+    return "the process that read it" if start.job in ("make", "list") else "the model's process"
+
+
+def _why(status: int, subject: str) -> str:
+    """Says how a process ended that nobody has asked to end.
+
+    Args:
+        status: Its exit code, or the negative number of a signal.
+        subject: What it is called.
+    """
     if status == LOST:
         return "the process from which all models' processes come was ended, and all runs with it; begin again"
     if status == WIRE_LOST:
         return "the model closed the connection of its process to the workbench: it may close only files that it has opened itself"
     if status == TOO_MUCH_MEMORY:
-        return "the model's process was ended: it used more memory than it may"
+        return f"{subject} was ended: it used more memory than it may"
     if status >= 0:
-        return f"the model ended its process, with exit code {status}"
+        return f"{subject} ended with exit code {status}"
     name = _name_of(-status)
-    more = {"SIGKILL": ": the system ended it, maybe for want of memory", "SIGSEGV": ": a crash in compiled code"}.get(name, "")
-    return f"the model's process was ended by {name}{more}"
+    return f"{subject} was ended by {name}{_MEANINGS.get(name, '')}"
 
 
 def _name_of(number: int) -> str:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-import secrets
-import time
 from pathlib import Path
+
+from workbench.keeping import stamp, written
 
 MOST = 20
 """So many branches of one run are kept, the newest; a branch with a name that a user has given it does not count."""
@@ -19,9 +19,7 @@ def new_branch(recording: Path, moment: float) -> Path:
         recording: The recording of the run.
         moment: Where its past was changed [s].
     """
-    return recording.with_name(
-        f"{recording.stem}-at-{moment:.3f}s-{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}{recording.suffix}"
-    )
+    return recording.with_name(f"{recording.stem}-at-{moment:.3f}s-{stamp()}{recording.suffix}")
 
 
 def branched_at(path: Path) -> float | None:
@@ -33,11 +31,4 @@ def branched_at(path: Path) -> float | None:
 def superfluous_branches(recording: Path) -> list[Path]:
     """Returns the oldest branches of a run, where there are too many."""
     found = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
-    return sorted(found, key=_written, reverse=True)[MOST:]
-
-
-def _written(path: Path) -> float:
-    try:
-        return path.stat().st_mtime
-    except OSError:
-        return 0.0
+    return sorted(found, key=written, reverse=True)[MOST:]

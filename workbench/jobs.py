@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
-from workbench.attendant import Attendant
+from workbench.attendant import Attendant, subject_of
 from workbench.feed import MOST_NOTICES
 from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
 from workbench.worker.workers import Worker, Workers
@@ -23,6 +23,8 @@ class Job:
         """What came of it, as JSON; None where nothing did, or not yet."""
         self.notices: deque[Notice] = deque(maxlen=MOST_NOTICES)
         """What the worker complained of."""
+        self.subject = "the worker"
+        """What the worker is called."""
         self.ending = ""
         """How the worker ended, where that was not in good order."""
         self.over = asyncio.Event()
@@ -31,13 +33,7 @@ class Job:
     def problem(self) -> str:
         """Why nothing came of it."""
         errors = [notice.text for notice in self.notices if notice.level == "error"]
-        return errors[-1] if errors else self.ending or "the worker has ended"
-
-    @property
-    def problem_of_reader(self) -> str:
-        """The same, of a worker that has read a recording and run no model."""
-        reader = "the process that read it"
-        return self.problem.replace("the model's process", reader).replace("the model ended its process, with", f"{reader} ended with")
+        return errors[-1] if errors else self.ending or f"{self.subject} has ended"
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Takes what the worker says."""
@@ -68,7 +64,7 @@ class Job:
     def halt(self, worker: Worker, name: str) -> None:
         """Ends a worker that a signal has stopped: nobody is there who could let it go on."""
         if name:
-            self.tell(Notice(level="error", text=f"the model's process was stopped by {name}, and ended"))
+            self.tell(Notice(level="error", text=f"{self.subject} was stopped by {name}, and ended"))
             worker.kill()
 
     def busy(self, worker: Worker) -> bool:
@@ -90,6 +86,7 @@ async def doing(workers: Workers, start: Start, job: Job | None = None, memory: 
         OSError: If no worker can be started.
     """
     noted = job or Job()
+    noted.subject = subject_of(start)
     worker = await workers.launch(memory)
     serving = asyncio.create_task(Attendant(worker, start, noted).serve())
     try:

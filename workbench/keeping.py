@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import secrets
 import time
 from collections.abc import Sequence
 from contextlib import suppress
@@ -41,7 +42,7 @@ def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
         files: All recordings.
         keeping: What is kept.
     """
-    newest = sorted(files, key=_written, reverse=True)
+    newest = sorted(files, key=written, reverse=True)
     number = size = 0
     found: list[Path] = []
     for path in [path for path in newest if not is_unnamed(path)] + [path for path in newest if is_unnamed(path)]:
@@ -56,7 +57,12 @@ def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
     return found
 
 
-def _written(path: Path) -> float:
+def stamp() -> str:
+    """Returns what stands at the end of a new recording's name: when it began, and a number, as several may begin in one second."""
+    return f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}"
+
+
+def written(path: Path) -> float:
     """Returns when a file was last written; 0 where it is gone meanwhile."""
     try:
         return path.stat().st_mtime
@@ -72,7 +78,7 @@ def begun(path: Path) -> float:
             return time.mktime(time.strptime(named[1], "%Y%m%d-%H%M%S"))
         except (ValueError, OverflowError):
             pass
-    return _written(path)
+    return written(path)
 
 
 def is_unnamed(path: Path) -> bool:

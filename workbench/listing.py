@@ -110,7 +110,7 @@ class Listing:
                     left = left[reading.count :]
                     if left:
                         slow = f"it takes longer than {LONGEST:g} s to read"
-                        found(left[0], unreadable(left[0], reading.problem_of_reader if reading.over_by_itself else slow))
+                        found(left[0], unreadable(left[0], reading.problem if reading.over_by_itself else slow))
                         del left[0]
         except Exception as error:  # noqa: BLE001 - who waits is told
             self._give_up(left, error)

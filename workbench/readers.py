@@ -89,7 +89,7 @@ class Readers:
                 elif loop.time() - since > PATIENCE:
                     raise ReadingError(f"it was given up, as nothing came of it for {PATIENCE:g} s")
         if job.result is None:
-            raise ReadingError(job.problem_of_reader)
+            raise ReadingError(job.problem)
 
 
 def _size(path: str) -> int:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
-import time
 from collections.abc import Sequence
 from io import FileIO
 from pathlib import Path
 
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.files import OWN
-from workbench.keeping import Keeping, begun, erase, stands_alone, superfluous
+from workbench.keeping import Keeping, begun, erase, stamp, stands_alone, superfluous
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 
@@ -40,8 +38,7 @@ class Recordings:
         """Returns a new file for a run of a model."""
         self._folder.mkdir(parents=True, exist_ok=True)
         stem = re.sub(r"[^A-Za-z0-9_]", "_", model)[:60] or "model"
-        # Several may begin in one second.
-        return self._folder / f"{stem}-{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}.sqlite"
+        return self._folder / f"{stem}-{stamp()}.sqlite"
 
     def path(self, name: str) -> Path:
         """Returns where a recording is.

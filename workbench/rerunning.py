@@ -79,4 +79,4 @@ async def _outcome(job: Job, left: Callable[[], Awaitable[bool]]) -> dict[str, A
                 return {"agrees": None, "text": f"it came no further for {PATIENCE:g} s"}
     finally:
         over.cancel()
-    return {"agrees": None, "text": job.problem} if job.result is None else msgspec.json.decode(job.result)
+    return {"agrees": None, "text": f"no verdict: {job.problem}"} if job.result is None else msgspec.json.decode(job.result)

@@ -23,7 +23,7 @@ from workbench.overlays.frustum import Frustum
 from workbench.panel import Panel
 from workbench.protocol import OverlayName
 from workbench.stage import Stage
-from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, header_of, start_viser, tell
+from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, start_viser, tell
 from workbench.worker.messages import Facts, State
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ class SceneView:
         self._state: State | None = None
         self._look = session.look
         self._server: Any = None
+        self._moments: Moments
         self._scene: _Drawn | None = None
         self._panel: Panel | None = None
         self.ready = asyncio.Event()
@@ -114,12 +115,14 @@ class SceneView:
                 return
             if self._server is None:
                 self._server = start_viser(self._secret)
+                self._moments = Moments(self._server)
                 self._server.gui.configure_theme(show_logo=False, show_share_button=False)
                 self._server.on_client_connect(self._come)
                 self._server.on_client_disconnect(self._wake)
             with self._server.atomic():
                 self._server.scene.reset()
-                self._scene = _Drawn(self._server, facts, self._look, self._panel_for)
+                self._moments.begin()
+                self._scene = _Drawn(self._server, self._moments, facts, self._look, self._panel_for)
 
     def _panel_for(self, apertures: dict[str, tuple[int, int]]) -> Panel:
         """Returns the panel: that of the run before, where the same can be said to this one."""
@@ -159,12 +162,15 @@ class _Drawn:
 
     Args:
         server: Viser's server.
+        moments: Numbers what is shown.
         facts: What is known of the run; it has a scene.
         look: How it is looked at.
         panel: Returns viser's own panel for the apertures that there are.
     """
 
-    def __init__(self, server: Any, facts: Facts, look: Look, panel: Callable[[dict[str, tuple[int, int]]], Panel]) -> None:
+    def __init__(
+        self, server: Any, moments: Moments, facts: Facts, look: Look, panel: Callable[[dict[str, tuple[int, int]]], Panel]
+    ) -> None:
         import msgspec
         from mjviser import ViserMujocoScene
 
@@ -179,7 +185,7 @@ class _Drawn:
         self._scene.set_refresh_handler(lambda: None)  # its own threads read no data
         server.scene.configure_environment_map(hdri=None)  # much of what a picture costs without a graphics card
         self._overlays: dict[OverlayName, Overlay] = make_overlays(server, self._scene, self._model, world, look)
-        self._server = server
+        self._server, self._moments = server, moments
         self._stage = Stage(self._model)
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
@@ -227,6 +233,7 @@ class _Drawn:
         assert isinstance(eyes, Frustum)
         assert isinstance(features, Features)
         now = {
+            "moment": self._moments.next(),
             "body": self._stage.base(self.data).round(5).tolist(),
             "eye": eyes.eye(self.data),
             "heads": eyes.heads(self.data),

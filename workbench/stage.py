@@ -27,6 +27,8 @@ class Stage:
     """
 
     def __init__(self, model: MjModel) -> None:
+        from mjviser.conversions import get_body_name
+
         moving = np.flatnonzero(model.body_dofnum > 0)
         self.body = int(moving[0]) if moving.size else 0
         """The first body that moves, by its number."""
@@ -44,6 +46,8 @@ class Stage:
         self.ground = _ground(model)
         """How high the ground lies [m]."""
         own = [box for box, body in zip(_boxes(model, data), _bodies(model), strict=True) if self._of_body(model, body)]
+        self.own = [get_body_name(model, body) for body in range(1, model.nbody) if self._of_body(model, body)]
+        """The names of the body and its parts in viser's tree."""
         least = np.array((0.0, 0.0, SMALLEST / 2))
         below = np.min([low for low, _ in own] or [base - least], axis=0)
         above = np.max([high for _, high in own] or [base + least], axis=0)
@@ -80,7 +84,7 @@ class Stage:
             "middle": self.middle,
         }
         told: dict[str, Any] = {name: value.round(4).tolist() for name, value in numbers.items()}
-        return {**told, "height": self.height, "ground": self.ground, "grounds": grounds}
+        return {**told, "height": self.height, "ground": self.ground, "grounds": grounds, "own": self.own}
 
     def _of_body(self, model: MjModel, body: int) -> bool:
         """Returns whether a MuJoCo body is the body of the stage or a part of it; where none moves, all are."""

@@ -14,7 +14,6 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
-from workbench.branches import branched_at
 from workbench.keeping import begun, size_of
 from workbench.loader import Parameter, listing_of
 
@@ -88,7 +87,7 @@ def unreadable(path: Path, reason: str) -> Summary:
 def _read(recorded: Recorded, size: int) -> Summary:
     facts, path = recorded.facts, recorded.path
     ended: dict[str, Any] | None = facts.get("ended")
-    last = _last_events(recorded)
+    last = [event for text in recorded.last_events() for event in EVENTS.decode(text)]  # what was measured is told at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
     return Summary(
@@ -98,7 +97,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         seed=facts.get("program_seed", facts.get("seed")),
         parameters=parameters,
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
-        branched=branched_at(path),
+        branched=facts.get("branched"),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),
@@ -108,12 +107,6 @@ def _read(recorded: Recorded, size: int) -> Summary:
         size=size,
         made=begun(path),
     )
-
-
-def _last_events(recorded: Recorded) -> list[Event]:
-    """Returns the last two rows of events: what was measured is told at the very end."""
-    rows = recorded._file.execute("SELECT data FROM events ORDER BY first DESC LIMIT 2").fetchall()
-    return [event for (text,) in reversed(rows) for event in EVENTS.decode(text)]
 
 
 def _result(events: list[Event]) -> dict[str, Any] | None:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
+from itertools import count
 from typing import Any
+
+import numpy as np
 
 BRIDGE_HEADER = "x-workbench-bridge"
 """With it the bridge says that it is the bridge: any page of the user's browser could find a port on loopback."""
@@ -57,6 +60,41 @@ def tell(server: Any, name: str, value: Any) -> None:
     # Viser keeps every message of this type for browsers that come later, for they may differ; these replace each other.
     message.redundancy_key = lambda: f"scene {name}"
     server._websock_server.queue_message(message)
+
+
+class Moments:
+    """Numbers what is shown, so that each browser knows which moment its shapes are of.
+
+    A browser moves shapes a picture or more after their places have arrived, all at once. The number is the place of one more shape,
+    which nobody sees, and so is known just when the others have moved.
+
+    Args:
+        server: Viser's server.
+    """
+
+    def __init__(self, server: Any) -> None:
+        self._server = server
+        self._numbers = count(1)
+        self._handle: Any = None
+
+    def begin(self) -> None:
+        """Adds the shape to a scene that was reset."""
+        self._handle = self._server.scene.add_batched_meshes_simple(
+            "/moment",
+            vertices=np.zeros((3, 3), dtype=np.float32),
+            faces=np.array([[0, 1, 2]], dtype=np.uint32),
+            batched_wxyzs=np.array([[1.0, 0.0, 0.0, 0.0]]),
+            batched_positions=np.zeros((1, 3)),
+            lod="off",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def next(self) -> int:
+        """Returns the number of what is shown from now on; to be sent with it in one `server.atomic()`."""
+        number = next(self._numbers)
+        self._handle.batched_positions = np.array([[number, 0.0, 0.0]])
+        return number
 
 
 def header_of(server: Any, client: Any, name: str) -> str:

@@ -23,10 +23,6 @@ class EndOfRun(BaseException):
     """
 
 
-RUNS_TOGETHER = 1000
-"""How many times `until` all runs together may last: a program that makes one short run after another never ends by itself."""
-MOST_STILL = 1_000_000
-"""So many runs in a row in which no time passes are an endless loop, which `until` ends, too."""
 MOST_REFUSALS = 100
 """A program that has asked so often for time after its end swallows every error: it is never going to end by itself."""
 
@@ -55,8 +51,8 @@ class RunLimits:
     """What all random choices come from; None draws a seed for each block, which its runs record."""
     until: float | None = None
     """When every run ends at the latest [s of its own simulated time]; the program ends with the first run that is cut short
-    there, or when all its runs together have lasted `RUNS_TOGETHER` times as long, or it runs `MOST_STILL` times without any
-    time passing. None for no end."""
+    there. What ends by itself is never cut, and so a program that makes one short run after another without end goes on until
+    it is interrupted. None for no end."""
     trace: Trace | None = None
     """Where events go; None for no trace."""
     recorder: Recorder | None = None
@@ -72,8 +68,6 @@ class RunLimits:
     last_resort: Callable[[], Any] | None = field(default=None, repr=False)
     """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)
-    _used_us: int = field(default=0, init=False, repr=False)
-    _still: int = field(default=0, init=False, repr=False)
     _ended: bool = field(default=False, init=False, repr=False)
     _refused: int = field(default=0, init=False, repr=False)
     _drawn: int = field(default=0, init=False, repr=False)
@@ -109,37 +103,27 @@ class RunLimits:
         """Whether the end has come: no run gets any more time."""
         return self._ended
 
-    def spend(self, time_us: int) -> None:
-        """Notes that a run has used time, or none [us]."""
-        if self.until is not None:
-            with _LOCK:
-                self._used_us += time_us
-                self._still = 0 if time_us else self._still + 1
-        if self._outer is not None:
-            self._outer.spend(time_us)
-
-    def clip(self, now_us: int) -> int | None:
-        """Returns the last moment of a run whose clock stands at `now_us` [us], maybe a past one; None where nothing ends it.
+    def clip(self) -> int | None:
+        """Returns the last moment of every run [us]; None where nothing ends it.
 
         Raises:
-            EndOfRun: If a run was cut short before, or runs follow one another without end in which no time passes.
+            EndOfRun: If a run was cut short before.
         """
-        outer = self._outer.clip(now_us) if self._outer is not None else None
+        outer = self._outer.clip() if self._outer is not None else None
         if self.until is None:
             return outer
-        if self._ended or self._still > MOST_STILL:
-            self._ended = True
+        if self._ended:
             self._refuse()
-        last = self._last_us(now_us)
+        last = microseconds(self.until, "until")
         return last if outer is None else min(last, outer)
 
-    def refuse(self, now_us: int, wanted_us: int) -> NoReturn:
-        """Refuses a run whose clock stands at `now_us` the time until `wanted_us` [us].
+    def refuse(self, wanted_us: int) -> NoReturn:
+        """Refuses a run the time until `wanted_us` [us].
 
         Raises:
             EndOfRun: Always.
         """
-        self.cut(now_us, wanted_us)
+        self.cut(wanted_us)
         self._refuse()
 
     def _refuse(self) -> NoReturn:
@@ -148,24 +132,19 @@ class RunLimits:
             self.last_resort()
         raise EndOfRun
 
-    def cut(self, now_us: int, wanted_us: int) -> None:
-        """Notes that a run was cut short at `now_us`, and wanted to go on to `wanted_us` [us]: limits before that give no more time."""
-        if self.until is not None and self._last_us(now_us) < wanted_us:
+    def cut(self, wanted_us: int) -> None:
+        """Notes that a run was cut short that wanted to go on to `wanted_us` [us]: limits before that give no more time."""
+        if self.until is not None and microseconds(self.until, "until") < wanted_us:
             self._ended = True
         if self._outer is not None:
-            self._outer.cut(now_us, wanted_us)
-
-    def _last_us(self, now_us: int) -> int:
-        """Returns the last moment of a run whose clock stands at `now_us`."""
-        until = microseconds(self.until or 0, "until")
-        return min(until, now_us + RUNS_TOGETHER * until - self._used_us)
+            self._outer.cut(wanted_us)
 
     # -- where they are in force
 
     def __enter__(self) -> Self:
         if not self._tokens:  # the same limits may serve one program after another
             self._drawn = fresh_seed()
-            self._models = self._used_us = self._still = self._refused = 0
+            self._models = self._refused = 0
             self._ended = False
             self._outer = _CURRENT.get()
         self._tokens.append(_CURRENT.set(self))

@@ -49,20 +49,29 @@ def _failed(value: Any) -> bool:
     return value is None or _text(value)
 
 
+def _time(value: Any) -> bool:
+    return value is None or (type(value) in (int, float) and isfinite(value) and 0 <= value < LARGEST)
+
+
 def _seed(value: Any) -> bool:
     return isinstance(value, str) or type(value) is int
 
 
+def _plain(value: Any) -> bool:
+    """Returns whether something is a text that may name a file or be the source of a program: no NUL character is in it."""
+    return isinstance(value, str) and "\0" not in value
+
+
 def _texts(value: Any) -> bool:
-    return isinstance(value, dict) and all(map(_text, cast("dict[str, Any]", value).values()))
+    return isinstance(value, dict) and all(_plain(part) for entry in cast("dict[str, Any]", value).items() for part in entry)
 
 
 def _modules(value: Any) -> bool:
-    return isinstance(value, dict) and all(map(_pair, cast("dict[str, Any]", value).values()))
+    return isinstance(value, dict) and all(_plain(name) and _pair(texts) for name, texts in cast("dict[str, Any]", value).items())
 
 
 def _pair(value: Any) -> bool:
-    return isinstance(value, (list, tuple)) and len(cast("list[Any]", value)) == 2 and all(map(_text, cast("list[Any]", value)))
+    return isinstance(value, (list, tuple)) and len(cast("list[Any]", value)) == 2 and all(map(_plain, cast("list[Any]", value)))
 
 
 def _ended(value: Any) -> bool:
@@ -70,7 +79,7 @@ def _ended(value: Any) -> bool:
 
 
 _TEXT = _Kind("a text", _text)
-_TEXTS = _Kind("texts by their names", _texts)
+_TEXTS = _Kind("texts by their names, without NUL characters", _texts)
 _SEED = _Kind("a whole number or a text", _seed)
 _PERIOD = _Kind("a whole number above 0", _whole)
 _DICT = _Kind("values by their names", _dict)
@@ -79,9 +88,9 @@ _KINDS = {
     "form": _TEXT,
     "versions": _TEXTS,
     "kind": _Kind("'simulation' or 'program'", _run_kind),
-    "file": _TEXT,
+    "file": _Kind("a text without NUL characters", _plain),
     "sources": _TEXTS,
-    "helpers": _Kind("a file and a text by the names of modules", _modules),
+    "helpers": _Kind("a file and a text by the names of modules, without NUL characters", _modules),
     "parameters": _DICT,
     "built": _FLAG,
     "seed": _SEED,
@@ -95,6 +104,7 @@ _KINDS = {
     "ended": _Kind('{"by": a text}, or null', _ended),
     "failed": _Kind("a text, or null", _failed),
     "whole": _FLAG,
+    "branched": _Kind("a number from 0 on, or null", _time),
 }
 """Facts that this library or the workbench reads; what others are, whoever writes them knows."""
 _SHOWN = 60

@@ -25,8 +25,8 @@ MOST_WAITING = 100_000
 class Recording:
     """Writes one run, or one program with all its runs, to one file: facts, then every event, state, command and answer as they come.
 
-    It is written a quarter of a second later at the latest, and after each second of simulated time; what is written outlives a
-    program that is killed. All are counted; after `cut`, the counting goes on from what was kept.
+    It is written a quarter of a second later at the latest, and the run waits for that after each second of simulated time; what is
+    written outlives a program that is killed. All are counted; after `cut`, the counting goes on from what was kept.
 
     Args:
         path: The file; it must not exist.
@@ -41,6 +41,7 @@ class Recording:
         self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in told.items()])
         self._append = self._writer.events.append
         self._second = 0
+        """The latest second of simulated time; the ones before are in the file."""
         self._ticks_a_second = max(1, MICROSECONDS // told.get("period_us", USUAL_PERIOD))
         self.events = self.answers = self.commands = self.states = 0
         """How many of each it has been given."""
@@ -62,7 +63,7 @@ class Recording:
         second = event.time_us // MICROSECONDS
         if second != self._second:
             self._second = second
-            self._writer.flush_soon()
+            self._writer.flush()
 
     def event_alone(self, event: TraceEvent) -> None:
         """Writes an event of a program, which may tell of nothing else.
@@ -92,8 +93,10 @@ class Recording:
         self.states += 1
         writer = self._writer
         writer.states.append(State(run, tick, data, self.events))
-        if self.states % self._ticks_a_second == 0:
-            writer.flush_soon()
+        second = tick // self._ticks_a_second
+        if second != self._second:
+            self._second = second
+            writer.flush()
         if len(writer.states) > MOST_WAITING or len(writer.events) > MOST_WAITING or writer.failure is not None:
             self.check()
 
@@ -108,6 +111,10 @@ class Recording:
             writer.flush()
         if writer.failure is not None:
             raise writer.failure
+
+    def flush(self) -> None:
+        """Writes what has come, now; nothing where the file cannot be written any more."""
+        self._writer.flush()
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
         """Drops what came after a tick of the only run, and all but the first few events, answers and commands: it goes another way.

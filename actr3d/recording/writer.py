@@ -22,9 +22,8 @@ from actr3d.trace import TraceEvent
 from actr3d.values import plain_to_json
 
 INTERVAL = 0.25
-"""How often what has come is written [s on the wall]; a run that is killed loses no more than what came since."""
-SPACING = 0.01
-"""It is not written more often than so [s on the wall], whatever comes."""
+"""How often what has come is written [s on the wall], besides when the run wants it written; a run that is killed loses no more
+than what came since."""
 BLOB = 1_000_000
 """About how many bytes of states are written as one row."""
 MOST_EVENTS = 10_000
@@ -94,7 +93,6 @@ class Writer:
         self._checksums = Checksums()
         self._key = make_key()
         self._writing = Lock()
-        self._wake = Event()
         self._over = Event()
         self._attempt(self._create, facts)
         if self.failure is not None:
@@ -103,12 +101,8 @@ class Writer:
         self._thread.start()
 
     def flush(self) -> None:
-        """Writes what has come, now; also for a caller that puts things in faster than they are written."""
+        """Writes what has come, now."""
         self._attempt(self._write)
-
-    def flush_soon(self) -> None:
-        """Writes what has come in a moment; does not wait for it."""
-        self._wake.set()
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
         """Drops all but the first few of each: from there the run goes another way."""
@@ -145,15 +139,12 @@ class Writer:
             RecordingError: If the file cannot be written.
         """
         self._over.set()
-        self._wake.set()
         self._thread.join()
         if self.failure is not None:
             raise self.failure
 
     def _run(self) -> None:
-        while not self._over.wait(SPACING):
-            self._wake.wait(INTERVAL)
-            self._wake.clear()
+        while not self._over.wait(INTERVAL):
             self.flush()
         self.flush()
         self._attempt(self._finish)

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-import numpy as np
-
 from actr3d.actr.answers import plain_answer
 from actr3d.actr.limits import EndOfRun
 from actr3d.clock import seconds
@@ -157,6 +155,8 @@ def first_number(then: bytes, now: bytes) -> str:
     """Says which number of a state is the first to differ."""
     if len(then) != len(now):
         return f"a state was {len(then)} bytes, and is {len(now)}: another scene"
+    import numpy as np  # a program without a world does without it
+
     was, is_now = np.frombuffer(then), np.frombuffer(now)
     differ = np.flatnonzero(was.view(np.int64) != is_now.view(np.int64))
     first = int(differ[0])

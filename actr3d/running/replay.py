@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.limits import RunLimits
@@ -13,15 +13,16 @@ from actr3d.actr.loading import run_text
 from actr3d.actr.sealed import sealed
 from actr3d.actr.shared_random import shared_random
 from actr3d.clock import MICROSECONDS, seconds
-from actr3d.errors import Actr3dError, RecordingError, UntrustedError
+from actr3d.errors import Actr3dError, RecordingError
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
-from actr3d.recording.form import versions
-from actr3d.running.building import build
 from actr3d.running.comparison import Beside, Comparison, Differs
 from actr3d.running.printed import BuiltOutput, ProgramOutput
-from actr3d.simulation import Command, Simulation
+from actr3d.running.replayable import check_replayable
 from actr3d.trace import Trace
+
+if TYPE_CHECKING:
+    from actr3d.simulation import Simulation
 
 Progress = Callable[[float], object]
 """Is told which share of a recording has been run again, from 0 to 1."""
@@ -54,19 +55,7 @@ def replay(
             it cannot be made so any more.
         Exception: What `make` raises.
     """
-    recorded.check()
-    _check_facts(recorded)
-    if not any_version:
-        _check_versions(recorded.facts["versions"])
-    if not (recorded.closed or recorded.state_count or recorded.event_count):
-        raise RecordingError(
-            f"the recording '{recorded.path}' holds nothing to compare: its run was broken off before anything was written"
-        )
-    if make is None and not (trust or recorded.made_here):
-        raise UntrustedError(
-            f"'{recorded.path}' was not made by this installation, and a replay runs the code that it holds: "
-            "replay(recorded, trust=True) runs it all the same"
-        )
+    check_replayable(recorded, trust=trust or make is not None, any_version=any_version)
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
             return _replay_program(recorded, progress)
@@ -82,37 +71,9 @@ def replay(
                 return _replay_simulation(recorded, simulation, progress)
 
 
-_NEEDED = {
-    "program": ("file", "sources", "seed", "until"),
-    "simulation": ("seed", "period_us", "timestep_us", "scene"),
-    "built": ("file", "sources", "parameters"),
-}
-"""Facts without which a run cannot be run again; of simulations that a model file builds, those below «built», too."""
-
-
-def _check_facts(recorded: Recorded) -> None:
-    """Raises an error where the recording lacks what a replay needs.
-
-    Raises:
-        RecordingError: If it does.
-    """
-    facts = recorded.facts
-    needed = _NEEDED[facts["kind"]] + (_NEEDED["built"] if facts.get("built") else ())
-    missing = [f"'{name}'" for name in needed if name not in facts]
-    if not missing and "file" in needed and facts["file"] not in facts["sources"]:
-        missing = [f"the source of '{facts['file']}'"]
-    if missing:
-        raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
-
-
-def _check_versions(then: dict[str, str]) -> None:
-    now = versions()
-    different = [f"{name} {then.get(name)} then, {now.get(name)} now" for name in sorted({*then, *now}) if then.get(name) != now.get(name)]
-    if different:
-        raise RecordingError(f"the recording was made with other versions, and may not agree for that alone: {'; '.join(different)}")
-
-
 def _built(recorded: Recorded, helpers: HelperTexts) -> Simulation:
+    from actr3d.running.building import build  # a program does without the world that this loads
+
     facts = recorded.facts
     file = facts["file"]
     try:
@@ -172,6 +133,8 @@ def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
 
 def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Progress) -> Comparison:
     """Runs a simulation beside its recording."""
+    from actr3d.simulation import Command
+
     facts, world, journal = recorded.facts, simulation.world, simulation._journal
     then = facts["period_us"], facts["timestep_us"], facts["seed"]
     now = round(simulation.period * MICROSECONDS), world.scene.timestep_us, simulation.seed

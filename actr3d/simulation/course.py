@@ -155,6 +155,5 @@ class Course:
                 lockstep.remember(history.answers(lockstep.ticks + 1))
             self._world.restore(state)
         while lockstep.ticks < to:
-            lockstep.repeat_commands(history.commands)
-            lockstep.tick()
-            lockstep.tock()
+            self.tick()
+            self.tock()

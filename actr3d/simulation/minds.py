@@ -83,7 +83,7 @@ class Minds:
             EndOfRun: If an earlier run was cut short by them.
         """
         limits = self._sch.limits
-        last = None if limits is None else limits.clip(self._sch.now_us)
+        last = None if limits is None else limits.clip()
         return last is None or end <= last
 
     def claim(self, end: int) -> None:
@@ -94,12 +94,12 @@ class Minds:
         """
         limits = self._sch.limits
         if limits is not None and not self.may_run(end):
-            limits.refuse(self._sch.now_us, end)
+            limits.refuse(end)
 
     def cut(self, end: int) -> None:
         """Notes that the limits of the program leave no time until `end` [us], and have cut the run short for that."""
         if self._sch.limits is not None:
-            self._sch.limits.cut(self._sch.now_us, end)
+            self._sch.limits.cut(end)
 
     def run(self, period: float, end: int) -> None:
         """Runs the agents for a period [s], until `end` [us]; to its end even where one of them calls `stop`."""

@@ -35,8 +35,8 @@ export function Branch() {
   if (!branched || branched.recording === dismissed.value) return null;
   const { recording, at, until } = branched;
   const open = () => openRun({ id: recording, model, made: Date.now() / 1000 });
-  return html`<span class="former branched" role="status" title="Kept as the recording ${recording}; it is listed in Runs">
-    <span>Changed at ${seconds(at)}: the run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button></span>
+  return html`<span class="former branched" role="status" title="Changed at ${seconds(at)}; how it had gone on is kept as the recording ${recording}, which is listed in Runs">
+    <span>The run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button></span>
     <button class="bare" aria-label="Dismiss" title="Dismiss; the branch stays in Runs" onClick=${() => (dismissed.value = recording)}>✕</button>
   </span>`;
 }

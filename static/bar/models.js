@@ -52,6 +52,12 @@ function openRecording(id) {
 /** What was shown before a recording, so that one can return to it; null for nothing. */
 export const before = signal(null);
 
+/** Shows a session that is open; that of a recording has the address of the recording. */
+export function showSession({ model: path, recorded }) {
+  if (recorded === null) return choose(path);
+  return chooseRecording(recorded).catch((error) => complain(error.message));
+}
+
 /** Runs a model from its start, as its file is now; throws an Error that says why not. */
 export async function runModel(path) {
   if (session.value?.model === path && session.value.recorded === null && connected.value) {

@@ -1,25 +1,59 @@
 // Says that what is shown is a recording: which, of when, and how to return to what was shown before.
 
-import { html } from "../vendor/preact.js";
+import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { whenInFull } from "../runs/words.js";
+import { call } from "../server.js";
 import { session, state } from "../store.js";
-import { before, choose, models } from "./models.js";
+import { before, choose, models, showSession } from "./models.js";
+
+const fileOf = (path) => path.split("/").at(-1);
+
+/** The sessions that are open beside the one that is shown, the newest of each model or recording. */
+function useOthers(id) {
+  const others = useSignal([]);
+  useEffect(() => {
+    let mine = true;
+    call("GET", "/api/sessions").then(
+      ({ sessions }) => {
+        if (!mine) return;
+        const newest = new Map(sessions.map((one) => [one.recorded ?? `model ${one.model}`, one]));
+        others.value = [...newest.values()].filter((one) => one.id !== id);
+      },
+      () => null, // without a list there is the way back alone
+    );
+    return () => (mine = false);
+  }, [id]);
+  return others.value;
+}
+
+/** Leads to what is open beside a recording: one link, or a list where there is more than one. */
+function Others({ id, model }) {
+  const others = useOthers(id);
+  if (others.length > 1) {
+    const show = ({ currentTarget: list }) => showSession(others.find((one) => one.id === list.value));
+    return html`<select aria-label="Open runs" value="" onChange=${show}>
+      <option value="" disabled>${others.length} other runs are open</option>
+      ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.recorded ? `recording ${one.recorded}` : `run of ${fileOf(one.model)}`}</option>`)}
+    </select>`;
+  }
+  const there = before.value?.model ?? (models.value.some(({ path }) => path === model) ? model : null);
+  return there ? html`<button onClick=${() => choose(there)}><${Icon} name="back" />${before.value ? "Back to the run of" : "Show the model"} ${fileOf(there)}</button>` : null;
+}
 
 export function RecordingBanner() {
-  const { recorded = null, made, model, cuts = [] } = session.value ?? {};
+  const { id, recorded = null, made, model, cuts = [] } = session.value ?? {};
   if (recorded === null) return null;
-  const there = before.value?.model ?? (models.value.some(({ path }) => path === model) ? model : null);
   const changed = cuts.length > 0;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
-    <span>${model.split("/").at(-1)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
-    <span class="quiet">
+    <span>${fileOf(model)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
+    <span class="quiet" title=${changed ? "" : "Running it shows again what happened."}>
       ${changed
         ? "You have changed its course: what follows is new, and is not recorded."
-        : `${(state.value?.furthest ?? 0).toFixed(2)} s are known. Running it shows again what happened.`}
+        : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
     </span>
     <span class="stretch"></span>
-    ${there ? html`<button onClick=${() => choose(there)}><${Icon} name="back" />${before.value ? "Back to the run of" : "Show the model"} ${there.split("/").at(-1)}</button>` : null}
+    <${Others} id=${id} model=${model} />
   </div>`;
 }

@@ -37,7 +37,7 @@ export function SeedField() {
       aria-label="Seed"
       inputmode="numeric"
       autocomplete="off"
-      spellcheck="false"
+      spellcheck=${false}
       disabled=${!session.value}
       value=${text}
       aria-invalid=${Boolean(problem)}

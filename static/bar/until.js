@@ -86,7 +86,7 @@ function isWrong(of) {
 /** A name that can be written, too: of a program that has not begun none is known yet. */
 function Name({ of, among, label, otherwise, first }) {
   const id = useId();
-  return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck="false" aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
+  return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck=${false} aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
     <datalist id=${id}>${among.map((name) => html`<option key=${name} value=${name} />`)}</datalist>`;
 }
 

@@ -122,7 +122,7 @@ function Control({ parameter, id, text, problem }) {
       ${choices.map((choice) => html`<option key=${choice} value=${String(choice)}>${String(choice)}</option>`)}
     </select>`;
   }
-  return html`<input ...${shared} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck="false" autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
+  return html`<input ...${shared} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
 }
 
 function Field({ parameter }) {

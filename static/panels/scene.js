@@ -121,7 +121,7 @@ export function Scene() {
     loads.value += 1;
   }
   return html`<section id="scene" class="scene" aria-label="3D view">
-    <iframe ref=${frame} onLoad=${begin} title="3D view" src=${address.current} hidden=${!shown}></iframe>
+    <iframe key=${address.current} ref=${frame} onLoad=${begin} title="3D view" src=${address.current} hidden=${!shown}></iframe>
     ${lacks ? html`<${Cover} text=${lacks[0]} awaited=${lacks[1]} />` : html`<${ViewBar} /><${Lag} frame=${frame} />`}
     <${RetinaInset} />
   </section>`;

@@ -61,7 +61,7 @@ export function Dialogs() {
     ${shown.ask
       ? html`<label class="field">
           ${shown.ask.label}
-          <input ref=${line} autofocus value=${shown.ask.value} spellcheck="false" aria-invalid=${Boolean(shown.ask.problem)} />
+          <input ref=${line} autofocus value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} />
           ${shown.ask.problem ? html`<span class="bad" role="alert">${shown.ask.problem}</span>` : null}
         </label>`
       : null}

@@ -2,6 +2,7 @@
 // server with each state (`window.scene`, see `framed.js`); what is drawn is changed just before each picture, so that all of it is of one moment.
 
 import { SceneCamera } from "./camera.js";
+import { Cutaway } from "./cutaway.js";
 import { Ground } from "./ground.js";
 import { Labels } from "./labels.js";
 import { VIEWS } from "./stage.js";
@@ -28,6 +29,7 @@ const viewer = await ready();
 const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Labels();
+const cutaway = new Cutaway(viewer);
 const { told } = given;
 let { stage } = told;
 let shaded = null;
@@ -52,8 +54,20 @@ function room() {
 
 camera.room = room;
 
+/** Returns what is told of the moment that the shapes are drawn at: viser moves them some pictures after that has come (`Moments` in
+ * `workbench/viser_server.py`). */
+function drawnNow() {
+  let number = Infinity; // as long as there are no shapes
+  viewer.nodeRefFromName["/moment"]?.traverse((object) => {
+    if (object.instancesCount) number = object.getPositionAt(0).x;
+  });
+  const later = given.heard.findIndex(({ moment }) => moment > number);
+  given.heard.splice(0, (later < 0 ? given.heard.length : Math.max(later, 1)) - 1);
+  return given.heard[0];
+}
+
 function choose() {
-  camera.choose(given.view, told.stage, told.now);
+  camera.choose(given.view, told.stage, drawnNow());
 }
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
@@ -65,9 +79,11 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
     stage = told.stage;
     if (!same) choose();
   }
-  const { now } = told;
+  const now = drawnNow();
+  given.shown = now;
   camera.follow(stage, now);
   leaveOut();
+  cutaway.draw(stage, now, camera);
   if (now !== shaded) {
     ground.shade(now.shade, stage.ground);
     shaded = now;

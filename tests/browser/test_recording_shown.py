@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.looking import drawn, open_tab, shows
+from tests.browser.looking import drawn, open_tab, shows, until
 from tests.browser.test_runs_panel import recorded, row
 from tests.server.serving import Served
 
@@ -64,6 +64,98 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     page.click("#restart")  # a new run of the model is no recording, and has the address of the model
     expect(banner).to_have_count(0)
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
+
+
+def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "doorway.py")
+    page = pages("doorway.py", tab="runs")
+    shows(page, "#status", "at its start")
+    banner, scene = page.locator(".recording-banner"), page.locator("iframe[title='3D view']")
+    expect(scene).to_have_attribute("src", re.compile("/viser/"))
+    before = str(scene.get_attribute("src"))
+    in_frame(page, before)
+    row(page, name).click()
+    for _ in range(2):
+        page.get_by_role("button", name="Open", exact=True).click()
+        expect(banner).to_contain_text(name)
+        expect(scene).not_to_have_attribute("src", before)
+        recording = str(scene.get_attribute("src"))
+        in_frame(page, recording)
+        page.go_back()
+        expect(banner).to_have_count(0)
+        expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
+        expect(scene).to_have_attribute("src", before)
+        in_frame(page, before)
+    page.go_forward()
+    expect(banner).to_contain_text(name)
+    in_frame(page, recording)
+
+
+def test_from_a_recording_one_can_go_to_any_run_that_is_open(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "counting.py")
+    page = pages("counting.py", tab="runs")
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    page.get_by_label("Model", exact=True).select_option("doorway.py")
+    shows(page, "#time", "t = 0.00 s")
+    row(page, name).click()
+    page.get_by_role("button", name="Open", exact=True).click()
+    runs = page.locator(".recording-banner").get_by_label("Open runs")
+    expect(runs.locator("option")).to_have_text(["2 other runs are open", "run of counting.py", "run of doorway.py"])
+    runs.select_option("run of counting.py")
+    expect(page.locator(".recording-banner")).to_have_count(0)
+    shows(page, "#time", "t = 0.05 s")
+
+
+def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two_drag_is_the_same_for_both(
+    pages: Pages, workbench: Served
+) -> None:
+    name = recorded(workbench, "doorway.py")
+    page, other = pages("counting.py", tab="buffers"), pages("counting.py", tab="buffers")
+    for one in (page, other):
+        one.goto(f"{workbench.url}/?recording={name}")
+        expect(one.locator(".recording-banner")).to_contain_text("6.80 s are known")
+        shows(one, "#time", "t = 0.00 s")
+    asked = page.get_by_role("dialog")
+
+    def order(kind: str, time: float) -> None:
+        page.evaluate("async (said) => (await import('/static/server.js')).order(said)", {"type": kind, "time": time})
+        shows(page, "#time", f"t = {time:.2f} s")
+
+    def drag(key: str) -> None:
+        page.locator("#aperture").focus()
+        page.keyboard.press(key)
+
+    order("seek", 1)
+    drag("End")
+    shows(page, "#status", r"paused: changed at 1\.00 s; the recording keeps the rest")  # without a question
+    expect(page.locator(".recording-banner")).to_contain_text("You have changed its course")
+    width = page.locator("#width").inner_text()
+    order("until", 2)
+    order("seek", 1.5)
+    drag("Home")
+    expect(asked).to_contain_text("The run stands at 1.50 s and has come to 2.00 s. It is not recorded")
+    asked.get_by_role("button", name="Cancel").click()
+    expect(asked).to_have_count(0)
+    expect(page.locator("#width")).to_have_text(width)
+    drag("Home")
+    asked.get_by_role("button", name="Change it, and lose the rest").click()
+    shows(page, "#status", r"paused: changed at 1\.50 s; the rest was lost")
+    expect(page.locator("#width")).not_to_have_text(width)
+    for key in ("ArrowRight", "End", "ArrowLeft"):
+        for one in (page, other):
+            one.locator("#aperture").focus()
+            one.keyboard.press(key)
+    until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text() != width)
+    for one in (page, other):
+        expect(one.get_by_role("dialog")).to_have_count(0)
+
+
+def in_frame(page: Page, address: str) -> None:
+    """Waits until the 3D view has a picture of the scene of an address."""
+    until(page, lambda: any(frame.url.partition("?")[0].endswith(address.partition("?")[0]) for frame in page.frames[1:]))
+    expect(page.locator(".scene-cover")).to_have_count(0)
 
 
 def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browser: Browser, workbench: Served) -> None:

@@ -68,9 +68,9 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
 
     choose(page, "dies.py")
     page.click("#run")
-    lost = "There is no run any more: the model ended its process, with exit code 3. "
+    lost = "There is no run any more: the model's process ended with exit code 3. "
     lost += "What happened just before that may not be told. «Run again» begins it anew."
-    shows(page, "#status", "^failed: the model ended its process, with exit code 3$")
+    shows(page, "#status", "^failed: the model's process ended with exit code 3$")
     says(page, lost, ("Buffers", "Productions", "Memory", "Eye"))
     expect(timeline).to_have_text(lost)
     expect(page.locator(".toast")).to_contain_text("exit code 3")

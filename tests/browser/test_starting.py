@@ -11,7 +11,7 @@ from tests.browser.looking import open_tab, shows
 
 
 def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> None:
-    page = pages("counting.py")
+    page = pages("doorway.py")
     shows(page, "#status", "paused")
     held: list[Route] = []
 
@@ -22,7 +22,7 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
             route.fulfill(json={"sessions": [], "ready": False})
 
     page.route("**/api/sessions", hold)
-    page.get_by_label("Model", exact=True).select_option("doorway.py")
+    page.get_by_label("Model", exact=True).select_option("counting.py")
     shows(page, "#status", "the workbench is starting")
     expect(page.locator("#scene")).to_contain_text("the eye is compiled")
     expect(page.locator("#scene progress")).to_be_visible()

@@ -143,7 +143,8 @@ def test_going_back_and_forth(ended: Page) -> None:
     when(page, "2.00")
     drag_aperture(page)
     shows(page, "#width", "90 cm")
-    shows(page, ".branched", rf"Changed at 2\.00 s: the run up to {end:.2f} s is kept as a branch")
+    shows(page, ".branched", rf"The run up to {end:.2f} s is kept as a branch")
+    shows(page, "#status", r"paused: changed at 2\.00 s; a branch was kept")
     page.locator("#aperture").focus()
     page.keyboard.press("Home")  # is the slider's own key
     when(page, "2.00")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator
+from io import BytesIO
 from itertools import combinations
 from typing import Any
 
@@ -11,6 +12,7 @@ import mujoco
 import numpy as np
 import pytest
 from mujoco import MjData, MjModel
+from PIL import Image
 from playwright.sync_api import Browser, Frame, Page, expect
 
 from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
@@ -180,7 +182,7 @@ AT = """() => {
 
 def frame_of(page: Page) -> Frame:
     """Returns the frame of the 3D view, once it shows the scene."""
-    found = page.wait_for_selector("iframe[title='3D view']", state="attached", timeout=PATIENCE)
+    found = page.wait_for_selector("iframe[title='3D view'][src^='/viser/']", state="attached", timeout=PATIENCE)
     assert found is not None
     frame = found.content_frame()
     assert frame is not None
@@ -255,6 +257,115 @@ def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Call
     in_the_middle(page, frame)
     steps(page, frame, 60)
     in_the_middle(page, frame)
+
+
+WATCH = """() => {
+    const viewer = window.__viserMutable, { told } = window.scene;
+    const found = { off: Infinity };
+    for (const [name, node] of Object.entries(viewer.nodeRefFromName)) if (name.startsWith("/bodies/")) node?.traverse((object) => {
+        for (let n = 0; n < (object.getPositionAt ? object.instancesCount : 0); n++) {
+            const off = Math.hypot(...object.getPositionAt(n).toArray().map((x, axis) => x - told.now.body[axis]));
+            if (off < found.off) Object.assign(found, { off, object, n });
+        }
+    });
+    const { start, middle } = told.stage, root = viewer.nodeRefFromName[""], place = viewer.camera.position.clone();
+    window.watched = [];
+    if (found.object) viewer.scene.onAfterRender = (renderer, scene, camera) => {
+        if (camera !== viewer.camera) return;
+        const drawn = found.object.getPositionAt(found.n).toArray();
+        place.set(...drawn.map((x, axis) => x + middle[axis])).applyMatrix4(root.matrixWorld).project(camera);
+        window.watched.push({ at: [place.x, place.y], drawn, shown: window.scene.shown.body });
+    };
+    return found.off;
+}"""
+
+
+def watched(page: Page, frame: Frame, act: Callable[[], None], travelled: float) -> None:
+    """Asserts that the drawn body has one place in every picture while something goes on, and that what belongs to it is drawn where it is.
+
+    Args:
+        page: The page.
+        frame: The 3D view, watched.
+        act: What goes on.
+        travelled: So far the body goes at least [m].
+    """
+    frame.evaluate("() => { window.watched = []; }")
+    act()
+    told = frame.evaluate("() => window.watched")
+    drawn_at = np.array([one["drawn"] for one in told])
+    assert np.ptp(drawn_at[:, 0]) > travelled, "so many pictures that it moves"
+    assert np.abs([one["at"] for one in told]).max() < 0.02, told
+    assert np.abs(drawn_at - [one["shown"] for one in told]).max() < 1e-3
+
+
+def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    until(page, lambda: frame.evaluate(WATCH) < 1e-3)
+    page.get_by_label("Speed", exact=True).select_option("2 x")
+
+    def to(time: float, how: str = "until") -> Callable[[], None]:
+        def act() -> None:
+            said = {"type": how, "time": time}
+            page.evaluate("async (said) => (await import('/static/server.js')).order(said)", said)
+            shows(page, "#time", f"t = {time:.2f} s")
+            until(page, lambda: frame.evaluate("() => window.scene.told.now.moment === window.scene.shown.moment"))
+            drawn(page)
+
+        return act
+
+    watched(page, frame, to(1.5), 1)
+    drag(page, 80, 10)
+    watched(page, frame, to(3), 1)
+    watched(page, frame, to(0, "seek"), 3)
+    watched(page, frame, to(1), 0.5)
+    page.click("#restart")
+    shows(page, "#time", "t = 0.00 s")
+    until(page, lambda: abs(frame.evaluate("() => window.scene.shown.body[0]")) < 0.01)
+    until(page, lambda: frame.evaluate(WATCH) < 1e-3)
+    watched(page, frame, to(1), 0.5)
+    page.reload()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    until(page, lambda: frame.evaluate(WATCH) < 1e-3)
+    watched(page, frame, to(2), 0.5)
+
+
+HIDDEN = """([hidden, name]) => new Promise((done) => {
+    const viewer = window.__viserMutable;
+    for (const [at, node] of Object.entries(viewer.nodeRefFromName)) {
+        if (at.startsWith(name)) node?.traverse((one) => { if (one.isMesh) one.layers.mask = hidden ? 0 : 1; });
+    }
+    viewer.scene.onAfterRender = (renderer, scene, camera) => camera === viewer.camera && requestAnimationFrame(() => done());
+    viewer.requestRender();
+})"""
+
+
+def part_seen(page: Page, frame: Frame, body: str) -> float:
+    """Returns how large the part of the picture is that changes where a body is not drawn."""
+    pictures: list[Any] = []
+    for hidden in (False, True, False):
+        frame.evaluate(HIDDEN, [hidden, body])
+        drawn(page)
+        with Image.open(BytesIO(page.locator("#scene iframe").screenshot())) as picture:
+            pictures.append(np.asarray(picture.convert("RGB"), dtype=int))
+    return float((np.abs(pictures[0] - pictures[1]).max(axis=2) > 12).mean())
+
+
+def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    page.evaluate("async () => (await import('/static/server.js')).order({ type: 'until', time: 4 })")
+    shows(page, "#time", "t = 4.00 s")
+    until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > 4)
+    plain = part_seen(page, frame, "/bodies/walker")
+    assert plain > 0.01
+    frame.evaluate("() => window.__viserMutable.cameraControl.rotate(2.6, 0, false)")
+    assert part_seen(page, frame, "/bodies/walker") > 0.75 * plain  # from behind the wall
+    page.get_by_label("Camera").select_option("free")  # where the camera stays, but nothing is promised
+    until(page, lambda: look(page, frame)["view"] == "free")
+    assert part_seen(page, frame, "/bodies/walker") < 0.5 * plain
 
 
 def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_own(pages: Callable[..., Page]) -> None:
@@ -345,7 +456,7 @@ def test_keys_work_after_a_click_into_the_3d_view_and_do_nothing_in_a_field_of_t
         before = look(page, frame)["position"]
         page.wait_for_timeout(200)
         assert look(page, frame)["position"] == pytest.approx(before, abs=1e-3), "it stops with the key"
-    page.get_by_role("textbox", name="Filter").first.click()
+    page.get_by_role("searchbox", name="Filter rows").click()
     page.keyboard.type("dv ")
     assert look(page, frame)["position"] == pytest.approx(before, abs=1e-3)
     assert page.get_by_label("Camera").input_value() == "free"

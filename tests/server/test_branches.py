@@ -42,6 +42,7 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     assert talk.say("curves", names=["walker x"]) == before
     talk.say("aperture", width=0.3)
     talk.say("aperture", width=0.35)  # there is nothing ahead any more
+    assert talk.state["reason"] == "changed at 0.10 s; a branch was kept"
     (branch,) = found(talk)
     origin = Path(talk.session.start.record).stem  # type: ignore[union-attr]
     assert branch.stem.startswith(f"{origin}-at-0.100s-")
@@ -52,7 +53,10 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
         recorded.check()
         assert recorded.ticks == 40
         assert list(recorded.commands()) == []
-    assert b'"branched":0.1' in summary_json(branch)
+    renamed = branch.rename(branch.with_name("tidy.sqlite"))
+    assert b'"branched":0.1' in summary_json(renamed)
+    renamed.rename(branch)
+    assert b'"branched":null' in summary_json(branch.with_name(f"{origin}.sqlite"))
     assert is_unnamed(branch)  # so that it goes, one day
     there(talk, 50)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.5
@@ -73,6 +77,7 @@ def test_what_is_not_recorded_is_lost_only_where_that_is_allowed(desk: Desk, tmp
     talk.say("aperture", width=0.3, drop=True)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.1
     assert talk.session.branched is None
+    assert talk.state["reason"] == "changed at 0.10 s; the rest was lost"
 
 
 def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:

@@ -75,7 +75,7 @@ def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk,
 def test_the_force_of_a_wall_is_told_and_that_of_the_ground_is_not(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED)
     talk.say("until", contact="walker")
-    touched = talk.wait(lambda: "touches" in talk.state["reason"])["time"]
+    touched = talk.wait(lambda: "of walker touches" in talk.state["reason"])["time"]
     talk.say("step", ticks=20)
     talk.until("paused", time=round(touched + 0.2, 6))
     told = talk.say("curves", names=["walker contact force"])

@@ -70,6 +70,15 @@ def test_what_is_taken_of_a_run_that_has_ended_is_replayed_while_its_session_is_
     assert [each.name for each in path.parent.iterdir()] == [path.name]
 
 
+def test_what_is_taken_of_a_run_that_is_held_has_all_that_is_shown(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, APERTURE, record=True)
+    for tick in range(1, 30):
+        talk.say("step", ticks=1)
+        shown = talk.until("paused", tick=tick)
+        with Recorded(talk.sessions.recordings.path(talk.facts["recording"])) as recorded:
+            assert (recorded.ticks, recorded.event_count) == (tick, shown["events"])
+
+
 def test_what_is_taken_of_a_run_that_goes_on_has_what_was_there(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.8})
     talk.say("speed", factor=0.05)

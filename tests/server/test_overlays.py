@@ -11,6 +11,7 @@ import pytest
 
 from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
+from tests.server.test_reopened import reopened
 from workbench.palette import channels, label_colours, palette
 
 LOOKING = """from actr3d.actr import *
@@ -141,6 +142,18 @@ def test_the_path_is_known_to_who_comes_late_and_after_going_back(desk: Desk, tm
     other = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
     assert other[:, 0].max() == pytest.approx(back[-1, 0], abs=0.02)
     assert other[-1, 0] < back[-1, 0] - 0.03
+
+
+def test_the_path_of_an_opened_recording_is_known_at_its_end_at_once(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, LOOKING, record=True)
+    talk.say("step", ticks=100)
+    talk.until("paused", tick=100)
+    way = drawn(talk, 100, ("path",))["path"]
+    again = reopened(talk)
+    drawn(again, 0, ("path",))
+    again.say("seek", time=1.0)
+    again.until("paused", tick=100)
+    assert drawn(again, 100, ("path",))["path"] == way
 
 
 def test_the_planned_posture_is_what_is_commanded_until_it_is_there(desk: Desk, tmp_path: Path) -> None:

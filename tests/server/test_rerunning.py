@@ -81,7 +81,8 @@ def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, sour
     ("does", "agrees", "text"),
     [
         ("print(os.path.exists({mark!r}))", False, "differs: event "),
-        ("os.path.exists({mark!r}) and os._exit(7)", None, "exit code 7"),
+        ("os.path.exists({mark!r}) and os._exit(0)", None, "no verdict: the model's process ended with exit code 0"),
+        ("os.path.exists({mark!r}) and os._exit(7)", None, "no verdict: the model's process ended with exit code 7"),
         ("os.path.exists({mark!r}) and os.abort()", None, "ended by SIGABRT"),
         ("os.path.exists({mark!r}) and bytearray(10**12)", False, "MemoryError"),
         ("os.path.exists({mark!r}) and os.write(1, b'x' * 10**7)", True, "every byte agrees"),

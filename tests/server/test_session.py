@@ -140,8 +140,7 @@ def test_a_run_goes_on_until(desk: Desk, tmp_path: Path, wanted: dict[str, Any],
 def test_a_run_goes_on_until_something_is_touched(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY, settings={"width": 0.2})
     talk.say("until", contact="")
-    state = talk.wait(lambda: "touches" in talk.state["reason"])
-    assert "of walker touches aperture_" in state["reason"]
+    talk.wait(lambda: "of walker touches aperture_" in talk.state["reason"])
     assert any(touch["other"].startswith("aperture_") for touch in talk.say("body")["contacts"])
 
 

@@ -134,6 +134,14 @@ def test_a_slot_that_no_chunk_can_have_is_refused_with_what_is_like_it(desk: Des
     assert talk.until("ended")["reason"] == "the program is over; goal matches 'state:end'"  # both at once
 
 
+def test_of_many_slots_it_is_said_how_many_are_not_named(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOTS.format(name="Many", chunk="'state:begin " + " ".join(f"s{n}:1" for n in range(20)) + "'"))
+    talk.say("step")
+    talk.until("paused", tick=1)
+    with pytest.raises(RefusedError, match=r"there are: s0, s1, .*, s8 and 9 more|there are: s0, .* and 9 more"):
+        talk.say("until", buffer="goal", pattern="zzz:1")
+
+
 def test_a_slot_whose_name_is_computed_is_let_through(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOTS.format(name="Computes", chunk="'state:begin ' + ' '.join(f'{a}{b}:1' for a, b in [('al', 'pha')])"))
     talk.say("until", buffer="goal", pattern="alpha:1")

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from actr3d.recording import Recorded
 from tests.server.desk import Desk, RefusedError, Talk
 from workbench.jobs import Job, doing
 from workbench.worker.messages import Start
@@ -148,9 +149,9 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
 @pytest.mark.parametrize(
     ("does", "told"),
     [
-        ("os._exit(3)", "the model ended its process, with exit code 3"),
+        ("os._exit(3)", "the model's process ended with exit code 3"),
         ("sys.exit(4)", "the model ended its process (SystemExit: 4)"),
-        ("os.kill(os.getpid(), signal.SIGKILL)", "SIGKILL: the system ended it, maybe for want of memory"),
+        ("os.kill(os.getpid(), signal.SIGKILL)", "ended by SIGKILL, which it sent itself, or another program did"),
         ("os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV: a crash in compiled code"),
         ("import ctypes; ctypes.string_at(0)", "SIGSEGV: a crash in compiled code"),
         ("x = [0] * 10**10", "the model used more memory"),
@@ -174,6 +175,28 @@ def test_a_worker_that_ends_is_told_of(desk: Desk, tmp_path: Path, does: str, to
         talk.wait_for_notice(told)
     assert not [notice for notice in talk.notices if "Exception ignored" in notice["text"] or "exit code 0" in notice["text"]]
     runs_again(talk, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "does",
+    [
+        "os._exit(3)",
+        "os.kill(os.getpid(), signal.SIGKILL)",
+        "os.killpg(os.getpgrp(), signal.SIGTERM)",
+        "signal.raise_signal(signal.SIGALRM)",
+        "os.execlp('sleep', 'sleep', '0')",
+        "__import__('threading').Thread(target=os._exit, args=[3]).start(); time.sleep(9)",
+        "os.kill(os.getpid(), signal.SIGSTOP)",
+    ],
+)
+@pytest.mark.parametrize("record", [False, True])
+def test_what_a_model_prints_before_it_ends_or_stops_itself_arrives(desk: Desk, tmp_path: Path, does: str, record: bool) -> None:
+    talk = desk.begin(tmp_path, of(f"print('first'); print('last'); {does}"), run=True, wait=None, record=record)
+    talk.wait(lambda: talk.facts["stuck"] or talk.state["status"] == "failed")
+    assert [data["text"] for _, _, kind, data in talk.events if kind == "output"] == ["first", "last"]
+    if record:
+        with Recorded(talk.sessions.recordings.path(talk.facts["recording"])) as recorded:
+            assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["first", "last"]
 
 
 def test_a_crash_names_where_it_was(desk: Desk, tmp_path: Path) -> None:

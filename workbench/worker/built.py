@@ -239,7 +239,8 @@ class BuiltRun:
             self._end = None
             if self._recording is not None:
                 self._recording.fact("ended", None)
-        self._conductor.goes_another_way(before, ahead=ahead)
+        kept_as = "the rest was lost" if kept is None else "a branch was kept" if branch else "the recording keeps the rest"
+        self._conductor.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
 
     def _keep_branch(self, at: float, until: float, *, drop: bool) -> Path | None:
         """Keeps the run as recorded so far, before something is changed in its past. Returns the file; None where it may be lost.
@@ -254,11 +255,14 @@ class BuiltRun:
             raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
         path = new_branch(Path(self._start.record), at)
         try:
+            self._recording.fact("branched", at)  # a fact stays with the branch whatever it is called
             self._recording.copy_to(path)
         except Actr3dError as error:
             if drop:
                 return None
             raise SimulationError(f"nothing was changed, for {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
+        finally:
+            self._recording.fact("branched", None)
         return path
 
     def _tell_failure(self, text: str | None) -> None:
@@ -274,6 +278,11 @@ class BuiltRun:
             return
         self._conclude()
         self._conductor.end("ended", ENDINGS[self._end[1]])
+
+    def flush(self) -> None:
+        """Writes what is still to be recorded."""
+        if self._recording is not None:
+            self._recording.flush()
 
     def forget_ahead(self) -> None:
         """Forgets that it has been further than it is now."""

@@ -40,6 +40,10 @@ class Conducted(Protocol):
         """
         ...
 
+    def flush(self) -> None:
+        """Writes what is still to be recorded: who sees where the run is held finds it in its recording."""
+        ...
+
     def forget_ahead(self) -> None:
         """Forgets that it has been further than it is now."""
         ...

@@ -159,16 +159,18 @@ class Conductor:
         self.status, self.reason = "paused", "went to this time"
         self._halt()
 
-    def goes_another_way(self, events: int, *, ahead: bool) -> None:
+    def goes_another_way(self, events: int, changed: str | None) -> None:
         """Tells the server that what was known of the run after the present moment holds no more.
 
         Args:
             events: How many events there were until this moment.
-            ahead: Whether the run had been beyond this moment; perhaps without any event there.
+            changed: What has become of the run beyond this moment; None where it had not been there.
         """
         with self._telling:
             self._foreknown = None
-            if ahead or events < self._sent:
+            if changed is not None and self.status == "paused":
+                self.reason = changed
+            if changed is not None or events < self._sent:
                 self._sent = min(self._sent, events)
                 self.link.cut(Cut(events=events), events)
 
@@ -316,6 +318,14 @@ class Conductor:
             time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
             self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
+    def say_all(self) -> None:
+        """Records and sends what has happened up to now, from whatever thread of the model: it may be about to end its process."""
+        if not self.link.left:  # a copy of the process has nothing to send
+            with suppress(Exception):  # there may be no run yet
+                self.run.flush()
+            self.show_busy()
+            self.link.flush()
+
     def _tell(self, state: State, trace: Trace | None) -> None:
         """Gives the server a state and the events up to it that it does not have."""
         count = state.events
@@ -344,4 +354,5 @@ class Conductor:
     def _halt(self) -> None:
         self.pacer.halt()
         self.watch.begin()
+        self.run.flush()
         self.show()

@@ -20,6 +20,7 @@ from actr3d.running.declared import check_build
 from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.conductor import Conductor
+from workbench.worker.last_words import end_at_once, say_before_the_end
 from workbench.worker.link import Link
 from workbench.worker.memory import watch_memory
 from workbench.worker.messages import Over, Reply, notice
@@ -42,6 +43,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     os.register_at_fork(after_in_child=link.leave)
     os.register_at_fork(after_in_child=_PAST_PRINT.open)
     conductor = Conductor(link)
+    say_before_the_end(conductor.say_all)
     warnings.simplefilter("default")
     warnings.showwarning = _told_to(link)
     try:
@@ -58,7 +60,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
         wire.shutdown(socket.SHUT_WR)
     with suppress(OSError, ValueError):
         sys.stderr.flush()
-    os._exit(0)  # threads that the model has left do not keep the process
+    end_at_once(0)  # threads that the model has left do not keep the process
 
 
 def _leave_copy(error: BaseException) -> NoReturn:
@@ -70,7 +72,7 @@ def _leave_copy(error: BaseException) -> NoReturn:
             traceback.print_exception(error)
         elif code is not None and not isinstance(code, int):
             sys.stderr.write(f"{code}\n")
-    os._exit(0 if code is None else code & 0xFF if isinstance(code, int) else 1)
+    end_at_once(0 if code is None else code & 0xFF if isinstance(code, int) else 1)
 
 
 def _run(link: Link, conductor: Conductor) -> None:

@@ -17,6 +17,7 @@ from typing import NoReturn
 
 import msgspec
 
+from workbench.worker.last_words import end_at_once
 from workbench.worker.messages import (
     LENGTH,
     LONGEST,
@@ -121,7 +122,7 @@ class Link:
             except OSError:
                 message = None
             if message is None:
-                os._exit(0)  # the server is gone; nobody is left to be told anything
+                end_at_once(0)  # the server is gone; nobody is left to be told anything
             if isinstance(message, Where):
                 if self.busy is not None:
                     self.busy()
@@ -140,7 +141,7 @@ class Link:
     def _check_wire(self) -> None:
         """Ends the process where the model has closed the wire: what the model has opened meanwhile may have its number."""
         if _identity(self._wire) != self._identity:
-            os._exit(WIRE_LOST)
+            end_at_once(WIRE_LOST)
 
     # -- what goes
 
@@ -240,14 +241,14 @@ class Link:
                     self._check_wire()
                     self._wire.sendall(_bounded(message))
             except OSError:
-                os._exit(0)
+                end_at_once(0)
 
 
 def _end_copy() -> NoReturn:
     """Ends a copy of the process that the model has made: the run goes on in one only."""
     with suppress(OSError, ValueError):
         sys.stdout.flush()
-    os._exit(0)
+    end_at_once(0)
 
 
 def _identity(wire: socket.socket) -> tuple[int, int] | None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import resource
 import sys
 import threading
 import time
 from pathlib import Path
+
+from workbench.worker.last_words import end_at_once
 
 TOO_MUCH_MEMORY = 87
 """With this exit code a worker ends that has taken too much."""
@@ -42,7 +43,7 @@ def _watch(most: int) -> None:
     """Ends this process once it has had more memory [bytes]."""
     while peak() <= most:
         time.sleep(EVERY)
-    os._exit(TOO_MUCH_MEMORY)
+    end_at_once(TOO_MUCH_MEMORY)
 
 
 def peak() -> int:

@@ -336,6 +336,11 @@ class ProgramRun:
             self._again = True
             raise _Again
 
+    def flush(self) -> None:
+        """Writes what is still to be recorded."""
+        if self._recording is not None:
+            self._recording.flush()
+
     def forget_ahead(self) -> None:
         """Forgets that it has been further than it is now."""
         self._furthest = self._clock

@@ -42,7 +42,8 @@ def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], fo
         return
     own, all_slots = (sorted({slot for text in given for slot in _slots(text)}) for given in (sources, texts))
     for slot in sorted(unknown):
-        there = f"; there are: {', '.join(own[:MOST_TOLD])}" if own else "; its chunks have no named slots"
+        more = f" and {len(own) - MOST_TOLD} more" if len(own) > MOST_TOLD else ""
+        there = f"; there are: {', '.join(own[:MOST_TOLD])}{more}" if own else "; its chunks have no named slots"
         near = did_you_mean(slot, own) or did_you_mean(slot, all_slots)
         raise Actr3dError(f"no chunk of this model can have a slot '{slot}'{near or there}")
 

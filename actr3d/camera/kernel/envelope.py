@@ -80,16 +80,17 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
         extents: Where they are written, as far as there is room; `label` holds the object.
         first: How many there are already.
     """
-    done, waiting, present, start = first, zero(), zero(), -optics.right
+    done, waiting, present, start, floor = first, zero(), zero(), -optics.right, -math.inf
     sort_by_start(row.order, row.starts, row.pieces, count)
     while True:
-        waiting, present = _bring_in(start, row, count, waiting, present)
+        waiting, present = _bring_in(start, row, count, waiting, present, floor)
         if present == 0:
             if waiting == count:
                 return end_row(v, optics, row.pieces, extents, first, done)
             start = row.starts[waiting]
             continue
         front, rivals, end = _front(row, present)
+        floor = row.pieces[front].floor
         waiting, present, end = _pass_by(end, row, count, waiting, present, front)
         if rivals == 1:
             done = _tell(front, start, end, level, optics, row, rivals, extents, first, done)
@@ -105,18 +106,28 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
 
 
 @compiled
-def _bring_in(start: float, row: Row, count: int, waiting: int, present: int) -> tuple[int, int]:
+def _bring_in(start: float, row: Row, count: int, waiting: int, present: int, floor: float) -> tuple[int, int]:
     """Takes up the pieces that begin at a tangent, and passes over those that are hidden wholly by one at hand.
 
     Returns how many of all pieces were taken up or passed over, and how many are at hand.
+
+    Args:
+        start: The tangent.
+        row: The row.
+        count: How many pieces there are.
+        waiting: How many of these were taken up or passed over.
+        present: How many are at hand.
+        floor: The greatest floor of these, or more.
     """
     while waiting < count:
         number = row.order[waiting]
-        if not _hidden(row.pieces[number], row, present):
+        piece = row.pieces[number]
+        if floor <= piece.ceiling or not _hidden(piece, row, present):
             if row.starts[waiting] > start + NEGLIGIBLE:
                 break
             row.active[present] = number
             present += 1
+            floor = max(floor, piece.floor)
         waiting += 1
     return waiting, present
 

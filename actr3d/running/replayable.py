@@ -1,0 +1,58 @@
+"""Checks whether a recording can be run again; runs nothing of it."""
+
+from __future__ import annotations
+
+from actr3d.errors import RecordingError, UntrustedError
+from actr3d.recording import Recorded
+from actr3d.recording.form import versions
+
+_NEEDED = {
+    "program": ("file", "sources", "seed", "until"),
+    "simulation": ("seed", "period_us", "timestep_us", "scene"),
+    "built": ("file", "sources", "parameters"),
+}
+"""Facts without which a run cannot be run again; of simulations that a model file builds, those below «built», too."""
+
+
+def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> None:
+    """Raises an error where a recording cannot be run again, or may not be; reads all of it for that.
+
+    Args:
+        recorded: The recording.
+        trust: Whether it may be run though this installation did not make it.
+        any_version: Whether versions of Python, MuJoCo or others may be other ones than those of the recording.
+
+    Raises:
+        UntrustedError: If the recording was made elsewhere, and is not to be trusted.
+        RecordingError: If the file is damaged, lacks something, or holds nothing to compare, or versions differ.
+    """
+    recorded.check()
+    _check_facts(recorded)
+    if not any_version:
+        _check_versions(recorded.facts["versions"])
+    if not (recorded.closed or recorded.state_count or recorded.event_count):
+        raise RecordingError(
+            f"the recording '{recorded.path}' holds nothing to compare: its run was broken off before anything was written"
+        )
+    if not (trust or recorded.made_here):
+        raise UntrustedError(
+            f"'{recorded.path}' was not made by this installation, and a replay runs the code that it holds: "
+            "replay(recorded, trust=True) runs it all the same"
+        )
+
+
+def _check_facts(recorded: Recorded) -> None:
+    facts = recorded.facts
+    needed = _NEEDED[facts["kind"]] + (_NEEDED["built"] if facts.get("built") else ())
+    missing = [f"'{name}'" for name in needed if name not in facts]
+    if not missing and "file" in needed and facts["file"] not in facts["sources"]:
+        missing = [f"the source of '{facts['file']}'"]
+    if missing:
+        raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
+
+
+def _check_versions(then: dict[str, str]) -> None:
+    now = versions()
+    different = [f"{name} {then.get(name)} then, {now.get(name)} now" for name in sorted({*then, *now}) if then.get(name) != now.get(name)]
+    if different:
+        raise RecordingError(f"the recording was made with other versions, and may not agree for that alone: {'; '.join(different)}")

@@ -1,0 +1,137 @@
+"""Runs a recording again in a process of its own: whatever the recorded program does to its process, it does not stand for a verdict."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from types import FrameType
+from typing import Any, NoReturn, TypeVar
+
+from actr3d.errors import Actr3dError, UntrustedError
+from actr3d.recording import Recorded
+from actr3d.running.complaint import complaint
+from actr3d.running.replayable import check_replayable
+
+T = TypeVar("T")
+AGREES, DIFFERS, UNKNOWN = 0, 1, 2
+"""The exit codes of a replay."""
+_CHILD = """
+import json, sys
+order = json.loads(sys.argv[1])
+sys.path[:] = order.pop("path")
+try:
+    from actr3d.running.verdict import give_verdict
+    give_verdict(**order)
+except KeyboardInterrupt:
+    sys.exit(130)
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What is said of a recording that was run again."""
+
+    code: int
+    """`AGREES`, `DIFFERS`, or `UNKNOWN` where neither can be told."""
+    text: str
+
+
+def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
+    """Runs a recording again, in a process of its own; returns its verdict.
+
+    The verdict comes in a file that only this process and that one know of, so nothing that the program prints, and no way in
+    which it ends, looks like one. Texts have the same order in sets as in `actr3d run`.
+
+    Args:
+        file: The recording.
+        trust: As `actr3d.running.replay.replay` has it.
+        any_version: Likewise.
+    """
+    problem = _answered(file, partial(_check, file, trust, any_version))
+    if problem is not None:
+        return problem
+    with _ended_in_order(), tempfile.TemporaryDirectory(prefix="actr3d-verdict-") as folder:
+        to = Path(folder, "verdict")
+        order = {"path": sys.path, "file": file, "to": str(to), "trust": trust, "any_version": any_version}
+        flags: list[str] = subprocess._args_from_interpreter_flags()  # pyright: ignore # it is there for this, though without a public name
+        command: list[str] = [sys.executable, *flags, "-P", "-c", _CHILD, json.dumps(order)]
+        process = subprocess.Popen(command, env={**os.environ, "PYTHONHASHSEED": "0"})
+        try:
+            status = process.wait()
+        finally:
+            process.kill()
+            process.wait()
+        try:
+            return Verdict(**json.loads(to.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError):
+            return Verdict(code=UNKNOWN, text=f"error: no verdict: {_ended(status)}\n")
+
+
+def give_verdict(*, file: str, to: str, trust: bool, any_version: bool) -> None:
+    """Runs a recording again in this process, and writes the verdict to a file."""
+    process = os.getpid()
+    verdict = _answered(file, partial(_compare, file, trust, any_version))
+    if os.getpid() == process:  # else the program has made a copy of the process
+        Path(to).write_text(json.dumps(asdict(verdict)), encoding="utf-8")
+
+
+def _check(file: str, trust: bool, any_version: bool) -> None:
+    with Recorded(file) as recorded:
+        check_replayable(recorded, trust=trust, any_version=any_version)
+
+
+def _compare(file: str, trust: bool, any_version: bool) -> Verdict:
+    from actr3d.running.replay import replay
+
+    with Recorded(file) as recorded:
+        comparison = replay(recorded, trust=trust, any_version=any_version)
+    return Verdict(code=AGREES if comparison.difference is None else DIFFERS, text=f"{comparison}\n")
+
+
+def _answered(file: str, work: Callable[[], T]) -> T | Verdict:
+    """Returns what comes of some work with a recording, or what is said where it cannot be done."""
+    try:
+        return work()
+    except UntrustedError:
+        reason = "was not made by this installation (or was changed since), and a replay runs the code that it holds"
+        text = f"error: '{file}' {reason}; if you trust where it comes from, add --trust\n"
+    except (Actr3dError, OSError) as error:
+        text = complaint(error).text
+    except Exception as error:  # noqa: BLE001 - a file that anybody may have made is never answered by a traceback
+        text = f"error: '{file}' cannot be run again: {type(error).__name__}: {error}\n"
+    return Verdict(code=UNKNOWN, text=text)
+
+
+def _ended(status: int) -> str:
+    """Says how a process ended that has given no verdict."""
+    if status >= 0:
+        return f"the model's process ended with exit code {status}"
+    name = signal.Signals(-status).name if -status in set(signal.Signals) else f"signal {-status}"
+    return f"the model's process was ended by {name}"
+
+
+@contextmanager
+def _ended_in_order() -> Generator[None]:
+    """Lets what terminates this process inside the block end it in order, so that nothing it has started outlives it."""
+    signs = [signal.SIGTERM, signal.SIGHUP]
+    before: dict[signal.Signals, Any] = {sign: signal.getsignal(sign) for sign in signs if signal.getsignal(sign) is signal.SIG_DFL}
+    for sign in before:
+        signal.signal(sign, _leave)
+    try:
+        yield
+    finally:
+        for sign, handler in before.items():
+            signal.signal(sign, handler)
+
+
+def _leave(number: int, _: FrameType | None) -> NoReturn:
+    sys.exit(128 + number)
