@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from loud import HEAD, warned
 
+from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.loading import load_text
 from actr3d.errors import ChunkError, ModelWarning, ProductionException
 
@@ -92,7 +93,7 @@ def test_a_warning_changes_nothing() -> None:
         with warnings.catch_warnings(record=True):
             warnings.simplefilter(action)  # type: ignore[arg-type]
             agent: Any = load_text(text, "loud.py").Agent()
-            agent._ensure_converted()
+            ensure_converted(agent)
             agent.random.seed(1)
             trace = agent.traced()
             agent.run(1)

@@ -8,7 +8,8 @@ import pytest
 from loud import HEAD, warned
 
 from actr3d.actr import Model
-from actr3d.actr.checks.vocabulary import is_slip
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.lint.slot_names import is_slip
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning
 
@@ -67,7 +68,7 @@ def test_other_slots_are_let_be(body: str) -> None:
 def test_slots_that_the_memory_holds_are_let_be() -> None:
     text = HEAD + "    def init():\n        memory.request('numbr:?x')\n        memory.add('number:1')\n"
     agent: Any = load_text(text, "loud.py").Agent()
-    agent._ensure_converted()
+    ensure_converted(agent)
     agent.memory.add({"numbr": 3})
     agent.run(0)
 

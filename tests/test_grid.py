@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from actr3d.actr import ACTR
-from actr3d.actr.grid import Body, Cell, World
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.compat.grid import Body, Cell, World
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import GridError, ModelWarning
 
 ROOM = """

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
-import actr3d.actr.limits as limits_module
+import actr3d.actr.kernel.run_limits as limits_module
 from actr3d.actr import Model
-from actr3d.actr.limits import MOST_REFUSALS, RUNS_TOGETHER, EndOfRun, RunLimits
+from actr3d.actr.kernel.run_limits import MOST_REFUSALS, RUNS_TOGETHER, EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.running.run import run_model
 from actr3d.simulation import Simulation

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import compile_source, load_text, read_source, run_file, run_text
 from actr3d.errors import ModelFileError
 

@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
 from actr3d.trace import Trace
 

@@ -16,7 +16,8 @@ from living import near
 from walkers import Driver, digest, driving, scene_of
 
 from actr3d.actr import ACTR, Buffer, Model
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SimulationError, WorldError
 from actr3d.simulation import Glimpse, Simulation, history, minds
@@ -410,7 +411,7 @@ def test_numbers_of_numpy_are_numbers() -> None:
 def test_no_name_of_a_living_environment_is_left_to_a_mind() -> None:
     environment = Environment()
     before = set(dir(environment))
-    environment._ensure_converted()
+    ensure_converted(environment)
     assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(minds._LATER)
 
 

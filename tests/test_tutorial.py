@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 from golden.make import EMBODIED, GOLDEN, MODELS, OURS, ROOT, command, golden_file, golden_names, model_file, model_names, options, record
 
-from actr3d.actr.sweep import parameters
+from actr3d.actr.loading.sweep import parameters
 from actr3d.cli import main
 
 NAMES = model_names()

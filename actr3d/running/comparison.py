@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from actr3d.actr.answers import plain_answer
-from actr3d.actr.limits import EndOfRun
+from actr3d.actr.kernel.run_limits import EndOfRun
+from actr3d.actr.modules.answers import plain_answer
 from actr3d.clock import seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path

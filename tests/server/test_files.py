@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from actr3d.actr.reading import read_source
+from actr3d.actr.loading.source_text import read_source
 from workbench import outlines
 from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
 from workbench.outlines import Outline, outline_of

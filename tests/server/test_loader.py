@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.running.building import Blueprint
 from workbench.loader import Change, listing_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, cast
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class ImaginalModule(WithParameters, Model):

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.log import log_line
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class Motor(WithParameters, Model):
@@ -26,17 +27,17 @@ class Motor(WithParameters, Model):
             return
         self._trace_request("press", key=key)
         self.busy = True
-        self.log._ = "Pressing key preparation"
+        log_line(self.log, "Pressing key preparation")
         yield 0.25
-        self.log._ = "Pressing key preparation complete"
+        log_line(self.log, "Pressing key preparation complete")
         yield 0.05
-        self.log._ = "Pressing key initiation complete"
+        log_line(self.log, "Pressing key initiation complete")
         yield 0.1
-        self.log._ = "Actually pressing the key"
+        log_line(self.log, "Actually pressing the key")
         self._environment().key_pressed(key)
-        self.log._ = "Finishing movement"
+        log_line(self.log, "Finishing movement")
         yield 0.15
-        self.log._ = "Finished movement"
+        log_line(self.log, "Finished movement")
         self.busy = False
 
     def _environment(self) -> Any:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.answers import answer_slots, plain_answer
-from actr3d.actr.events import Event
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.kernel.events import Event
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import named_parameters
+from actr3d.actr.kernel.tree import lineage, path_of, subtree
+from actr3d.actr.modules.answers import answer_slots, plain_answer
 from actr3d.errors import SimulationError
 
 _LIBRARY = str(Path(__file__).parents[2])
@@ -121,7 +122,7 @@ class Port(Model):
 
     def _find_embodiment(self) -> Embodiment | None:
         """Returns what joins its mind to a body; None for a mind without."""
-        return next((part.__dict__["_embodiment"] for part in self._line() if "_embodiment" in part.__dict__), None)
+        return next((part.__dict__["_embodiment"] for part in lineage(self) if "_embodiment" in part.__dict__), None)
 
     def _take(self, request: Request, answer: Any) -> None:
         """Takes the answer in, as an event of the mind, and wakes whoever waits for it."""
@@ -136,6 +137,19 @@ class Port(Model):
 
     def _receive(self, request: Request, answer: Any) -> None:
         """Does with an answer what this part does with it; for subclasses."""
+
+
+class Searching(Port):
+    """A module that looks for things, and whose searches are explained."""
+
+    def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:
+        """Returns of the last top-down and the last bottom-up search when the view was taken in [us], what was in it, the outcome."""
+        return []
+
+
+def latest_searches(module: Searching) -> list[tuple[int, Mapping[str, Any], str]]:
+    """Returns the last top-down and bottom-up search of a module: the time of its view [us], what was in it, and the outcome."""
+    return module._latest_searches()
 
 
 class BodyPort(Port):
@@ -205,13 +219,13 @@ class BodyPort(Port):
 
     def _check_private(self, word: str, embodiment: Embodiment) -> None:
         """Refuses a word that another part of the agent keeps private."""
-        agent = next(part for part in self._line() if part.__dict__.get("_embodiment") is embodiment)
-        for part in agent._tree():
+        agent = next(part for part in lineage(self) if part.__dict__.get("_embodiment") is embodiment)
+        for part in subtree(agent):
             option = part._kept_private(word) if isinstance(part, Port) else None
             if option is not None:
                 raise SimulationError(
-                    f"port '{self._path}' cannot ask body '{embodiment.body}' for '{word}': agent '{agent._path}' "
-                    f"({type(agent).__name__}) keeps it private to its module '{part._path}'; make that with {option} to let other "
+                    f"port '{self._path}' cannot ask body '{embodiment.body}' for '{word}': agent '{path_of(agent)}' "
+                    f"({type(agent).__name__}) keeps it private to its module '{path_of(part)}'; make that with {option} to let other "
                     "ports of the agent have it too"
                 )
 

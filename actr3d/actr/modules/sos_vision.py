@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.pattern import Pattern
+from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class SOSVision(WithParameters, Model):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.scheduler import Trigger
+from actr3d.actr.kernel.events import Trigger
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class Timer(WithParameters, Model):

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.finst import Finst
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.pattern import Pattern
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.declarative.finst import Finst
+from actr3d.actr.kernel.log import log_line
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class Vision(WithParameters, Model):
@@ -60,7 +61,7 @@ class Vision(WithParameters, Model):
                 new = [obj for obj in environment.get_children() if self._appears(obj)]
                 if new:
                     obj: Any = self.random.choice(new)
-                    self.log._ = f"Vision stuffed obj at ({obj.x:g},{obj.y:g})"
+                    log_line(self.log, f"Vision stuffed obj at ({obj.x:g},{obj.y:g})")
                     self._location.set(f"{obj.x:g} {obj.y:g}")
             for obj in environment.get_children():
                 self.isNew(obj)
@@ -79,7 +80,7 @@ class Vision(WithParameters, Model):
         """Ends the tracking of an object that is gone."""
         if self.tracking is not None:
             self.tracking = None
-            self.log._ = "Object disappeared"
+            log_line(self.log, "Object disappeared")
             self._visual.clear()
 
     def attendToUnattended(self, pattern: Any = "") -> None:  # noqa: N802
@@ -105,7 +106,7 @@ class Vision(WithParameters, Model):
                 found.append(obj)
         if found:
             obj = self.random.choice(found)
-            self.log._ = f"Vision found obj at ({obj.x:g},{obj.y:g})"
+            log_line(self.log, f"Vision found obj at ({obj.x:g},{obj.y:g})")
             self._location.set(f"{obj.x:g} {obj.y:g}")
 
     def examine(self, pat: Any) -> Iterator[float]:
@@ -120,12 +121,12 @@ class Vision(WithParameters, Model):
             self.busy = False
             if any(child is obj for child in self._children_of_environment()):
                 self.tracking = obj
-                self.log._ = f"Vision sees {Chunk(obj)}"
+                log_line(self.log, f"Vision sees {Chunk(obj)}")
                 self._visual.set(obj)
                 self.finst.add(obj)
             else:
                 self.tracking = None
-                self.log._ = "Vision sees nothing"
+                log_line(self.log, "Vision sees nothing")
                 self._visual.clear()
             break
 

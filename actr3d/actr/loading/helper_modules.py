@@ -1,0 +1,65 @@
+"""The texts of a program's helper modules, for recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+
+class HelperTexts:
+    """Keeps the text of each helper module that a program loads; gives a program that is run again those of the first time.
+
+    Args:
+        known: What `loaded` was the first time: these modules are loaded from there, whatever their files hold now.
+        folder: Where they lie as files, where there are no others; see `actr3d.actr.loading.sealed`. None where others may come from
+            the program's own folder.
+    """
+
+    def __init__(self, known: Mapping[str, Sequence[str]] | None = None, folder: Path | None = None) -> None:
+        self._known = dict(known or {})
+        self.folder = folder
+        self.packages: set[str] = set()
+        """The packages in which they stand in `sys.modules`, where not by their own names."""
+        self.loaded: dict[str, Sequence[str]] = {}
+        """By a module's name in the program, its file (below the program's folder, if it is there) and its text."""
+        self.heard: Callable[[dict[str, Sequence[str]]], object] = lambda _: None
+        """Called with all of `loaded` when one more has come."""
+
+    def keep(self, name: str, file: str, folder: Path | None, text: str) -> None:
+        """Takes the text of a module that is about to run."""
+        path = Path(file)
+        inside = folder is not None and path.is_relative_to(folder)
+        self.loaded[name] = (path.relative_to(folder).as_posix() if folder is not None and inside else file, text)
+        self.heard(self.loaded)
+
+    def owns(self, fullname: str) -> bool:
+        """Tells whether a module belongs to the program, whether it is known or not."""
+        root = fullname.partition(".")[0]
+        return self.has(root) or root in self.packages
+
+    def has(self, root: str) -> bool:
+        """Tells whether a top module or package of this name, or something in it, is known from the first time."""
+        return any(name.partition(".")[0] == root for name in self._known)
+
+    def spec(self, name: str, fullname: str, folder: Path, load: Callable[[str, str, str], Any]) -> ModuleSpec | None:
+        """Returns how a module that is known from the first time is to be loaded; None for others.
+
+        Args:
+            name: Its name in the program.
+            fullname: Its name in `sys.modules`.
+            folder: The program's.
+            load: Makes the loader, from the full name, the file and the text.
+        """
+        if name in self._known:
+            file, text = self._known[name]
+            path = folder / file
+            inner = [str(path.parent)] if path.name == "__init__.py" else None
+            return spec_from_file_location(fullname, path, loader=load(fullname, str(path), text), submodule_search_locations=inner)
+        if any(known.startswith(f"{name}.") for known in self._known):  # a folder without `__init__.py`
+            spec = ModuleSpec(fullname, None, is_package=True)
+            spec.submodule_search_locations = [str(folder.joinpath(*name.split(".")))]
+            return spec
+        return None
