@@ -1,4 +1,4 @@
-"""Chunks: slots with values, and how text becomes one."""
+"""Chunks: slots with values, and how they are made from text."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from actr3d.errors import ChunkError, did_you_mean
 
 Slot = int | str
 PLAIN_TYPES = frozenset({str, float, int, bool})
-"""The types of value that stand for themselves: what a chunk takes over from an object, and a trace keeps as it is."""
+"""Plain types: a chunk copies such values from an object, and a trace keeps them unchanged."""
 LASTING_TYPES = PLAIN_TYPES | {type(None)}
-"""The types of value that never change by themselves, and so read the same for ever."""
+"""Immutable types: their text never changes."""
 
 
 class ChunkStoreLike(Protocol):
@@ -32,13 +32,13 @@ class ChunkObserver(Protocol):
 
 
 class PlaceName(str):
-    """The name that a model has from its place in the tree, and not from its author.
+    """A model's name that comes from its place in the tree and was not set by its author.
 
-    A chunk made of such an object has in its slot `name` what it has in python_actr 1.9.5, which printed output shows.
+    The slot `name` of a chunk made from such a model has the same value as in python_actr 1.9.5, because printed output shows it.
 
     Args:
         name: The attribute's name.
-        slot: What a chunk shows instead; None for no such slot.
+        slot: The value of the chunk's slot; None for no such slot.
     """
 
     slot: str | None
@@ -53,7 +53,7 @@ class PlaceName(str):
 
 
 def as_text(value: object) -> str:
-    """Returns a slot's value as patterns compare it: text as it is, floats as `%g`, anything else by `repr`."""
+    """Returns a slot's value as patterns compare it: text unchanged, floats as `%g`, anything else by `repr`."""
     if isinstance(value, str):
         return value
     if isinstance(value, float):
@@ -64,8 +64,8 @@ def as_text(value: object) -> str:
 def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:
     """Splits a chunk's text into slots and values.
 
-    A word without a colon goes to the slot numbered by its place, `slot:value` to the named slot, where only the first
-    colon counts.
+    A word without a colon goes to the slot numbered by its position, `slot:value` to the named slot; only the first colon
+    separates.
     """
     slots: list[tuple[Slot, str]] = []
     for place, word in enumerate(text.split()):
@@ -79,14 +79,14 @@ def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:
 
 @lru_cache(maxsize=4096)
 def _contents_of(text: str) -> tuple[dict[Slot, Any], tuple[tuple[Slot, str], ...]]:
-    """Returns a chunk's slots with their values as they are written, and those of them, in order, that hold variables."""
+    """Returns a chunk's slots with their values as written, and, in order, the slots that contain variables."""
     slots = parse_slots(text)
     variable = {slot for slot, value in slots if value[:1] == "?"}
     return dict(slots), tuple(pair for pair in slots if pair[0] in variable)
 
 
 def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any:
-    """Returns the value of the bound variable `?name` that stands in `text`.
+    """Returns the value of the bound variable `?name`, which occurs in `text`.
 
     Raises:
         ChunkError: If no production has bound it.
@@ -99,7 +99,7 @@ def variable_value(name: str, bound: Mapping[str, Any] | None, text: str) -> Any
 
 
 def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns what a chunk takes over from an object: its public attributes that are text or numbers."""
+    """Returns the slots of a chunk made from an object: its public attributes that are text or numbers."""
     slots = {key: value for key, value in attributes.items() if type(value) in PLAIN_TYPES and key[0] != "_"}
     name = attributes.get("name")
     if isinstance(name, PlaceName) and name.slot is not None:
@@ -109,7 +109,7 @@ def object_slots(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 _NONE_SUCH = object()
 _DICT: type[dict[Any, Any]] = dict
-"""Called by name in chunks, which are made and changed too often for `super()`."""
+"""Chunks are made and changed too often for `super()`."""
 
 
 class Chunk(dict[Any, Any]):
@@ -118,10 +118,10 @@ class Chunk(dict[Any, Any]):
     Args:
         contents: Text (`'a:1 b:2'`, `'hello world'`, `'?x ?y'`), a mapping (its values keep their types), another
             chunk, a buffer (its chunk), or any object (its public attributes that are text or numbers).
-        bound: The variables that `?name` in a text stands for.
+        bound: The values of variables, which replace `?name` in a text.
 
     Raises:
-        ChunkError: If the contents are of no such kind, or a variable is not bound.
+        ChunkError: If the contents are of another kind, or a variable is not bound.
     """
 
     def __init__(self, contents: object, bound: Mapping[str, Any] | None = None) -> None:
@@ -149,7 +149,7 @@ class Chunk(dict[Any, Any]):
                 raise ChunkError(f"a chunk is made of text, a mapping, a chunk or an object (got {contents!r})") from None
 
     def __repr__(self) -> str:
-        """Positional slots in order, then the named ones sorted; slots that begin with `_` are left out."""
+        """Returns positional slots in order, then the named ones sorted, without slots that begin with `_`."""
         if self.cached_text is not None:
             return self.cached_text
         words: list[str] = []
@@ -162,13 +162,13 @@ class Chunk(dict[Any, Any]):
             words += [f"{key}:{self[key]}" for key in sorted(rest, key=str) if str(key)[:1] != "_"]
         text = " ".join(words)
         if self.stores and LASTING_TYPES.issuperset(map(type, self.values())):
-            self.cached_text = text  # a remembered chunk is named again and again
+            self.cached_text = text  # the text of a chunk in memory is used many times
         return text
 
     __str__ = __repr__
 
     def copy(self) -> Chunk:
-        """Returns a chunk with the same slots, known to no memory."""
+        """Returns a chunk with the same slots that is in no memory."""
         return Chunk(self)
 
     stores: tuple[ChunkStoreLike, ...] = ()

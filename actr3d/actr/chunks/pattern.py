@@ -1,8 +1,8 @@
-"""The pattern language: how text is read as conditions, and how conditions are tested.
+"""The pattern language: parses text into conditions, and tests them.
 
 Only the slots that a pattern names are tested, and values are compared as text (`as_text`). Tests against constants
-and first uses of a variable come first, in the order they are written; second uses, negated variables and functions
-come last, so that the order of slots does not matter.
+and first uses of a variable come first, in the order in which they are written; second uses, negated variables and
+functions come last, so that the order of slots does not matter.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Bindings = dict[str, Any]
 
 
 class Missing:
-    """The one value of a slot that is not there; equal to no text."""
+    """The type of the one value that represents a missing slot; it equals no text."""
 
     def __repr__(self) -> str:
         return "nothing"
@@ -33,19 +33,19 @@ Op = Literal["is", "not", "bind", "same", "differs", "empty", "call"]
 class Condition(NamedTuple):
     """One test of a pattern.
 
-    `is` and `not` compare with the text in `value`; `bind` gives the variable named there its value, `same` and
-    `differs` compare with it; `empty` asks that there be no chunk; `call` asks the function in `value`.
+    `is` and `not` compare with the text in `value`; `bind` binds the variable named there, `same` and `differs` compare with
+    its value; `empty` requires that there is no chunk; `call` calls the function in `value`.
     """
 
     op: Op
     name: str | None
-    """The buffer, module or object, as a production calls it; None in a request."""
+    """The name of the buffer, module or object in the production; None in a request."""
     key: Slot
-    """The slot: a number, a name, a dotted path of names, or `?x` for the slot that x names."""
+    """The slot: a number, a name, a dotted path of names, or `?x` for the slot whose name is the value of x."""
     value: Any
 
     def __str__(self) -> str:
-        """The condition as its author would write it."""
+        """Returns the condition as its author would write it."""
         if self.op == "empty":
             return "empty"
         if self.op == "call":
@@ -65,13 +65,13 @@ _PIECES: tuple[tuple[re.Pattern[str], str], ...] = (
 
 @lru_cache(maxsize=8192)
 def parse(text: str) -> tuple[tuple[Slot, str, str], ...]:
-    """Reads a pattern's text.
+    """Parses a pattern's text.
 
     Returns:
         Its tests as (slot, sign, word); the sign is `is`, `not`, `?` or `!?`.
 
     Raises:
-        PatternException: If the text is no pattern; the message says what cannot be read.
+        PatternException: If the text is not a pattern; the message says what cannot be parsed.
     """
     tests: list[tuple[Slot, str, str]] = []
     named: Slot | None = None
@@ -93,7 +93,7 @@ def parse(text: str) -> tuple[tuple[Slot, str, str], ...]:
 
 
 def _pieces(slot: Slot, rest: str, text: str) -> list[tuple[Slot, str, str]]:
-    """Reads what stands in one slot: constants and variables, each with or without `!`, written one after another."""
+    """Parses the value of one slot: a sequence of constants and variables, each with or without `!`."""
     tests: list[tuple[Slot, str, str]] = []
     while rest:
         for piece, sign in _PIECES:
@@ -110,14 +110,14 @@ def _pieces(slot: Slot, rest: str, text: str) -> list[tuple[Slot, str, str]]:
 
 
 class _Reader:
-    """Turns written patterns into conditions; it remembers which variables have been bound on the way."""
+    """Converts patterns to conditions, and tracks which variables have been bound so far."""
 
     def __init__(self, bound: Mapping[str, Any] | None) -> None:
         self.bound: Mapping[str, Any] = bound or {}
         self.seen: set[str] = set()
         self.first: list[Condition] = []
         self.named_by_variable: list[Condition] = []
-        """Tests of slots whose names are variables; these must have their values by then."""
+        """Tests of slots named by variables, which must be bound before."""
         self.last: list[Condition] = []
 
     def read(self, name: str | None, pattern: object) -> None:
@@ -153,21 +153,21 @@ class _Reader:
 
 
 def slot_named(value: object) -> Slot:
-    """Returns the slot that a variable's value names: a number for digits, as in a pattern's text."""
+    """Returns the slot named by a variable's value: a number for digits, as in a pattern's text."""
     text = as_text(value)
     return int(text) if text.isdecimal() else text
 
 
 def conditions(patterns: object, bound: Mapping[str, Any] | None = None) -> tuple[Condition, ...]:
-    """Reads a production's patterns (a dict of name to pattern), or one pattern for one object.
+    """Parses a production's patterns (a dict of name to pattern), or one pattern for one object.
 
     Args:
-        patterns: Each pattern is text, None (nothing there), a function `f(object, bindings)`, a mapping of slots
-            to values, or a tuple or list of these, all of which must hold.
-        bound: Variables that have a value already; their names in a pattern stand for it.
+        patterns: Each pattern is text, None (empty), a function `f(object, bindings)`, a mapping of slots to values, or a
+            tuple or list of these, all of which must hold.
+        bound: The values of variables that are bound already, which replace their names in a pattern.
 
     Raises:
-        PatternException: If a text is no pattern.
+        PatternException: If a text is not a pattern.
     """
     reader = _Reader(bound)
     named: Mapping[Any, object] = (
@@ -180,7 +180,7 @@ def conditions(patterns: object, bound: Mapping[str, Any] | None = None) -> tupl
 
 
 def get_item(target: Any, key: Slot) -> Any:
-    """Returns `target[key]`, or the attribute of that name where the target has no items; MISSING for neither."""
+    """Returns `target[key]`, or the attribute of that name if the target has no items; MISSING if there is neither."""
     try:
         return target[key]
     except (KeyError, IndexError):
@@ -190,7 +190,7 @@ def get_item(target: Any, key: Slot) -> Any:
 
 
 def get_attribute(target: Any, name: str) -> Any:
-    """Returns an attribute, or MISSING where there is none or a property cannot tell it now."""
+    """Returns an attribute, or MISSING if there is none or a property fails."""
     try:
         return getattr(target, name)
     except (AttributeError, TypeError, KeyError):
@@ -198,7 +198,7 @@ def get_attribute(target: Any, name: str) -> Any:
 
 
 def look_up(target: Any, key: Slot) -> Any:
-    """Follows a slot's name, which may be a dotted path, from `target`; MISSING where it leads nowhere."""
+    """Returns the value of a slot, whose name may be a dotted path, in `target`; MISSING if there is none."""
     if isinstance(key, str) and "." in key:
         *path, key = key.split(".")
         for name in path:
@@ -209,7 +209,7 @@ def look_up(target: Any, key: Slot) -> Any:
 
 
 def is_empty(target: Any) -> bool:
-    """Tells whether an object or buffer counts as empty: equal to None, or of length 0."""
+    """Returns whether an object or buffer is empty: equal to None, or of length 0."""
     try:
         return bool(target == None or len(target) == 0)  # noqa: E711 - buffers define what equals None
     except TypeError:
@@ -217,12 +217,12 @@ def is_empty(target: Any) -> bool:
 
 
 def holds_empty(target: Any, name: str | None) -> bool:
-    """Tells whether the pattern None holds; of a request's own object only None itself is empty."""
+    """Returns whether the pattern None holds; in a request, only None itself is empty."""
     return bool(target == None) if name is None else is_empty(target)  # noqa: E711
 
 
 def calls(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindings) -> bool:
-    """Asks a modeller's function; only a result equal to False means no, and so does an error that a missing slot causes."""
+    """Calls a modeller's function and returns whether it agrees; a result equal to False, or an error from a missing slot, is a no."""
     try:
         return function(target, bindings) != False  # noqa: E712 - None means yes
     except (AttributeError, TypeError, KeyError):
@@ -230,15 +230,15 @@ def calls(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindi
 
 
 class Pattern:
-    """A compiled pattern for one object: a chunk, an object of the environment, or a dict of such by name.
+    """A compiled pattern for one object: a chunk, an object of the environment, or a dict of these by name.
 
     Args:
         patterns: See `conditions`.
-        bound: Variables that have a value already.
-        partial: What a mismatch costs (`Partial`), where similar values may match.
+        bound: The values of variables that are bound already.
+        partial: Computes the penalty of a mismatch (`Partial`) if similar values may match.
 
     Raises:
-        PatternException: If a text is no pattern.
+        PatternException: If a text is not a pattern.
     """
 
     def __init__(self, patterns: object, bound: Mapping[str, Any] | None = None, partial: Any = None) -> None:
@@ -249,9 +249,9 @@ class Pattern:
         return f"<Pattern {' '.join(str(condition) for condition in self.conditions)}>"
 
     def match(self, obj: Any) -> Bindings | None:
-        """Returns the variables that a match binds (maybe none), or None for no match.
+        """Returns the variables that a match binds (possibly none), or None for no match.
 
-        With `partial` set, the penalty of all mismatches is left in `obj._partial`.
+        With `partial` set, the sum of all penalties is stored in `obj._partial`.
         """
         bindings: Bindings = {}
         if self.partial is not None:
@@ -291,9 +291,9 @@ class Pattern:
         return text == value or (self.partial is not None and self._forgives(obj, key, value, text, negated=False))
 
     def _forgives(self, obj: Any, key: Slot, wanted: Any, found: str, negated: bool) -> bool:
-        """Charges a mismatch to `obj._partial`, and tells whether it may be forgiven at all.
+        """Adds the penalty of a mismatch to `obj._partial`, and returns whether partial matching allows it.
 
-        A modeller's own `match` may know nothing of the values (a KeyError, or None): that is no match.
+        A modeller's own `match` may not know the values (a KeyError, or None): that is no match.
         """
         ask = getattr(self.partial, "negated", None) if negated else self.partial.match
         if ask is None:

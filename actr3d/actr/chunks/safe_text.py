@@ -1,4 +1,4 @@
-"""Values as text, as far as Python alone knows how to write them: no code of the modeller's is run."""
+"""Converts values to text without running any of the modeller's code."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from actr3d.actr.chunks.chunk import LASTING_TYPES, as_text
 
 _COLLECTIONS = (tuple, list, set, frozenset)
 DEEPEST = 8
-"""How many levels of collections in collections are looked through; one may contain itself."""
+"""The maximum depth of nested collections that are examined; a collection may contain itself."""
 
 
 def plain_text(value: Any) -> str | None:
-    """Returns a value as patterns compare it (`as_text`); None where only code can tell what it looks like."""
+    """Returns a value as patterns compare it (`as_text`); None if only the modeller's code can convert it."""
     if type(value) in LASTING_TYPES:
         return as_text(value)
     if isinstance(value, str):
@@ -25,7 +25,7 @@ def plain_text(value: Any) -> str | None:
 
 
 def _prints_plainly(value: Any, depth: int = 0) -> bool:
-    """Tells whether no modeller's code takes part in printing a value."""
+    """Returns whether printing a value runs none of the modeller's code."""
     if type(value) in LASTING_TYPES:
         return True
     if depth > DEEPEST:

@@ -161,7 +161,7 @@ def _part(fullname: str) -> str | None:
 
 
 def is_old_name(name: str) -> bool:
-    """Tells whether a dotted name is one of the old library."""
+    """Returns whether a dotted name is one of the old library."""
     return name.partition(".")[0] in ROOTS
 
 

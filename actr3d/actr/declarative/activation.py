@@ -1,7 +1,6 @@
-"""Modules that give a memory's chunks their activation, A = B + S + noise + ...
+"""Activation modules: compute the activation of a memory's chunks, A = B + S + noise + ...
 
-Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's activation is the sum of what all of them
-say of it.
+Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's activation is the sum of the parts of all modules.
 """
 
 from __future__ import annotations
@@ -55,33 +54,33 @@ class MemorySubModule(WithParameters):
             parent.add_adaptor(self)
 
     def create(self, chunk: Any, **keys: Any) -> None:
-        """Takes in a new chunk, before it joins the memory."""
+        """Is called for each new chunk, before it is added to the memory."""
 
     def merge(self, chunk: Any, **keys: Any) -> None:
-        """Is told that a chunk was added again."""
+        """Is called when a chunk is added again."""
 
     def matched(self, chunks: list[Any]) -> None:
-        """Is told which chunks match a request."""
+        """Is called with the chunks that match a request."""
 
     def activation(self, chunk: Any) -> float:
         """Returns this module's part of a chunk's activation.
 
         Raises:
-            ChunkError: If the module needs what only `memory.add` could have told it of the chunk.
+            ChunkError: If the module needs information about the chunk that only `memory.add` provides.
         """
         return 0
 
     def recalled(self, chunk: Any) -> None:
-        """Is told that a chunk has been retrieved."""
+        """Is called when a chunk has been retrieved."""
 
     def now(self) -> float:
-        """Returns the present [s]."""
+        """Returns the current time [s]."""
         parent = self.parent
         return 0 if parent is None or not is_converted(parent) else parent.now()
 
     @property
     def rules(self) -> Profile:
-        """The numbers this module goes by."""
+        """The profile of this module."""
         return PYTHON_ACTR if self.parent is None else self.parent.rules
 
 
@@ -90,8 +89,8 @@ class DMNoise(MemorySubModule):
 
     Args:
         memory: The memory.
-        noise: s of what is drawn anew each time.
-        baseNoise: s of what is drawn once for each chunk.
+        noise: s of the noise drawn at each request.
+        baseNoise: s of the noise drawn once for each chunk.
     """
 
     @named_parameters
@@ -101,8 +100,8 @@ class DMNoise(MemorySubModule):
         self.baseNoise = baseNoise
 
     def create(self, chunk: Any, **keys: Any) -> None:
-        # A chunk added before there is a model (in a class's body) gets its base noise when it is first looked at, from
-        # that model's own random numbers.
+        # A chunk added before there is a model (in a class's body) gets its base noise when its activation is first computed,
+        # from that model's random numbers.
         if self.parent is not None and is_converted(self.parent):
             chunk.baseNoise = self.logisticNoise(self.baseNoise)
 
@@ -121,7 +120,7 @@ class DMNoise(MemorySubModule):
 
 
 class ByProfile:
-    """Stands for «as the profile has it»."""
+    """The type of a value that means «as in the profile»."""
 
     def __repr__(self) -> str:
         return "by profile"
@@ -137,13 +136,13 @@ BY_PROFILE: Final = ByProfile()
 
 
 class DMBaseLevel(MemorySubModule):
-    """Base-level activation: the more often and the more lately a chunk was added, the more active it is.
+    """Base-level activation: the more often and the more recently a chunk was added, the more active it is.
 
     Args:
         memory: The memory.
         decay: d; None for no base level.
         limit: None for the exact form B = ln sum t_j^-d; 0 for the optimized form ln(n / (1 - d)) - d ln L; k for the
-            hybrid form, which keeps the k latest times. Unless given, the profile's: exact, or optimized in ACT-R 7.
+            hybrid form, which keeps the k latest times. By default the profile's: exact, or optimized in ACT-R 7.
 
     Source: Anderson & Lebiere (1998); hybrid form: Petrov (2006).
     """
@@ -156,7 +155,7 @@ class DMBaseLevel(MemorySubModule):
 
     @property
     def limit(self) -> int | None:
-        """How many times are kept; None for all."""
+        """The number of times that are kept; None for all."""
         if isinstance(self._limit, ByProfile):
             return 0 if self.rules.optimized_learning else None
         return self._limit
@@ -166,7 +165,7 @@ class DMBaseLevel(MemorySubModule):
         self._limit = value
 
     def create(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
-        # Both are kept, because a chunk that is added in a class's body does not know yet which profile it will live by.
+        # Both are kept, because the profile is not known yet for a chunk that is added in a class's body.
         chunk.creation = self.now()
         chunk.first = self.now() - time
         chunk.times = [chunk.first]
@@ -210,20 +209,20 @@ class DMBaseLevel(MemorySubModule):
             if rules.optimized_learning:
                 latest = None if latest is None else max(latest, youngest)
                 total += _forgotten(forgotten, max(now - chunk.first, youngest), latest, d, youngest)
-            else:  # it also counts a chunk's life from when it was added, even where it is said to be older
+            else:  # it also counts a chunk's life from when it was added, even if it is declared to be older
                 total += _forgotten(forgotten, now - chunk.creation, latest, d, youngest)
         return math.log(total) if total > 0 else -math.inf
 
 
 def _forgotten(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
-    """Returns what references whose times are not kept add up to, if they were spread evenly.
+    """Returns the sum over references whose times are not kept, as if they were spread evenly.
 
     Args:
-        count: How many they are, n - k.
+        count: Their number, n - k.
         oldest: The age of the first reference, t_n [s].
-        latest: The age of the oldest kept one, t_k [s]; None for none kept, which are then spread up to now.
+        latest: The age of the oldest kept one, t_k [s]; None if none are kept: they are then spread up to now.
         d: The decay.
-        youngest: What an age counts as where there is no number for it: 0, or less than 0 [s].
+        youngest: The age that is used instead of 0 or a negative age [s].
     """
     if latest is None:
         latest = 0.0 if d < 1 else youngest

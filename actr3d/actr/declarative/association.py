@@ -1,4 +1,4 @@
-"""Activation from what went before: learned associations, and inhibition of what was just used."""
+"""Activation from earlier use: learned associations, and inhibition of recently used chunks."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class DMAssociate(MemorySubModule):
 
     Args:
         memory: The memory.
-        buffer: Whose chunk is the context.
-        weight: What the sum of the links' base levels is multiplied with.
-        decay: Of the links' base level.
+        buffer: The buffer whose chunk is the context.
+        weight: The factor of the sum of the links' base levels.
+        decay: The decay of the links' base level.
         limit: As in `DMBaseLevel`.
     """
 
@@ -39,7 +39,7 @@ class DMAssociate(MemorySubModule):
         self.weight = weight
 
     def set_association(self, pre: Any, post: Any, baselevel: float) -> None:
-        """Fixes the strength of the link from one value to another."""
+        """Sets the strength of the link from one value to another."""
         self._link(pre, post).baselevel = baselevel
 
     def _link(self, pre: Any, post: Any) -> Any:
@@ -51,7 +51,7 @@ class DMAssociate(MemorySubModule):
         return link
 
     def _time(self) -> DMBaseLevel:
-        """Returns the links' base level, on the memory's clock; in Python ACT-R 1.9.5 it has none: no time passes for links."""
+        """Returns the links' base level, with the memory's clock; in python_actr 1.9.5 without a clock: no time passes for links."""
         self._base.parent = None if self.rules is PYTHON_ACTR else self.parent
         return self._base
 
@@ -83,12 +83,12 @@ class DMAssociate(MemorySubModule):
 
 
 class DMInhibition(MemorySubModule):
-    """Inhibits what was used lately: -ln(1 + t^-decayScale / timeScale), t since its latest use [s].
+    """Inhibits recently used chunks: -ln(1 + t^-decayScale / timeScale), t since the latest use [s].
 
     Args:
         memory: The memory.
-        decayScale: How quickly inhibition goes.
-        timeScale: How long it lasts [s].
+        decayScale: The decay rate of the inhibition.
+        timeScale: Its duration [s].
 
     Source: Lebiere & Best (2009), Proceedings of the Cognitive Science Society.
     """
@@ -112,5 +112,5 @@ class DMInhibition(MemorySubModule):
         age = self.now() - latest
         try:
             return -math.log(1 + math.pow(age, -self.decayScale) / self.timeScale)
-        except ValueError:  # no number for an age of 0, nor for most ages below
+        except ValueError:  # undefined for an age of 0, and for most negative ages
             return -math.log(1 + math.pow(self.rules.youngest_age, -self.decayScale) / self.timeScale)

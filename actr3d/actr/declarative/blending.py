@@ -20,28 +20,28 @@ class BlendingMemory(Memory):
     In Python ACT-R each numeric slot holds the mean over all matching chunks with the same slots, the other slots are the most
     active chunk's, t is 1, and the time is the most active chunk's.
 
-    In ACT-R 7 each slot that was not asked for holds a compromise, and the others what was asked for:
+    In ACT-R 7 the requested slots have the requested values, and each other slot a compromise:
 
-    - Where all values are numbers, the sum of p times the value; chunks without the slot add nothing, and nothing is shared out
-      for them.
-    - Otherwise the value V with the least sum of p times the squared similarity of V to the chunk's value. The candidates are the
-      values of the matching chunks, and, where all of these are words, every value that the model says is similar to one of them,
-      even if no chunk has it. Of equally good candidates the first counts: in the order in which chunks came into memory, then
-      values in the order in which similarities were said.
-    - A missing value (none, or None) counts for nothing.
+    - If all values are numbers, the sum of p times the value; chunks without the slot add nothing, and their weight is not
+      redistributed.
+    - Otherwise the value V with the smallest sum of p times the squared similarity of V to the chunk's value. The candidates are
+      the values of the matching chunks, and, if all of these are words, every value declared similar to one of them, even if no
+      chunk has it. The first of equally good candidates wins: in the order in which chunks were added to the memory, then
+      values in the order in which similarities were declared.
+    - A missing value (none, or None) is ignored.
 
     There t is sqrt(2) times the activation noise, and the time comes from ln sum exp A. Similarities are those of the `Partial`
-    that serves the request, or of the memory's first one (`Partial(memory, strength=None)` for blending alone); without one,
-    different values have -1.
+    used for the request, or of the memory's first one (`Partial(memory, strength=None)` for blending only); without one,
+    the similarity of different values is -1.
 
-    ACT-R 7 looks for further candidates among the chunks in memory that have the same slots as those that the values name. Here
-    values are words, so the model's similarities say which others there are. Those it says nothing of could not win.
+    ACT-R 7 finds further candidates among the chunks in memory that have the same slots as the chunks that the values name. Here
+    values are words, so the declared similarities name the further candidates; words without any could not win.
 
     Source: Lebiere (1999), Kognitionswissenschaft 8; ACT-R 7, extras/blending/blending-read-me.txt, methods a to c.
     """
 
     temperature: float | None
-    """t; the profile's where it is None or was never set."""
+    """t; the profile's if it is None or was never set."""
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         matches = [match for match in matches if not math.isnan(match.activation)]
@@ -76,7 +76,7 @@ class BlendingMemory(Memory):
         return blend
 
     def _weights(self, matches: Sequence[Any]) -> list[float]:
-        """Returns what each chunk weighs, the most active one 1."""
+        """Returns the weight of each chunk, relative to the most active one."""
         t = self._temperature()
         largest = max(match.activation for match in matches)
         return [1.0 if m.activation == largest else math.exp((m.activation - largest) / t) for m in matches]
@@ -86,8 +86,7 @@ class BlendingMemory(Memory):
     def _mix(self, blend: Chunk, numeric: Sequence[Any], matches: Sequence[Any]) -> None:
         """Sets the numeric slots of a blend."""
         t = self._temperature()
-        # exp is taken relative to the largest only where it would leave the range of numbers, so that sums round as they
-        # always did.
+        # exp is relative to the largest only where it would overflow, so that sums round as in python_actr 1.9.5.
         largest = max(match.activation for match in matches) / t
         shift = largest if abs(largest) > 600 and math.isfinite(largest) else 0.0
         sums = dict.fromkeys(numeric, 0.0)
@@ -102,7 +101,7 @@ class BlendingMemory(Memory):
                 sums[slot] += value * weight
             total += weight
         for slot in numeric:
-            if total > 0:  # else no chunk has any activation at all, and the most active one's values stay
+            if total > 0:  # otherwise no chunk has any activation, and the most active one's values stay
                 blend[slot] = sums[slot] / total
 
     # -- in both
@@ -131,7 +130,7 @@ class BlendingMemory(Memory):
 
 
 def _number(value: Any) -> float | None:
-    """Returns a slot's value as a number, or None where it is none."""
+    """Returns a slot's value as a number, or None if it is not one."""
     try:
         return float(value)
     except (TypeError, ValueError):
@@ -139,12 +138,12 @@ def _number(value: Any) -> float | None:
 
 
 def _blended(held: Sequence[tuple[Any, float]], partial: Partial | None, total: float) -> Any:
-    """Returns the compromise of the values of one slot, as ACT-R 7 has it.
+    """Returns the compromise of the values of one slot, as in ACT-R 7.
 
     Args:
-        held: The values that matching chunks have, and what these chunks weigh.
-        partial: What says how similar values are.
-        total: What all matching chunks weigh.
+        held: The values of matching chunks, and the weights of these chunks.
+        partial: The similarities of values.
+        total: The total weight of all matching chunks.
     """
     numbers = [None if names_a_chunk(value) or isinstance(value, bool) else _number(value) for value, _ in held]
     if None not in numbers:
@@ -167,5 +166,5 @@ def _blended(held: Sequence[tuple[Any, float]], partial: Partial | None, total: 
 
 
 def _similarity(partial: Partial | None, a: str, b: str) -> float:
-    """Returns how similar two values are: 0 where they are the same, and -1 where nothing says otherwise."""
+    """Returns the similarity of two values: 0 if they are equal, and -1 by default."""
     return 0.0 if a == b else -1.0 if partial is None else partial.between(a, b)

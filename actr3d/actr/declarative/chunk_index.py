@@ -1,4 +1,4 @@
-"""The chunks of a declarative memory, found by their slots."""
+"""The list of chunks of a declarative memory, with indexes by slot and value."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class ListObserver(Protocol):
 
     @property
     def listening(self) -> bool:
-        """Whether a trace records changes at present."""
+        """Whether a trace records changes now."""
         ...
 
     def changed(self, by: str, before: list[Chunk], after: list[Chunk]) -> None:
@@ -25,7 +25,7 @@ class ListObserver(Protocol):
 
 
 def _mutator(name: str) -> Callable[..., Any]:
-    """Makes a method that does what the list's own does, and then forgets the indexes."""
+    """Makes a method that does the same as the list's, and then discards the indexes."""
     original = getattr(list, name)
 
     def method(self: ChunkStore, *args: Any, **keys: Any) -> Any:
@@ -44,26 +44,26 @@ def _mutator(name: str) -> Callable[..., Any]:
 
 
 class ChunkStore(list[Chunk]):
-    """A list of chunks in the order they came in, with an index for each slot that was ever asked about.
+    """A list of chunks in the order in which they were added, with an index for each slot that was ever searched.
 
-    It may be read and changed like any list; a change other than `keep` throws the indexes away, and they are made
-    anew when next needed.
+    It can be read and changed like any list; a change other than `keep` discards the indexes, and they are built again when
+    next needed.
     """
 
     observer: ListObserver | None = None
-    """Records what is done to the list by hand; None for nobody."""
+    """Records changes of the list by the model's code; None for no observer."""
 
     def __init__(self, chunks: Iterable[Chunk] = ()) -> None:
         super().__init__(chunks)
         self._slots: dict[Slot, Postings] = {}
         self._holders: dict[Slot, list[Chunk]] = {}
         self._changeable: set[Slot] = set()
-        """The indexed slots in which some chunk has a value that may change by itself, so that it is compared one by one."""
+        """The indexed slots in which some chunk has a mutable value, so that chunks are compared one by one."""
         self._equals: dict[frozenset[Any] | None, list[Chunk]] | None = None
-        """Chunks with the same items; under None those that hold a value that may change by itself."""
+        """The chunks by their items; under None those with a mutable value."""
 
     def forget_order(self) -> None:
-        """Throws the indexes away: chunks came, went or changed."""
+        """Discards the indexes, because chunks were added, removed or changed."""
         self._slots.clear()
         self._holders.clear()
         self._changeable.clear()
@@ -91,7 +91,7 @@ class ChunkStore(list[Chunk]):
         return (ChunkStore, (list(self),))
 
     def keep(self, chunk: Chunk) -> None:
-        """Appends a chunk and enters it in the indexes there are."""
+        """Appends a chunk and adds it to the existing indexes."""
         super().append(chunk)
         self._adopt(chunk)
         for slot, postings in self._slots.items():
@@ -103,7 +103,7 @@ class ChunkStore(list[Chunk]):
             self._equals.setdefault(_likeness(chunk), []).append(chunk)
 
     def holds(self, chunk: object) -> bool:
-        """Tells whether a chunk is known to lie in here itself, not only one that is equal to it."""
+        """Returns whether this very chunk, not only an equal one, is known to be in the list."""
         return isinstance(chunk, Chunk) and any(store is self for store in chunk.stores)
 
     def equal_to(self, chunk: Chunk) -> Chunk | None:
@@ -123,9 +123,9 @@ class ChunkStore(list[Chunk]):
         return alike[0] if alike else changeable[0] if changeable else None
 
     def with_value(self, slot: Slot, text: str) -> list[Chunk]:
-        """Returns, in order, all chunks whose value in `slot` reads as `text`, maybe among others that have the slot.
+        """Returns, in order, all chunks whose value in `slot` has the text `text`, possibly among others that have the slot.
 
-        The list is not to be changed by the caller.
+        The caller must not change the list.
         """
         postings = self._slots.get(slot)
         if postings is None:
@@ -136,7 +136,7 @@ class ChunkStore(list[Chunk]):
         return self.with_slot(slot) if slot in self._changeable else postings.get(text, [])
 
     def with_slot(self, slot: Slot) -> list[Chunk]:
-        """Returns, in order, the chunks that have the slot at all; not to be changed by the caller."""
+        """Returns, in order, the chunks that have the slot; the caller must not change the list."""
         holders = self._holders.get(slot)
         if holders is None:
             holders = self._holders[slot] = []
@@ -147,7 +147,7 @@ class ChunkStore(list[Chunk]):
         return holders
 
     def _post(self, chunk: Chunk, slot: Slot, postings: Postings) -> None:
-        """Enters a chunk in the index of one slot."""
+        """Adds a chunk to the index of one slot."""
         if slot in chunk:
             value = chunk[slot]
             if type(value) not in LASTING_TYPES:
@@ -155,13 +155,13 @@ class ChunkStore(list[Chunk]):
             postings.setdefault(as_text(value), []).append(chunk)
 
     def _adopt(self, chunk: Chunk) -> None:
-        """Makes a chunk tell this store of its changes."""
+        """Registers the list with a chunk, to be notified of its changes."""
         if not self.holds(chunk):
             chunk.stores = (*chunk.stores, self)
 
 
 def _likeness(chunk: Chunk) -> frozenset[Any] | None:
-    """Returns a key that equal chunks share, their items; None where a value may change by itself."""
+    """Returns the items of a chunk as a key that equal chunks share; None if a value is mutable."""
     for value in chunk.values():
         if type(value) not in LASTING_TYPES:
             return None

@@ -1,7 +1,7 @@
-"""Searches a memory for chunks: a pattern with the values its variables have, answered from the indexes.
+"""Searches a memory's chunks for a pattern, using the indexes.
 
-Most searches name plain slots; those are answered from the index of the rarest value asked for. Whatever else a
-pattern may say (functions, dotted paths, similar values) is left to `Pattern`.
+Most searches name plain slots; these use the index of the rarest requested value. Everything else in a pattern (functions,
+dotted paths, similar values) is tested by `Pattern`.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from actr3d.actr.declarative.partial_matching import Partial
 
 
 class Search(Protocol):
-    """What a memory is asked for."""
+    """A search for chunks."""
 
     @property
     def partial(self) -> Partial | None:
-        """What mismatches cost, where similar values may match."""
+        """Computes the penalties of mismatches, if similar values may match."""
         ...
 
     @property
     def equal(self) -> Sequence[tuple[Slot, str]]:
-        """The slots that must have a certain value, with its text."""
+        """The slots that must have certain values, with the text of these."""
         ...
 
     def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order they came."""
+        """Returns the chunks that match, in the order in which they were added."""
         ...
 
 
 @lru_cache(maxsize=4096)
 def _variables(text: str) -> tuple[str, ...] | None:
-    """Returns the variables that a request's text names; None where it names slots that only `Pattern` can find."""
+    """Returns the variables in a request's text; None if it names slots that only `Pattern` can find."""
     tests = parse(text)
     for slot, _, _ in tests:
         if isinstance(slot, str) and (slot[0] == "?" or "." in slot):
@@ -45,21 +45,21 @@ def _variables(text: str) -> tuple[str, ...] | None:
 
 
 class _Plan:
-    """What a request asks for, as far as its text and the names of the variables that have a value tell.
+    """The tests of a request, as far as they follow from its text and the names of the bound variables.
 
     Args:
-        tests: What is asked, as (slot, sign, word); see `pattern.parse`.
-        known: The variables that have a value.
+        tests: The tests as (slot, sign, word); see `pattern.parse`.
+        known: The bound variables.
     """
 
     __slots__ = ("differ", "equal", "more", "present", "same", "unequal", "unknown")
 
     def __init__(self, tests: Sequence[tuple[Slot, str, str]], known: Collection[str]) -> None:
         self.equal: list[tuple[Slot, str, bool]] = []
-        """Slots and the texts they must have; True where it is the value of the variable of that name."""
+        """Slots and the texts that they must have; True if the text is the name of a bound variable."""
         self.unequal: list[tuple[Slot, str, bool]] = []
         self.unknown: dict[str, Slot] = {}
-        """Where each variable without a value stands first."""
+        """The first slot of each unbound variable."""
         self.same: list[tuple[Slot, str]] = []
         self.differ: list[tuple[Slot, str]] = []
         for slot, sign, word in tests:
@@ -75,7 +75,7 @@ class _Plan:
                 self.unknown[word] = slot
         self.present = tuple(self.unknown.values())
         self.more = bool(self.unequal or self.same or self.differ)
-        """Whether there are tests beyond equal texts and slots that must be there."""
+        """Whether there are tests other than for equal texts and for the presence of slots."""
 
 
 @lru_cache(maxsize=4096)
@@ -87,8 +87,8 @@ class PlainSearch:
     """A search that names plain slots only.
 
     Args:
-        plan: What is asked.
-        bound: The variables that have a value.
+        plan: The tests.
+        bound: The values of the bound variables.
     """
 
     __slots__ = ("_plan", "equal", "partial", "unequal")
@@ -109,7 +109,7 @@ class PlainSearch:
         return " ".join(words)
 
     def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order they came."""
+        """Returns the chunks that match, in the order in which they were added."""
         found: list[Chunk] | None = None
         for slot, text in self.equal:
             chunks = store.with_value(slot, text)
@@ -151,7 +151,7 @@ class PlainSearch:
 
 
 def _with_values(tests: Sequence[tuple[Slot, str, bool]], bound: Mapping[str, Any]) -> list[tuple[Slot, str]]:
-    """Returns slots and texts, with values in the place of variables."""
+    """Returns slots and texts, with variables replaced by their values."""
     found: list[tuple[Slot, str]] = []
     for slot, word, is_variable in tests:
         if is_variable:
@@ -168,12 +168,12 @@ class PatternSearch:
     """Any other search.
 
     Args:
-        pattern: What is asked for; a mapping stands for its slots and values.
-        bound: The variables that have a value.
-        partial: What mismatches cost, where similar values may match.
+        pattern: The pattern; a mapping means its slots and values.
+        bound: The values of the bound variables.
+        partial: Computes the penalties of mismatches, if similar values may match.
 
     Raises:
-        PatternException: If a text is no pattern.
+        PatternException: If a text is not a pattern.
     """
 
     def __init__(self, pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> None:
@@ -188,7 +188,7 @@ class PatternSearch:
         return [(slot, value) for op, _, slot, value in self._pattern.conditions if op == "is" and _is_plain(slot)]
 
     def among(self, store: ChunkStore) -> list[Chunk]:
-        """Returns the chunks that match, in the order they came."""
+        """Returns the chunks that match, in the order in which they were added."""
         chunks: list[Chunk] = store
         for op, _, slot, value in self._pattern.conditions:
             if op in ("call", "empty") or not _is_plain(slot):
@@ -201,15 +201,15 @@ class PatternSearch:
 
 
 def _is_plain(slot: Slot) -> bool:
-    """Tells whether a slot is named itself, not by a variable or a path."""
+    """Returns whether a slot is given by its name, not by a variable or a path."""
     return not (isinstance(slot, str) and (slot[:1] == "?" or "." in slot))
 
 
 def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> Search:
-    """Returns the quickest search for a pattern.
+    """Returns the fastest search for a pattern.
 
     Raises:
-        PatternException: If a text is no pattern.
+        PatternException: If a text is not a pattern.
     """
     if partial is None and type(pattern) is str:
         variables = _variables(pattern)

@@ -1,4 +1,4 @@
-"""Fingers of instantiation: what was retrieved or attended to lately."""
+"""Fingers of instantiation: mark what was retrieved or attended recently."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from actr3d.actr.kernel.profile import PYTHON_ACTR
 
 
 class Finst:
-    """Marks a few things for a while.
+    """Marks a limited number of things for a limited time.
 
-    Marks are taken away when somebody looks. By Python ACT-R's numbers one event besides keeps a run going until the last
-    has expired; where simultaneous events come as in python_actr 1.9.5, each mark is taken away by an event of its own, as
-    there. By ACT-R 7's there are no such events.
+    Expired marks are removed when the marks are read. In the profile of Python ACT-R one event keeps a run going until the last
+    mark has expired; in programs written for python_actr, each mark is removed by its own event, so that simultaneous events
+    happen in the same order as in version 1.9.5. In the profile of ACT-R 7 there are no such events.
 
     Args:
-        parent: The module whose clock counts.
-        size: How many marks there are.
-        time: How long a mark stays [s].
+        parent: The module whose clock is used.
+        size: The maximum number of marks.
+        time: The lifetime of a mark [s].
     """
 
     def __init__(self, parent: Model, size: int = 4, time: float = 3.0) -> None:
@@ -34,17 +34,17 @@ class Finst:
 
     @property
     def obj(self) -> list[Any]:
-        """What is marked, the oldest mark first."""
+        """The marked things, the oldest mark first."""
         if self._ends or self._fresh:
             self._bring_up_to_date()
         return self._marks
 
     def contains(self, obj: Any) -> bool:
-        """Tells whether a thing is marked."""
+        """Returns whether a thing is marked."""
         return obj in self.obj
 
     def add(self, obj: Any) -> None:
-        """Marks a thing; the oldest mark goes where there are too many."""
+        """Marks a thing; the oldest mark is removed if there are too many."""
         if self.size == 0:
             return
         sch = self.parent.sch
@@ -59,9 +59,9 @@ class Finst:
             sch.call_after(self.time, self.remove, (obj,))
 
     def add_after(self, obj: Any) -> None:
-        """Marks a thing once the present event is over: what a production still asks for does not see the mark.
+        """Marks a thing after the current event: further requests of the same production do not see the mark.
 
-        Only for runs in which simultaneous events happen in the order they were scheduled.
+        Only for runs in which simultaneous events happen in the order in which they were scheduled.
         """
         if self.size == 0:
             return
@@ -74,13 +74,13 @@ class Finst:
         self._watch(end)
 
     def remove(self, obj: Any) -> None:
-        """Takes the oldest mark of a thing away."""
+        """Removes the oldest mark of a thing."""
         if obj in self._marks:
             self._marks.remove(obj)
 
     @property
     def _awaited(self) -> bool:
-        """Whether a run goes on until marks have expired."""
+        """Whether a run continues until all marks have expired."""
         return (self.parent._profile or PYTHON_ACTR).awaits_expiry
 
     def _mark(self, obj: Any) -> None:
@@ -89,14 +89,14 @@ class Finst:
             del self._marks[0]
 
     def _expect(self, obj: Any, end: int) -> None:
-        """Notes when a mark will expire."""
-        if self._ends and self._ends[-1][0] > end:  # the time that marks stay was shortened
+        """Records when a mark will expire."""
+        if self._ends and self._ends[-1][0] > end:  # the lifetime of marks was shortened
             self._ends = deque(sorted([*self._ends, (end, obj)], key=lambda mark: mark[0]))
         else:
             self._ends.append((end, obj))
 
     def _bring_up_to_date(self) -> None:
-        """Takes in the marks of earlier events, and takes away those whose time is over."""
+        """Adds the marks of earlier events, and removes expired ones."""
         sch = self.parent.sch
         if self._fresh and self._fresh_step != sch.step:
             fresh, self._fresh = self._fresh, []
@@ -112,7 +112,7 @@ class Finst:
             self.remove(ends.popleft()[1])
 
     def _watch(self, end: int) -> None:
-        """Keeps the run going until the last mark has expired, where it is to be awaited."""
+        """Keeps the run going until the last mark has expired, if the profile requires it."""
         if not self._watched and self._awaited:
             self._watched = True
             self.parent.sch.call_at(end, self._look)

@@ -1,4 +1,4 @@
-"""Declarative memory: requests, retrievals and failures, and who won and why."""
+"""Declarative memory: chunks, requests, retrievals and failures."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ from actr3d.trace import Trace
 
 
 class Memory(WithParameters, Model):
-    """Declarative memory: keeps chunks, and brings the most active one that matches a request to a buffer.
+    """Declarative memory: stores chunks, and puts the most active one that matches a request into a buffer.
 
     Args:
-        buffer: Where retrieved chunks go.
+        buffer: The buffer for retrieved chunks.
         latency: F in the retrieval time F exp(-A) [s]; None for the profile's.
-        threshold: The least activation that can be retrieved; None for no limit.
-        maximum_time: The longest a retrieval or its failure may take [s].
-        finst_size: How many retrieved chunks are remembered as such.
-        finst_time: For how long [s].
+        threshold: The minimum activation for retrieval; None for no minimum.
+        maximum_time: The maximum duration of a retrieval or its failure [s].
+        finst_size: The number of retrieved chunks that are marked as such.
+        finst_time: The lifetime of these marks [s].
         profile: «python-actr» or «act-r-7»; None for the agent's.
 
     Raises:
@@ -76,11 +76,11 @@ class Memory(WithParameters, Model):
 
     @property
     def rules(self) -> Profile:
-        """The numbers this memory goes by: its own profile, else its agent's."""
+        """The profile of this memory: its own, or its agent's."""
         return self._profile or PYTHON_ACTR
 
     def _follow(self, profile: Profile | None) -> None:
-        """Takes over the agent's profile, where none was given, and tells buffers to hand over what leaves them."""
+        """Uses the agent's profile unless one was given, and registers to collect the chunks that leave buffers."""
         super()._follow(profile)
         self._own_chunks(self.dm)
         if not self._latency_given:
@@ -102,22 +102,22 @@ class Memory(WithParameters, Model):
             warn_of_slip(self, key)
         Model.__setattr__(self, key, value)
 
-    # -- what is known
+    # -- chunks
 
     def clear(self) -> None:
-        """Forgets everything."""
+        """Removes all chunks."""
         self.dm.clear()
 
     def add(self, chunk: Any, record: bool | None = None, **keys: Any) -> None:
-        """Adds a chunk, or strengthens an equal one that is known already.
+        """Adds a chunk, or strengthens an equal one in the memory.
 
         Args:
-            chunk: What makes a chunk; of a buffer, its chunk.
+            chunk: The contents of the chunk, or a buffer that holds it.
             record: Whether to log the chunk's activation whenever it is computed.
             keys: For the activation modules: `time` [s ago], `baselevel`, `fixed`.
 
         Raises:
-            ChunkError: If the contents make no chunk, or a variable is not bound.
+            ChunkError: If no chunk can be made from the contents, or a variable is not bound.
         """
         if self.error:
             self.error = False
@@ -130,7 +130,7 @@ class Memory(WithParameters, Model):
         new.record = record
 
     def _keep(self, new: Chunk, keys: Mapping[str, Any]) -> None:
-        """Takes a chunk in, or strengthens the equal one that is known already."""
+        """Adds a chunk, or strengthens the equal one in the memory."""
         known = self.dm.equal_to(new)
         if known is not None:
             for adaptor in self.adaptors:
@@ -142,7 +142,7 @@ class Memory(WithParameters, Model):
         self._trace_add(new, known is not None, keys)
 
     def _collect(self, chunk: Chunk) -> None:
-        """Takes in a chunk that left a buffer (ACT-R 7); unlike `add`, this does not take back that a request failed."""
+        """Adds a chunk that left a buffer (ACT-R 7); unlike `add`, this does not reset `error`."""
         self._keep(Chunk(chunk), {})
 
     def _bound(self) -> dict[str, Any] | None:
@@ -150,10 +150,10 @@ class Memory(WithParameters, Model):
         return None if sch is None else sch.bound
 
     def find_matching_chunks(self, pattern: Any, threshold: float | None = None) -> list[Chunk]:
-        """Returns the chunks that match a pattern, in the order they came; those of at least `threshold`, if given.
+        """Returns the chunks that match a pattern, in the order in which they were added; those of at least `threshold`, if given.
 
         Raises:
-            PatternException: If the text is no pattern.
+            PatternException: If the text is not a pattern.
         """
         found = search_for(pattern, self._bound(), None).among(self.dm)
         if threshold is not None:
@@ -163,18 +163,18 @@ class Memory(WithParameters, Model):
     # -- requests
 
     def request(self, pattern: Any, partial: Partial | None = None, require_new: bool = False) -> None:
-        """Asks for the most active chunk that matches.
+        """Requests the most active chunk that matches.
 
-        Activations are those of this moment. The chunk arrives in the buffer after `latency * exp(-A)`, or the buffer is
-        emptied and `error` set after `latency * exp(-threshold)`; a further request before that cancels this one.
+        Activations are computed now. The chunk arrives in the buffer after `latency * exp(-A)`, or the buffer is cleared and
+        `error` set after `latency * exp(-threshold)`; another request before that cancels this one.
 
         Args:
-            pattern: What to look for.
-            partial: Which similarities to allow for; the memory's first unless given. One without a strength allows for none.
-            require_new: Whether to leave out what has been retrieved lately.
+            pattern: The pattern of the chunk.
+            partial: The similarities to use; by default the memory's first. One without a strength permits no mismatch.
+            require_new: Whether to exclude recently retrieved chunks.
 
         Raises:
-            PatternException: If the text is no pattern.
+            PatternException: If the text is not a pattern.
         """
         partial = next((one for one in (self.partials if partial is None else [partial]) if _costs(one)), None)
         number = self._begin_request()
@@ -199,7 +199,7 @@ class Memory(WithParameters, Model):
         self._answer(number, chosen, record.latency, matches)
 
     def _begin_request(self) -> int:
-        """Numbers a new request; what earlier ones are still to bring will not arrive."""
+        """Starts a new request and returns its number; the answers to earlier ones will not arrive."""
         self.busy = True
         if self.error:
             self.error = False
@@ -212,7 +212,7 @@ class Memory(WithParameters, Model):
         return number
 
     def _weigh(self, matches: list[Chunk], record: Retrieval) -> list[Chunk]:
-        """Computes every candidate's activation, and returns the best ones, or none where they lie below the threshold."""
+        """Computes every candidate's activation, and returns the best ones, or none if they are below the threshold."""
         own = own_activation(self)
         if own is not None:
             record.modules = ()
@@ -224,7 +224,7 @@ class Memory(WithParameters, Model):
         return winners
 
     def _answer(self, number: int, chosen: Any, latency: float, matches: list[Chunk]) -> None:
-        """Schedules what comes of a request."""
+        """Schedules the result of a request."""
         sch = self.sch
         pending: Any
         if chosen is None:
@@ -232,7 +232,7 @@ class Memory(WithParameters, Model):
         elif type(self).recall is not Memory.recall:
             pending = self.recall(chosen, matches=matches, request_number=number)
         elif sch.idle_now():
-            # The same as below, but for an event that would do nothing else at this very moment.
+            # The same as below, without an event that would do nothing else at this moment.
             self.finst.add_after(chosen)
             pending = sch.call_after(latency, self._arrive, (chosen, number))
         else:
@@ -240,11 +240,11 @@ class Memory(WithParameters, Model):
         self.__dict__["_pending"] = pending
 
     def _strength(self, record: Retrieval, best: float) -> float:
-        """Returns the activation that the threshold is compared with, and that sets the time."""
+        """Returns the activation that is compared with the threshold and determines the time."""
         return best
 
     def fail(self, request_number: int) -> Iterator[float]:
-        """Lets a request fail, after its time."""
+        """Waits for the time of a failure, then sets `error` and clears the buffer."""
         self.sch.forget_left()
         yield self._time_of_failure()
         if request_number != self._request_count:
@@ -257,14 +257,14 @@ class Memory(WithParameters, Model):
             trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": True})
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
-        """Brings a chunk to the buffer, after its time."""
+        """Waits for the retrieval time, then puts a chunk into the buffer."""
         self.finst.add(chunk)
         self.sch.forget_left()
         yield self._time(chunk.activation)
         self._arrive(chunk, request_number)
 
     def _begin_recall(self, chunk: Chunk, time: float, request_number: int) -> None:
-        """Does what `recall` does, where no subclass has its own."""
+        """Does the same as `recall`, if no subclass overrides that."""
         self.finst.add(chunk)
         self.__dict__["_pending"] = self.sch.call_after(time, self._arrive, (chunk, request_number))
 
@@ -290,7 +290,7 @@ class Memory(WithParameters, Model):
         return round(time * 1000) / 1000 if profile is not None and profile.whole_milliseconds else time
 
     def _time_of_failure(self) -> float:
-        """Returns how long it takes until a request fails [s]."""
+        """Returns the time until a request fails [s]."""
         return self.maximum_time if self.threshold is None else self._time(self.threshold)
 
     # -- activation
@@ -303,10 +303,10 @@ class Memory(WithParameters, Model):
         return parts
 
     def get_activation(self, chunk: Any) -> float:
-        """Returns a chunk's activation now; noise is drawn anew.
+        """Returns a chunk's activation now, with newly drawn noise.
 
         Raises:
-            ChunkError: If the memory holds no such chunk.
+            ChunkError: If the memory does not contain the chunk.
         """
         if not self.dm.holds(chunk):
             wanted = Chunk(chunk, self._bound())
@@ -317,27 +317,27 @@ class Memory(WithParameters, Model):
         return total(self._parts(chunk))
 
     def add_adaptor(self, a: MemorySubModule) -> None:
-        """Takes in an activation module; done by the module itself."""
+        """Adds an activation module; the module calls this itself."""
         self.adaptors.append(a)
 
     # -- what a trace receives
 
     def _own_chunks(self, store: ChunkStore) -> None:
-        """Records what is done to a list of chunks by hand, and that it replaces another."""
+        """Records changes of a list of chunks by the model's code, and that it replaces another."""
         store.observer = observer = _ListObserver(self)
         before = self.__dict__.get("dm", store)
         if before is not store and observer.listening:
             observer.changed("dm", before, store)
 
     def _trace_add(self, chunk: Chunk, merged: bool, given: Mapping[str, Any]) -> None:
-        """Records that a chunk was taken in, or has strengthened an equal one."""
+        """Records that a chunk was added, or has strengthened an equal one."""
         trace = _listening_trace(self)
         if trace is not None:
             data = {"chunk": traceable(chunk), "merged": merged, "size": len(self.dm), "given": traceable(dict(given))}
             trace.emit(self.sch.now_us, self._path, "add", data)
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
-        if key != "dm":  # that is told as a change of the chunks
+        if key != "dm":  # an event «chunks» records that
             super()._trace_change(trace, key, value)
 
     def _state(self) -> dict[str, Any]:
@@ -355,7 +355,7 @@ class Memory(WithParameters, Model):
 
 
 def _costs(partial: Partial) -> bool:
-    """Tells whether a request may find what is only similar; a modeller's own class need not have a strength."""
+    """Returns whether a request may find chunks that are only similar; a modeller's own class need not have a strength."""
     return getattr(partial, "strength", 1.0) is not None
 
 
@@ -371,7 +371,7 @@ def own_activation(memory: Memory) -> Callable[[Any], float] | None:
 
 
 class _ListObserver:
-    """Records in a memory's trace what is done to its list of chunks by hand."""
+    """Records in a memory's trace how the model's code changes its list of chunks."""
 
     def __init__(self, memory: Memory) -> None:
         self._memory = memory
@@ -391,7 +391,7 @@ class _ListObserver:
 
 
 def _listening_trace(memory: Memory) -> Trace | None:
-    """Returns the trace that records what happens to a memory's chunks, if any."""
+    """Returns the trace that records changes of a memory's chunks, if any."""
     sch = memory.__dict__.get("sch")
     trace = None if sch is None else sch.trace
     return trace if trace is not None and trace.all else None
@@ -400,11 +400,11 @@ def _listening_trace(memory: Memory) -> Trace | None:
 # -- keywords of `add`
 
 KNOWN = frozenset({"record", "time", "baselevel", "fixed"})
-"""What the library's own modules take; a model may give it though it has no such module."""
+"""Keywords of the library's own modules; a model may give them even if it has no such module."""
 
 
 def check_keywords(keys: Mapping[str, Any], modules: Iterable[MemorySubModule]) -> None:
-    """Warns of keywords that no activation module takes; they have no effect."""
+    """Warns about keywords that no activation module takes; they have no effect."""
     unknown = keys.keys() - KNOWN
     if not unknown:
         return
@@ -420,7 +420,7 @@ def check_keywords(keys: Mapping[str, Any], modules: Iterable[MemorySubModule]) 
 
 @lru_cache(maxsize=256)
 def _taken(kind: type[MemorySubModule]) -> tuple[frozenset[str], bool]:
-    """Returns the keywords that a class of module takes by name, and whether it may look at any other."""
+    """Returns the keywords that a class of modules takes by name, and whether it may use any other."""
     names: set[str] = set()
     everything = False
     for method in (kind.create, kind.merge):

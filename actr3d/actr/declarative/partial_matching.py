@@ -1,4 +1,4 @@
-"""Partial matching: similar values may match, at the price of activation."""
+"""Partial matching: similar values may match, with a penalty on activation."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ class PartialMemory(Protocol):
         ...
 
     def request(self, pattern: Any, partial: Partial | None = None) -> None:
-        """Asks for the most active chunk that matches."""
+        """Requests the most active chunk that matches."""
         ...
 
 
 class Partial(WithParameters):
-    """Lets a memory retrieve chunks whose values are only similar to those asked for.
+    """Permits a memory to retrieve chunks whose values are only similar to those requested.
 
     Args:
-        memory: The memory; its first `Partial` serves all requests that name no other.
-        strength: MP, what a mismatch of -1 costs in activation; None for similarities that only blending uses: then only
-            chunks match that have what was asked for.
-        limit: The similarity of values that nothing is said about.
+        memory: The memory; its first `Partial` is the default of all requests.
+        strength: MP, the penalty of a mismatch of -1; None for similarities that only blending uses: then only chunks with the
+            requested values match.
+        limit: The similarity of values for which none was declared.
 
     Source: P = sum MP M_l (Anderson & Lebiere 1998, equation 3.7).
     """
@@ -48,22 +48,22 @@ class Partial(WithParameters):
         memory.partials.append(self)
 
     def similarity(self, a: Any, b: Any, value: float) -> None:
-        """Says how similar two values are, in both directions; 0 is the same, less is less similar."""
+        """Declares the similarity of two values, in both directions; 0 means equal, negative numbers mean less similar."""
         self.sims[a, b] = value
         self.sims[b, a] = value
         self._texts[as_text(a), as_text(b)] = value
         self._texts[as_text(b), as_text(a)] = value
 
     def request(self, pattern: Any) -> None:
-        """Asks the memory with these similarities."""
+        """Requests a chunk from the memory, with these similarities."""
         self._memory.request(pattern, partial=self)
 
     def match(self, key: Slot, a: str, b: str) -> float:
-        """Returns what finding `b` where `a` was asked for adds to activation (0 or less)."""
+        """Returns the penalty for finding `b` where `a` was requested (0 or less)."""
         return (self.strength or 0.0) * self.between(a, b)
 
     def between(self, a: str, b: str) -> float:
-        """Returns how similar two different values are, given as patterns compare them."""
+        """Returns the similarity of two different values, given as patterns compare them."""
         similarity = self.sims.get((a, b))
         if similarity is None and (a, b) in self._texts:
             if self._memory.rules is PYTHON_ACTR:  # patterns compare text, and it looks text up among numbers
@@ -73,11 +73,11 @@ class Partial(WithParameters):
         return self.limit if similarity is None else similarity
 
     def related(self, texts: Collection[str]) -> list[Any]:
-        """Returns the values of which a similarity to one of these texts was said, in the order they were first named."""
+        """Returns the values that were declared similar to one of these texts, in the order in which they were first named."""
         found = {as_text(a): a for a, b in reversed(self.sims) if as_text(b) in texts}
         return [*reversed(found.values())]
 
     def negated(self, key: Slot, value: str) -> float | None:
-        """Returns what finding just what was not wanted adds; None where that rules the chunk out (not in ACT-R 7)."""
+        """Returns the penalty for a value that the pattern negates; None if it excludes the chunk (not in ACT-R 7)."""
         profile = self._memory.rules
         return (self.strength or 0.0) * self.limit if profile.negations_cost else None

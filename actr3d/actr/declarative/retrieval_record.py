@@ -1,4 +1,4 @@
-"""The record of one request to declarative memory: what was asked, who stood for it, what came of it."""
+"""The record of one request to declarative memory: the pattern, the candidates with their activations, and the result."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.saying import warn_modeller
 
 Row = tuple[Chunk, tuple[float, ...], float, float]
-"""A candidate as it is kept, of which there may be thousands: (chunk, parts, partial, activation)."""
+"""A candidate as it is stored, because there may be thousands: (chunk, parts, partial, activation)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A chunk that matched a request, and how it stood."""
+    """A chunk that matched a request, and its activation."""
 
     chunk: Chunk
     parts: tuple[float, ...]
     """What each activation module added, in the memory's order."""
     partial: float
-    """What mismatches cost (0 or less)."""
+    """The penalty of mismatches (0 or less)."""
     activation: float
     """The sum."""
 
 
 def written(pattern: Any) -> str:
-    """Returns a request as its author wrote it, a function by its name."""
+    """Returns a request as its author wrote it, with functions by their names."""
     if type(pattern) is str:
         return pattern
     if isinstance(pattern, (list, tuple)):
@@ -45,37 +45,37 @@ def written(pattern: Any) -> str:
 
 @dataclass(slots=True)
 class Retrieval:
-    """One request and what came of it."""
+    """One request and its result."""
 
     time: int
-    """When it was made [us]."""
+    """The time of the request [us]."""
     pattern: Any
     """As it was written."""
     search: Search
-    """With the values that its variables had."""
+    """With the values of its variables."""
     modules: Sequence[object]
     """The activation modules, in the order of each candidate's parts."""
     threshold: float | None
     require_new: bool
     marked: list[Chunk]
-    """What had been retrieved lately (finsts)."""
+    """The recently retrieved chunks (finsts)."""
     rows: list[Row]
-    """The candidates, as they are weighed one after another."""
+    """The candidates, in the order in which their activations are computed."""
     best: float = -math.inf
     """The highest activation."""
     excluded: Sequence[Chunk] = ()
-    """Matching chunks that were left out for being marked."""
+    """Matching chunks that were excluded because they are marked."""
     chosen: Chunk | None = None
     latency: float | None = None
-    """How long the retrieval or its failure takes [s]."""
+    """The duration of the retrieval or its failure [s]."""
     _kept: Callable[[], dict[str, Any]] | None = None
 
     def weigh(self, matches: Sequence[Chunk], parts_of: Callable[[Chunk], tuple[float, ...]] | None, memory: str) -> list[Chunk]:
-        """Weighs every chunk that matches, and returns the most active ones.
+        """Computes the activation of every chunk that matches, and returns the most active ones.
 
         Args:
             matches: The chunks; each gets its activation.
-            parts_of: Gives the parts of a chunk's activation; None where it is 0 for all.
+            parts_of: Returns the parts of a chunk's activation; None if it is 0 for all.
             memory: The memory's name, for warnings.
         """
         partial = self.search.partial
@@ -105,18 +105,18 @@ class Retrieval:
 
     @property
     def candidates(self) -> list[Candidate]:
-        """The chunks that stood for the request, in the order they came."""
+        """The chunks that matched, in the order in which they were added to the memory."""
         return [Candidate(*row) for row in self.rows]
 
     def to_data(self) -> dict[str, Any]:
         """Returns the request as plain values, for the trace and for explanations.
 
-        Chunks are as they were then in a traced run; otherwise as they are now.
+        Chunks are shown as they were at the request in a traced run; otherwise as they are now.
         """
         return (self._kept or self._frozen())()
 
     def snapshot(self) -> Callable[[], dict[str, Any]]:
-        """Returns a function that makes plain values of the request; what may change later is taken down now, for good."""
+        """Returns a function that converts the request to plain values; everything that may change later is stored now."""
         self._kept = self._frozen()
         return self._kept
 

@@ -1,4 +1,4 @@
-"""Activation from what is in the buffers, and from how rare a chunk's values are."""
+"""Spreading activation from the chunks in buffers, and activation of chunks with rare values."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from actr3d.saying import warn_modeller
 
 
 class DMSpreading(MemorySubModule):
-    """Spreading activation: what is in the buffers makes related chunks active.
+    """Spreading activation: the chunks in buffers make related chunks more active.
 
-    In Python ACT-R, each slot value of a buffer's chunk that also stands in the chunk adds
+    In Python ACT-R, each slot value of a buffer's chunk that is also a value of the chunk adds
     `weight[buffer] * (strength - ln(occurrences in memory + 1))`. In ACT-R 7 the weight is divided among the values that
-    can name a chunk, and S_ji = strength - ln((1 + slots_j) / slots_ji), which counts 0 where it is negative.
+    can name a chunk, and S_ji = strength - ln((1 + slots_j) / slots_ji), which is replaced by 0 if it is negative.
 
     Args:
         memory: The memory.
@@ -41,10 +41,10 @@ class DMSpreading(MemorySubModule):
             self.create(chunk)
 
     def create(self, chunk: Any, **keys: Any) -> None:
-        """Counts a new chunk's values. A chunk that was counted already is not counted again.
+        """Counts a new chunk's values, once for each chunk.
 
-        In python_actr 1.9.5 a module that is made when the memory has chunks already must be given each of them by hand; here
-        it counts them by itself, and both ways give the same.
+        In python_actr 1.9.5 a module that is made when the memory already has chunks must be given each of them by the model;
+        here it counts them by itself, with the same result.
         """
         same = _Same(chunk)
         if same in self._counted:
@@ -71,7 +71,7 @@ class DMSpreading(MemorySubModule):
         return total
 
     def _divided(self, source: Chunk, values: list[Any], weight: float) -> float:
-        """Returns what a buffer's chunk adds where its weight is divided among its chunk-valued slots."""
+        """Returns the activation from a buffer's chunk if its weight is divided among its chunk-valued slots."""
         sources = [value for value in source.values() if names_a_chunk(value)]
         total = 0.0
         for value in sources:
@@ -93,12 +93,12 @@ class DMSpreading(MemorySubModule):
         return 0.0
 
     def _occurrences(self, value: Any) -> int:
-        """Returns in how many slots of the memory's chunks a value stands."""
+        """Returns the number of slots of the memory's chunks that have a value."""
         return self.slots.get(countable(value), 0)
 
 
 class _Same:
-    """Stands for one chunk itself in a set, however many are equal to it, also after the set has been copied with its chunks."""
+    """A set element that identifies one chunk among equal ones, also after the set has been copied with its chunks."""
 
     __slots__ = ("chunk",)
 
@@ -113,7 +113,7 @@ class _Same:
 
 
 def countable(value: Any) -> Hashable:
-    """Returns a slot's value as a key to count it by: itself, or its text where it cannot be hashed."""
+    """Returns a slot's value as a key for counting: the value, or its text if it cannot be hashed."""
     try:
         hash(value)
     except TypeError:
@@ -122,7 +122,7 @@ def countable(value: Any) -> Hashable:
 
 
 def names_a_chunk(value: Any) -> bool:
-    """Tells whether a slot's value can name a chunk: text that is neither a number nor None, True or False."""
+    """Returns whether a slot's value can name a chunk: text that is neither a number nor None, True or False."""
     text = as_text(value)
     if text in ("None", "True", "False"):
         return False
@@ -134,7 +134,7 @@ def names_a_chunk(value: Any) -> bool:
 
 
 class DMSalience(MemorySubModule):
-    """Makes rare values active: a value adds its weight times its information in bits, among the chunks of a context."""
+    """Makes chunks with rare values active: a value adds its weight times its information in bits, among the chunks of a context."""
 
     @named_parameters
     def __init__(self, memory: ActivatedMemory) -> None:
@@ -144,7 +144,7 @@ class DMSalience(MemorySubModule):
         self.memory = memory
 
     def weights(self, **weights: float) -> None:
-        """Says how much each slot counts; `_1=2` is the slot numbered 1."""
+        """Sets the weight of each slot; `_1=2` is the slot numbered 1."""
         named = {int(k[1:]) if k[0] == "_" else k: float(w) for k, w in weights.items()}
         self.weight = dict(named)
         self.histogram = {slot: {} for slot in named}

@@ -48,11 +48,11 @@ class State(Protocol):
         ...
 
     def exists(self, part: Model) -> bool:
-        """Tells whether a part had come into the tree."""
+        """Returns whether a part had come into the tree."""
         ...
 
     def learned(self, system: ProductionSystem, production: Production) -> bool:
-        """Tells whether a compiled production had been learned."""
+        """Returns whether a compiled production had been learned."""
         ...
 
     def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
@@ -60,7 +60,7 @@ class State(Protocol):
         ...
 
     def empty(self, system: ProductionSystem, name: str) -> Fact:
-        """Tells whether a buffer or object holds nothing."""
+        """Returns whether a buffer or object holds nothing."""
         ...
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
@@ -72,7 +72,7 @@ class State(Protocol):
         ...
 
     def matched(self, system: ProductionSystem, production: Production) -> bool:
-        """Tells whether a production was among those that matched when they were last tried."""
+        """Returns whether a production was among those that matched when they were last tried."""
         ...
 
     def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
@@ -93,5 +93,5 @@ class State(Protocol):
 
 
 def is_unknown(value: object) -> bool:
-    """Tells whether a fact's value cannot be told."""
+    """Returns whether a fact's value cannot be told."""
     return isinstance(value, Missing) and value is UNKNOWN

@@ -1,4 +1,4 @@
-"""Buffers: each holds one chunk, or nothing."""
+"""Buffers: each holds one chunk or none."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ class Buffer(Model):
 
     chunk: Chunk | None
     _slots: frozenset[str] = frozenset()
-    """Slots that its chunks are given by a library: productions may look at them though no text of the model has them."""
+    """Slots that a library adds to its chunks: productions may test them although the model's text never sets them."""
 
     @named_parameters
     def __init__(self) -> None:
         self.chunk = None
 
     def set(self, chunk: object) -> None:
-        """Puts a new chunk in; `?name` in a text stands for what the firing production has bound.
+        """Stores a new chunk; the variables of the firing production replace `?name` in a text.
 
         Raises:
-            ChunkError: If the contents make no chunk, or a variable is not bound.
+            ChunkError: If no chunk can be made from the contents, or a variable is not bound.
         """
         sch = self.__dict__.get("sch")
         new = Chunk(chunk, sch.bound if sch is not None else None)
@@ -63,7 +63,7 @@ class Buffer(Model):
         self.chunk = None
 
     def __chunk__(self) -> Chunk:
-        """Returns the chunk, for making another of it.
+        """Returns the chunk, to make another from it; called by `Chunk`.
 
         Raises:
             ChunkError: If the buffer is empty.
@@ -73,18 +73,18 @@ class Buffer(Model):
         return self.chunk
 
     def isEmpty(self) -> bool:  # noqa: N802 - Python ACT-R's name
-        """Tells whether there is no chunk, or one without slots."""
+        """Returns whether there is no chunk, or one without slots."""
         return len(self) == 0
 
     def _harvest(self) -> None:
-        """Gives a chunk that is about to leave to the nearest declarative memory that collects such chunks (ACT-R 7).
+        """Adds a chunk that is about to leave to the nearest declarative memory that collects such chunks (ACT-R 7).
 
-        A retrieved chunk goes back to the memory it came from; any other to every such memory of the agent.
+        A retrieved chunk is added to the memory that it came from; any other to every such memory of the agent.
         """
         chunk = self.chunk
         if not chunk:
             return
-        above: Model | None = self.__dict__.get("parent")  # a class's own buffer, filled before an agent runs, has none
+        above: Model | None = self.__dict__.get("parent")  # None for a class's own buffer that is filled before an agent runs
         while above is not None:
             memories = [m for m in above.__dict__.get("_harvesters", ()) if m.parent is above]
             if memories:
@@ -100,9 +100,9 @@ class Buffer(Model):
             super()._trace_change(trace, key, value)
         elif trace.buffer:
             watch: ChunkWatch | None = self.__dict__.get("_watch")
-            if watch is not None and watch.told is not None:
-                told, watch.told = watch.told, None
-                if told is value:  # `modify` changes a chunk and sets it anew
+            if watch is not None and watch.recorded is not None:
+                recorded, watch.recorded = watch.recorded, None
+                if recorded is value:  # `modify` changes a chunk and sets it again
                     return
             self._trace_chunk(trace, value)
 
@@ -111,11 +111,11 @@ class Buffer(Model):
             self._trace_chunk(trace, self.chunk)
 
     def _trace_chunk(self, trace: Trace, chunk: Chunk | None) -> None:
-        """Records what the buffer holds, and sees to it that the trace learns of changes of the chunk itself."""
+        """Records the buffer's chunk, and observes changes of the chunk itself."""
         own = self.__dict__
         data: Data
         if type(chunk) is Chunk and LASTING_TYPES.issuperset(map(type, chunk.values())):
-            data = partial(_told, dict(chunk))
+            data = partial(_chunk_data, dict(chunk))
         else:
             data = {"chunk": traceable(chunk), **(_texts(chunk) if chunk and trace.all else {})}
         trace.emit(own["sch"].now_us, self._path, "buffer", data)
@@ -145,20 +145,20 @@ def reads_chunk(target: Any, key: Any) -> bool:
     return isinstance(target, Buffer) and type(target).__getitem__ is Buffer.__getitem__ and not (isinstance(key, str) and "." in key)
 
 
-def _told(slots: dict[Any, Any]) -> dict[str, Any]:
-    """Returns what a trace keeps of a chunk whose values never change by themselves, from a copy of it."""
+def _chunk_data(slots: dict[Any, Any]) -> dict[str, Any]:
+    """Returns what a trace keeps of a chunk with immutable values, given a copy of it."""
     return {"chunk": lasting_slots(slots)}
 
 
 def _texts(chunk: Chunk) -> dict[str, dict[str, str]]:
-    """Returns how patterns compare values that are not plain, such as lists, as far as that can be told."""
+    """Returns the text that patterns compare for values that are not plain, such as lists, if it is known."""
     texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
     known = {key: text for key, text in texts.items() if text is not None}
     return {"texts": known} if known else {}
 
 
 class ChunkWatch:
-    """Tells a trace when the chunk in a buffer is changed without the buffer: `goal.chunk['count'] = 3`.
+    """Records in a trace that the chunk in a buffer was changed directly: `goal.chunk['count'] = 3`.
 
     Args:
         buffer: The buffer.
@@ -166,16 +166,16 @@ class ChunkWatch:
 
     def __init__(self, buffer: Buffer) -> None:
         self.alone = (self,)
-        """What a chunk that only this watches has for its watches."""
+        """The watches of a chunk that has only this one."""
         self._buffer = buffer
-        self.told: Chunk | None = None
-        """The chunk in the buffer, if its latest change is recorded and it has not been set since."""
+        self.recorded: Chunk | None = None
+        """The chunk in the buffer, if its latest change has been recorded and it has not been set since."""
 
     def changed(self, chunk: Chunk) -> None:
-        """Records a change of a chunk that is, or was, in the buffer."""
+        """Records a change of a chunk that is or was in the buffer."""
         buffer = self._buffer
         own = buffer.__dict__
         trace = own["sch"].trace
         if trace is not None and trace.buffer and own["chunk"] is chunk:
             buffer._trace_chunk(trace, chunk)
-            self.told = chunk
+            self.recorded = chunk

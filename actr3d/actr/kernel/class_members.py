@@ -52,7 +52,7 @@ class MethodWrapper:
 
     @property
     def default_trigger(self) -> Trigger:
-        """What `yield` on the method itself waits for."""
+        """The trigger that `yield model.method` waits for."""
         return self.ends
 
     @property
@@ -79,7 +79,7 @@ class GeneratorWrapper(MethodWrapper):
         return sch.begin(self._steps(args, keys, sch.firing, sch.now_us), self)
 
     def _steps(self, args: tuple[Any, ...], keys: dict[str, Any], caller: Caller | None, called_us: int) -> Generator[Any, Any, None]:
-        """Runs the method, waking whoever waits for its begin or end; an error in it names its caller and when that was [us]."""
+        """Runs the method and fires its triggers; an error in it names its caller and the time of the call [us]."""
         if self.begins.waiting:
             self.obj.sch.trigger(self.begins)
         try:
@@ -96,16 +96,16 @@ class GeneratorWrapper(MethodWrapper):
 
 
 RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
-"""What a subclass may override, but not turn into something that is waited for or copied."""
+"""Names that a subclass may override, but that are neither wrapped nor copied."""
 
 
 def has_setter(member: object) -> bool:
-    """Tells whether a class's attribute takes care of being set, as properties do."""
+    """Returns whether a class's attribute has a setter, as properties do."""
     return hasattr(type(member), "__set__")
 
 
 def minding_properties(inherited: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
-    """Returns a `__setattr__` that leaves to a class's properties what they take care of, and the rest to the inherited one."""
+    """Returns a `__setattr__` that calls a class's properties for their attributes, and the inherited one for all others."""
 
     def set_with_properties(model: Any, key: str, value: Any) -> None:
         if key in model._setters:
@@ -117,9 +117,9 @@ def minding_properties(inherited: Callable[[Any, str, Any], None]) -> Callable[[
 
 
 def class_members(kind: type, root: type) -> tuple[dict[str, Method], dict[str, Any]]:
-    """Returns what a class and its ancestors below `root` bring, in alphabetical order: methods, and other objects.
+    """Returns the attributes of a class and its ancestors below `root`, in alphabetical order: methods, and other objects.
 
-    Names that begin with `_` and properties are left out. In place of a class derived from `root` stands an instance.
+    Names that begin with `_` and properties are left out. A class derived from `root` is replaced by an instance.
     """
     found: dict[str, Any] = {}
     for klass in reversed(kind.__mro__):
@@ -141,7 +141,7 @@ def class_members(kind: type, root: type) -> tuple[dict[str, Method], dict[str, 
 
 
 def copy_objects(objects: dict[str, Any], living: Callable[[object], bool]) -> dict[str, Any]:
-    """Copies a class's objects for one instance; what cannot be copied (an open file) or is `living` is shared."""
+    """Copies a class's objects for one instance; objects that cannot be copied (an open file) or are `living` are shared."""
     memo: dict[int, Any] = {id(obj): obj for obj in objects.values() if isinstance(obj, ModuleType)}
     copies: dict[str, Any] = {}
     for name, obj in objects.items():
@@ -158,10 +158,10 @@ def copy_objects(objects: dict[str, Any], living: Callable[[object], bool]) -> d
 
 
 def check_names(kind: type, members: Mapping[str, Any]) -> None:
-    """Checks that a class leaves alone the names that hold the tree together.
+    """Checks that a class does not use the names that hold the tree together.
 
     Raises:
-        SchedulerError: If it gives one of them to something else.
+        SchedulerError: If it uses one of them.
     """
     for name in ("changes", "log", "parent", "random", "sch"):
         if name not in members:

@@ -1,4 +1,4 @@
-"""What the scheduler deals with: events, and the triggers that wake them."""
+"""Events and triggers: what the scheduler runs, and what wakes it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any, Final, cast
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 
 AGAIN: Final = object()
-"""What the library's own generators yield to go on at the same moment, with the priority their event has."""
+"""The library's own generators yield this to continue at the same moment, with the priority of their event."""
 
 NOTHING_LEFT: Final[Mapping[float, float]] = {}
-"""Of no delay."""
+"""No rounding remainders."""
 
 
 class Trigger:
@@ -30,7 +30,7 @@ class Trigger:
         return f"<Trigger '{self.name}'>"
 
     def add_one_of_several(self, event: Event) -> None:
-        """Takes in an event that also waits elsewhere, and now and then lets those go that were woken from there."""
+        """Adds an event that also waits elsewhere; from time to time removes those that were woken from there."""
         if len(self.waiting) >= self._most:
             self.waiting = [other for other in self.waiting if not other.cancelled]
             self._most = max(8, 2 * len(self.waiting))
@@ -41,7 +41,7 @@ class Trigger:
 
 
 class Call:
-    """A plain call of the library's own at some time: it returns None, and nobody waits for it."""
+    """A scheduled call of a function of the library: it returns None, and nothing waits for it."""
 
     __slots__ = ("args", "call", "left")
 
@@ -49,27 +49,27 @@ class Call:
         self.call = call
         self.args = args
         self.left: Mapping[float, float] = NOTHING_LEFT
-        """What rounding has left over of the delays that led to it; see `Scheduler.left`."""
+        """The rounding remainders of the delays that led to it; see `Scheduler.left`."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.describe()}>"
 
     def __lt__(self, other: Call) -> bool:
-        return False  # events of one time and priority are equals; the queue alone puts them in order
+        return False  # the queue alone orders events of equal time and priority
 
     @property
     def profile(self) -> Profile:
-        """The numbers that the model goes by whose method this is."""
+        """The profile of the model whose method this is."""
         owner = getattr(self.call, "__self__", self.call)
         return getattr(owner, "_profile", None) or PYTHON_ACTR
 
     def describe(self) -> str:
-        """Names the call."""
+        """Returns the name of the call."""
         return str(getattr(self.call, "__qualname__", None) or getattr(self.call, "__name__", repr(self.call)))
 
 
 class Event(Call):
-    """A call that will be made, or a generator that goes on, at a time or when a trigger says so; it can be waited for."""
+    """A call, or the next step of a generator, at a given time or when a trigger fires; generators can wait for it."""
 
     __slots__ = ("cancelled", "done", "generator", "group", "keys", "origin", "parents", "priority")
 
@@ -85,17 +85,17 @@ class Event(Call):
         self.keys: Mapping[str, Any] = keys or {}
         self.priority = priority
         self.group: Sequence[Event] = ()
-        """All that wait for one of several things in an event's place, itself among them; empty where it waits for one."""
+        """The alternatives if a generator waits for the first of several things, this event included; empty if for one."""
         self.origin = self
-        """The event as its caller knows it; another one where this waits in its place for one of several things."""
+        """The event that the caller received; another one if this is an alternative."""
         self.cancelled = False
-        """Whether another of the group has come first."""
+        """Whether another event of the group came first."""
         self.done = False
         self.parents: list[Event] = []
         self.generator = generator
 
     def cancel_others(self) -> list[Event]:
-        """Cancels what else this has waited for, as one of several things, and returns that."""
+        """Cancels the other events of the group, and returns them."""
         others = [other for other in self.group if other is not self]
         for other in others:
             other.cancelled = True
@@ -103,7 +103,7 @@ class Event(Call):
         return others
 
     def describe(self) -> str:
-        """Names the call, and for a generator the line it stands at."""
+        """Returns the name of the call, and of a generator also its current line."""
         if self.generator is None:
             return super().describe()
         generator = self.innermost
@@ -114,7 +114,7 @@ class Event(Call):
 
     @property
     def innermost(self) -> GeneratorType[Any, Any, Any] | None:
-        """The modeller's own generator: the one that `yield from` leads to."""
+        """The innermost generator, reached through `yield from`: the modeller's own."""
         generator = cast("GeneratorType[Any, Any, Any] | None", self.generator)
         while generator is not None and isinstance(inner := generator.gi_yieldfrom, GeneratorType):
             generator = cast("GeneratorType[Any, Any, Any]", inner)
@@ -122,6 +122,6 @@ class Event(Call):
 
 
 def makes_generator(func: Callable[..., Any]) -> bool:
-    """Tells whether a call gives a generator, also of a callable object."""
+    """Returns whether a function or callable object returns a generator."""
     code = getattr(func, "__code__", None) or getattr(getattr(type(func), "__call__", None), "__code__", None)  # noqa: B004 - its code is wanted, not whether there is any
     return code is not None and bool(code.co_flags & CO_GENERATOR)

@@ -1,8 +1,8 @@
 """The logs of Python ACT-R: lines of text, an HTML table, data files, and a summary.
 
-A log is written by setting attributes: `log.score = 3`, `agent.log.mood = 'good'`; `log_everything` makes every change
-of every model's attributes such a line. Where times of several runs follow one another in one program, a line's time is
-that of the latest step of any run, as in python_actr 1.9.5.
+A log is written by setting attributes: `log.score = 3`, `agent.log.mood = 'good'`; `log_everything` writes such a line for
+every change of every model's attributes. If a program runs several models one after another, a line's time is that of the
+latest step of any run, as in python_actr 1.9.5.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ BASIC = (int, float, bool, str, tuple, list, dict)
 
 
 class Log:
-    """Where all log lines of a program go."""
+    """The destination of all log lines of a program."""
 
     def __init__(self) -> None:
         self.time_us = 0
@@ -32,30 +32,30 @@ class Log:
         self.source: str | None = None
         """The model file that is being run; the default directory is named after it."""
         self.locked = False
-        """Whether the model's own settings are left unheard, as in a parameter sweep."""
+        """Whether the model's own settings are ignored, as in a parameter sweep."""
         self.announce = False
-        """Whether to print a last line, as python_actr 1.9.5 does; so for models that import it by name."""
+        """Whether to print a last line, as python_actr 1.9.5 does; true for models that import it by name."""
         self.reset()
 
     def reset(self) -> None:
-        """Forgets what was logged."""
+        """Clears the log."""
         self.data: dict[str, Any] = {}
         self.rows: list[tuple[float, str, Any]] = []
         self.time_us = 0
         self._stem: str | None = None
 
     def __bool__(self) -> bool:
-        """Tells whether there is anything to show at the end: a line, or time that passed while something was kept."""
+        """Returns whether there is anything to show at the end: a line, or time that passed while lines were kept."""
         keeps = self.do_data or self.do_summary or self.do_html
         return bool(self.data or self.rows or (keeps and self.time > 0))
 
     @property
     def time(self) -> float:
-        """When the latest step of any run was [s]."""
+        """The time of the latest step of any run [s]."""
         return self.time_us / MICROSECONDS
 
     def set(self, key: str, value: Any) -> None:
-        """Takes one line."""
+        """Writes one line."""
         if key == "time":
             self.time_us = round(value * MICROSECONDS)
         elif self.do_screen:
@@ -74,22 +74,22 @@ class Log:
                 print(f" {key} {self.data[key]}")  # noqa: T201 - the log's own output
 
     def file(self, ending: str) -> Path:
-        """Returns a new file's path in the log's directory, and makes the directory."""
+        """Returns the path of a new file in the log's directory, which is created."""
         name = self.directory or (self.source or sys.argv[0]).removesuffix(".py") or "log"
         folder = Path(name)
         folder.mkdir(parents=True, exist_ok=True)
         if self._stem is None:  # one name for all files of a log
-            # It is no part of the run: it does not draw from the run's random numbers.
+            # The name is not part of the run and must not use its random numbers.
             mark = f"{random.SystemRandom().randrange(0x7FFFFFFF):08x}"
             self._stem = f"{time.strftime('%Y%m%d-%H%M%S')}-{mark}"
         return folder / f"{self._stem}{ending}"
 
 
 class DummyLog:
-    """Takes everything and keeps nothing; false, so that nobody computes for it."""
+    """A log that ignores everything; it is false, so that callers need not compute anything for it."""
 
     def set(self, key: str, value: Any) -> None:
-        """Takes a line."""
+        """Ignores a line."""
 
     def __bool__(self) -> bool:
         return False
@@ -113,7 +113,7 @@ class DummyLog:
 
 
 class LogProxy:
-    """A place in a log: `proxy.a.b = 3` and `proxy['x'] = 4` write lines named after the place; `proxy._ = 5` names the place itself."""
+    """A prefix in a log: `proxy.a.b = 3` and `proxy['x'] = 4` write lines below the prefix, `proxy._ = 5` one with the prefix itself."""
 
     if TYPE_CHECKING:
         _log: Log
@@ -170,14 +170,14 @@ def log(
     summary: bool | None = None,
     directory: str | None = None,
 ) -> LogProxy:
-    """Returns the program's log, after changing what it does; None leaves a setting as it is.
+    """Changes the settings of the program's log, and returns it; None keeps a setting.
 
     Args:
         screen: Whether to print each line.
         html: Whether to write an HTML table at the end.
         data: Whether to write the last value of everything to a file at the end.
         summary: Whether to print the last value of everything at the end.
-        directory: Where files go; named after the model file unless given.
+        directory: The directory of the files; by default named after the model file.
     """
     if LOG.locked:
         return log_proxy
@@ -213,10 +213,10 @@ def log_everything(model: Any, log: Any = None) -> None:
 
 
 def begin() -> Callable[[], None]:
-    """Begins a log for one program: empty, and set as at first unless a parameter sweep has set it.
+    """Starts an empty log for one program, with default settings unless a parameter sweep has set them.
 
     Returns:
-        A function that puts back the log as it was before, with what was in it.
+        A function that restores the previous log with its contents.
     """
     before = dict(vars(LOG))
     if LOG.locked:

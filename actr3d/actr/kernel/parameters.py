@@ -1,4 +1,4 @@
-"""Checks the parameters that a module is made with, and given later: their names, and that numbers are numbers."""
+"""Checks the parameters of modules when they are made and when they are changed: their names, and that numbers are numbers."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Self = TypeVar("Self")
 
 
 def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Concatenate[Self, P], None]:
-    """Makes an `__init__` say clearly what is wrong with its parameters.
+    """Makes an `__init__` check its parameters and explain what is wrong.
 
     Raises:
-        ParameterError: If a parameter has no such name, is missing, or is no number where it should be one.
+        ParameterError: If a parameter is unknown or missing, or is not a number where one is required.
     """
     signature = inspect.signature(init)
     names = [name for name in signature.parameters if name != "self"]
@@ -48,11 +48,11 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
 
 
 NEAR = 0.8
-"""How near a name must be to that of a parameter (0 to 1) to be taken for a slip."""
+"""The similarity to the name of a parameter (0 to 1) from which a name counts as misspelt."""
 
 
 class WithParameters:
-    """Something made with parameters, which may be set later: says so where one is set under a name that is only similar."""
+    """A module whose parameters may be set later; it warns if one is set under a misspelt name."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self.__dict__:
@@ -60,8 +60,8 @@ class WithParameters:
         super().__setattr__(name, value)
 
     def _settable(self) -> set[str]:
-        """Returns what may be meant by a slip: parameters and attributes; nothing for a modeller's own class, which may
-        have whatever attributes it likes.
+        """Returns the names that may be meant by a misspelt one: parameters and attributes; nothing for a modeller's own class,
+        which may have any attributes.
         """
         kind = type(self)
         if not kind.__module__.startswith("actr3d."):
@@ -75,7 +75,7 @@ def settable_of(part: WithParameters) -> set[str]:
 
 
 def warn_of_slip(part: WithParameters, name: str) -> None:
-    """Warns of a new attribute that is named nearly like a parameter; it has no effect under that name."""
+    """Warns about a new attribute whose name is similar to that of a parameter; it has no effect."""
     if name[0] == "_":
         return
     hints = _HINTS.setdefault(type(part), {})
@@ -89,7 +89,7 @@ _HINTS: WeakKeyDictionary[type, dict[str, str]] = WeakKeyDictionary()
 
 
 def slip_hint(name: str, known: set[str]) -> str:
-    """Returns which parameter a name may mean, or an empty text where it is no slip: `times` beside `time` is none."""
+    """Returns a hint at the parameter that a name may mean, or an empty text if it is not misspelt: `times` is not, beside `time`."""
     if any(name.startswith(other) or other.startswith(f"{name}_") for other in known):
         return ""
     return did_you_mean(name, known, NEAR)

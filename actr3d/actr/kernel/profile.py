@@ -1,4 +1,4 @@
-"""The two sets of numbers a model can be run with."""
+"""Profiles: the defaults and equations of Python ACT-R, and those of ACT-R 7."""
 
 from __future__ import annotations
 
@@ -9,39 +9,39 @@ from actr3d.errors import ParameterError, did_you_mean
 
 @dataclass(frozen=True, kw_only=True)
 class Profile:
-    """Where Python ACT-R and ACT-R 7 differ.
+    """The differences between Python ACT-R and ACT-R 7.
 
     Source: python_actr 1.9.5, and ACT-R 7.27.7 as described in its reference manual.
     """
 
     name: str
     youngest_age: float
-    """The least age that a reference counts with in base-level learning [s]."""
+    """The minimum age of a reference in base-level learning [s]."""
     optimized_learning: bool
-    """Whether base-level learning is the optimized form unless a limit is given."""
+    """Whether the optimized form is the default of base-level learning."""
     spread_by_slots: bool
     """Whether each buffer's weight is divided among its chunk-valued slots, and the fan is (1 + slots_j) / slots_ji."""
     latency: float
-    """The latency factor F [s], unless given."""
+    """The default latency factor F [s]."""
     whole_milliseconds: bool
     """Whether times are whole milliseconds."""
     negations_cost: bool
-    """Whether a negative test that fails costs activation in partial matching, instead of ruling the chunk out."""
+    """Whether a negative test that fails costs activation in partial matching instead of excluding the chunk."""
     blend_every_slot: bool
-    """Whether blending is that of ACT-R 7's blending module: every slot of the result is a compromise of all matching chunks, the
+    """Whether blending works as in ACT-R 7's blending module: every slot of the result is a compromise of all matching chunks, the
     temperature is sqrt(2) times the noise, and the time comes from ln sum exp A."""
     clear_at_request: bool
-    """Whether a request empties the retrieval buffer at once."""
+    """Whether a request clears the retrieval buffer immediately."""
     harvest: bool
-    """Whether a chunk that leaves a buffer goes to declarative memory."""
+    """Whether a chunk that leaves a buffer is added to declarative memory."""
     learn_compiled: bool
-    """Whether a compiled rule's utility moves to its first parent's each time it is compiled again."""
+    """Whether a compiled rule's utility moves towards its first parent's each time it is compiled again."""
     total_utility: bool
-    """Whether utility learning moves the whole utility, the production's own base included."""
+    """Whether utility learning changes the whole utility, including the production's own base."""
     awaits_expiry: bool
-    """Whether a run without a limit also waits for what has no effect any more: for marks of retrieved chunks to expire, for
-    the answers to requests that others have replaced, and for times that something else came before. In ACT-R 7 marks are
-    looked up by their age, and such events are deleted."""
+    """Whether a run without a limit also waits for events without effect: the expiry of marks of retrieved chunks, the answers
+    to requests that were replaced, and alternatives that came too late. ACT-R 7 looks up marks by their age, and deletes such
+    events."""
 
 
 PYTHON_ACTR = Profile(

@@ -397,7 +397,7 @@ class Scheduler:
             self.add(func, delay, args, keys, priority)
 
     def idle_now(self) -> bool:
-        """Tells whether nothing else is to happen before time passes, so that what comes last may come at once."""
+        """Returns whether nothing else is to happen before time passes, so that what comes last may come at once."""
         heap = self.queue.heap
         if not self.queue.first_come:
             return False

@@ -14,13 +14,13 @@ from typing import Any
 from actr3d.actr.kernel.log import LOG
 
 SOURCE = "__actr3d_source__"
-"""The global under which a module that was loaded from text keeps that text: another may come under the same name later."""
+"""The global in which a module loaded from text keeps that text; another text may get the same name later."""
 
 
 class FileName(str):
-    """The name of one text, as it was when it was loaded: reads and compares as the name does, but no two are equal.
+    """The name of one loaded text: it compares with other strings by its characters, but no two `FileName`s are equal.
 
-    Tracebacks look their lines up by a file's name, and the code of two texts may go by one name: each has lines of its own.
+    Tracebacks look up lines by a file's name, and two texts may have the same name; this keeps their lines apart.
     """
 
     __slots__ = ()
@@ -35,23 +35,23 @@ class FileName(str):
 
 
 def keep_lines(source: str, filename: FileName) -> None:
-    """Makes a text's lines known to tracebacks, until `drop_lines`."""
-    linecache.cache.pop(filename, None)  # what was on disk under this plain name, which would stand in for every text
+    """Provides a text's lines to tracebacks, until `drop_lines`."""
+    linecache.cache.pop(filename, None)  # the lines of a file on disk with this name, which would be used for every text
     linecache.cache[filename] = (len(source), None, [f"{line}\n" for line in source.split("\n")], str(filename))
 
 
 def drop_lines(filenames: Iterable[FileName]) -> None:
-    """Forgets the lines of texts."""
+    """Removes the lines of texts."""
     for filename in filenames:
         linecache.cache.pop(filename, None)
 
 
 @lru_cache(maxsize=64)
 def syntax_tree(text: str) -> ast.Module:
-    """Parses a file's text; an empty tree where it is no Python now (the file has changed since it was loaded)."""
+    """Parses a file's text; returns an empty tree if it is no longer Python (the file has changed since it was loaded)."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
+            warnings.simplefilter("ignore")  # the compiler has issued all warnings about the file
             return ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ast.Module([], [])
@@ -69,13 +69,13 @@ def _functions(text: str) -> dict[tuple[str, int], ast.FunctionDef]:
 
 
 def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
-    """Returns the syntax tree of a function's definition, or None where its source is not to be had."""
+    """Returns the syntax tree of a function's definition, or None if its source is not available."""
     code = func.__code__
     return _functions(source_of(func)).get((code.co_name, code.co_firstlineno))
 
 
 def source_of(func: Callable[..., Any]) -> str:
-    """Returns the text of a function's file: as it was loaded, where this library loaded it, or as it is now."""
+    """Returns the text of a function's file: the loaded text if this library loaded it, otherwise the current one."""
     names = func.__globals__
     filename = func.__code__.co_filename
     if SOURCE in names and names.get("__file__") == filename:
@@ -84,7 +84,7 @@ def source_of(func: Callable[..., Any]) -> str:
 
 
 def has_file(func: Callable[..., Any]) -> bool:
-    """Tells whether the file of a function is there at all."""
+    """Returns whether the file of a function exists."""
     return Path(func.__code__.co_filename).is_file()
 
 
@@ -105,9 +105,9 @@ _STORE_GLOBAL = {dis.opmap["STORE_GLOBAL"]}
 
 
 WRITTEN_FOR_PYTHON_ACTR = "__written_for_python_actr__"
-"""The global by which a loaded model's module says that it imports python_actr or ccm by name."""
+"""The global that marks the module of a loaded model as importing python_actr or ccm by name."""
 
 
 def for_python_actr(file: Mapping[str, Any]) -> bool:
-    """Tells from a file's globals whether it is part of a program that imports python_actr or ccm by name."""
+    """Returns whether a file, given its globals, is part of a program that imports python_actr or ccm by name."""
     return LOG.announce or bool(file.get(WRITTEN_FOR_PYTHON_ACTR))

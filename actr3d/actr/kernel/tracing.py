@@ -1,4 +1,4 @@
-"""What the parts of a simulation tell a trace: what they are like when it starts, and every change."""
+"""Converts values to the form in which a trace keeps them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from actr3d.actr.kernel.tree import Part, path_of
 from actr3d.values import Naming, plain
 
 UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
-"""Attributes that hold the tree together; setting them is not a change that productions could see."""
+"""Attributes that hold the tree together; setting them is not a change that productions can see."""
 
 
 def _known_part(value: Any) -> str | None:
@@ -17,7 +17,7 @@ def _known_part(value: Any) -> str | None:
 
 
 def traceable(value: Any) -> Any:
-    """Returns what a trace keeps of a value: plain values as they are, chunks, lists and dicts as a copy, parts by their path."""
+    """Returns what a trace keeps of a value: plain values unchanged, chunks, lists and dicts as a copy, parts by their path."""
     if type(value) in LASTING_TYPES:
         return value
     if type(value) is Chunk and LASTING_TYPES.issuperset(map(type, value.values())):
@@ -26,12 +26,12 @@ def traceable(value: Any) -> Any:
 
 
 def lasting_slots(chunk: dict[Any, Any]) -> dict[str, Any]:
-    """Returns what a trace keeps of a chunk whose values never change by themselves."""
+    """Returns what a trace keeps of a chunk with immutable values."""
     return {key if type(key) is str else str(plain(key)): item for key, item in chunk.items()}
 
 
 def chunk_text(chunk: Chunk) -> str:
-    """Returns a chunk as text, without asking the objects in its slots for theirs."""
+    """Returns a chunk as text, without calling the objects in its slots."""
     text = chunk.cached_text
     if text is not None:
         return text

@@ -21,7 +21,7 @@ from actr3d.saying import warn_at
 
 
 def is_modellers(klass: type) -> bool:
-    """Tells whether a class is a modeller's own."""
+    """Returns whether a class is a modeller's own."""
     return klass is not object and not klass.__module__.startswith("actr3d.")
 
 

@@ -65,7 +65,7 @@ def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapp
 
 
 def _is_method(node: ast.Attribute, names: Mapping[str, Any]) -> bool:
-    """Tells whether a dotted path leads to a method of a part of the model."""
+    """Returns whether a dotted path leads to a method of a part of the model."""
     owner = _resolve(node.value, names)
     if not isinstance(owner, (Model, Partial)):
         return False
@@ -164,6 +164,6 @@ def _check_values(call: ast.Call, production: Production, productions: Sequence[
 
 
 def _is_compared(slot: str | None, productions: Sequence[Production]) -> bool:
-    """Tells whether patterns of the agent compare a slot with a word."""
+    """Returns whether patterns of the agent compare a slot with a word."""
     conditions = [condition for production in productions for condition in production.conditions]
     return any(c.op in ("is", "not") and c.key == slot for c in conditions)

@@ -101,7 +101,7 @@ def _slots(text: str) -> list[Slot]:
 
 
 def _is_plain(call: ast.Call, method: str) -> bool:
-    """Tells whether a call says which slots there will be: one literal text, or keywords of `modify`, which needs them to be there."""
+    """Returns whether a call says which slots there will be: one literal text, or keywords of `modify`, which needs them to be there."""
     if method == "modify":
         return not call.args and all(keyword.arg for keyword in call.keywords)
     texts = [arg for arg in call.args[:1] if isinstance(arg, ast.Constant) and isinstance(arg.value, str)]
@@ -109,6 +109,6 @@ def _is_plain(call: ast.Call, method: str) -> bool:
 
 
 def _is_known(module: str) -> bool:
-    """Tells whether a module is the library or Python's own, and so sets nothing by itself."""
+    """Returns whether a module is the library or Python's own, and so sets nothing by itself."""
     root = module.partition(".")[0]
     return root in _LIBRARIES or root in sys.stdlib_module_names

@@ -47,7 +47,7 @@ class Vocabulary:
         return self.given | self.modified | self.mentioned
 
     def apart(self, one: str, other: str) -> bool:
-        """Tells whether no text has both of two slots."""
+        """Returns whether no text has both of two slots."""
         return not any(one in names and other in names for names in self.together)
 
     def _walk(self, node: ast.AST, texts: set[str]) -> None:
@@ -108,7 +108,7 @@ def _vocabulary(text: str) -> Vocabulary:
 
 
 def is_production(node: ast.FunctionDef) -> bool:
-    """Tells whether all parameters of a function have a default."""
+    """Returns whether all parameters of a function have a default."""
     return len(node.args.args) == len(node.args.defaults)
 
 
@@ -132,7 +132,7 @@ def slip_of(name: str, known: Iterable[str]) -> str | None:
 
 
 def is_slip(one: str, other: str) -> bool:
-    """Tells whether two names differ by one slip: a letter too many, too few or wrong, two exchanged, or capitals.
+    """Returns whether two names differ by one slip: a letter too many, too few or wrong, two exchanged, or capitals.
 
     Names that people make on purpose are none: `num1` and `num2`, `left_x` and `left_y`, `word` and `words`, `height`
     and `weight`; nor are those of less than four letters.

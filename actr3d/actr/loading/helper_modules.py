@@ -36,12 +36,12 @@ class HelperTexts:
         self.heard(self.loaded)
 
     def owns(self, fullname: str) -> bool:
-        """Tells whether a module belongs to the program, whether it is known or not."""
+        """Returns whether a module belongs to the program, whether it is known or not."""
         root = fullname.partition(".")[0]
         return self.has(root) or root in self.packages
 
     def has(self, root: str) -> bool:
-        """Tells whether a top module or package of this name, or something in it, is known from the first time."""
+        """Returns whether a top module or package of this name, or something in it, is known from the first time."""
         return any(name.partition(".")[0] == root for name in self._known)
 
     def spec(self, name: str, fullname: str, folder: Path, load: Callable[[str, str, str], Any]) -> ModuleSpec | None:

@@ -93,7 +93,7 @@ class Program:
             _RUNNING.remove(self)
 
     def owns(self, place: str) -> bool:
-        """Tells whether a file or folder belongs to the program."""
+        """Returns whether a file or folder belongs to the program."""
         if not place or self.folder is None:
             return False
         path = Path(place).resolve()
@@ -105,7 +105,7 @@ class Program:
         return [entry for entry in sys.path if entry not in self._path]
 
     def owns_module(self, module: ModuleType) -> bool:
-        """Tells whether a module is one of the program's helper modules."""
+        """Returns whether a module is one of the program's helper modules."""
         return any(self.owns(place) for place in (getattr(module, "__file__", None) or "", *getattr(module, "__path__", ())))
 
     def short_name(self, fullname: str) -> str:
@@ -147,7 +147,7 @@ class Program:
             return builtins.__import__(name, globals, locals, fromlist or (), level)
 
     def _is_helper(self, root: str) -> bool:
-        """Tells whether a name is that of a helper module in the program's own package."""
+        """Returns whether a name is that of a helper module in the program's own package."""
         if self._package is None or (root in sys.modules and root in sys.stdlib_module_names):
             return False
         full = f"{self._package}.{root}"
@@ -211,5 +211,5 @@ sys.meta_path.insert(0, _HelperFinder())  # it stays, as the finder of the old n
 
 
 def _is_installed(path: Path) -> bool:
-    """Tells whether a file is one of an installed package or of Python itself."""
+    """Returns whether a file is one of an installed package or of Python itself."""
     return "site-packages" in path.parts or path.is_relative_to(Path(sys.prefix).resolve())

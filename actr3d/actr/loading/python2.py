@@ -1,4 +1,4 @@
-"""Tells whether a file that does not compile is written for Python 2, and by what one sees it."""
+"""Returns whether a file that does not compile is written for Python 2, and by what one sees it."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def print_to(tree: ast.Module) -> int | None:
 
 
 def _gives_name(node: ast.AST, name: str) -> bool:
-    """Tells whether a node gives something a name."""
+    """Returns whether a node gives something a name."""
     if isinstance(node, ast.Name):
         return node.id == name and not isinstance(node.ctx, ast.Load)
     own = (getattr(node, "name", None), getattr(node, "arg", None), getattr(node, "asname", None))

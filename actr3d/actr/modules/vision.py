@@ -42,7 +42,7 @@ class Vision(WithParameters, Model):
         self.environmentUpdate()
 
     def isNew(self, obj: Any) -> bool:  # noqa: N802 - Python ACT-R's names, here and below
-        """Tells whether an object appeared within the onset span; notes the time of one not known before."""
+        """Returns whether an object appeared within the onset span; notes the time of one not known before."""
         if not getattr(obj, "visible", True):
             return False
         appeared = self.timeAppeared.get(obj)

@@ -29,7 +29,7 @@ class Weighed(NamedTuple):
 
 
 def _added(utility: float, parts: list[float]) -> float:
-    for part in parts:  # `sum` rounds otherwise from Python 3.12 on
+    for part in parts:  # `sum` rounds differently from Python 3.12 on
         utility += part
     return utility
 
@@ -41,11 +41,11 @@ class ACTR(ProductionSystem):
     production_time_sd: float | None = None
     """The standard deviation of the firing time [s]; None for no noise."""
     production_threshold: float | Callable[[], float] | None = None
-    """The least utility a production needs to fire; a number, a function without arguments, or None for none."""
+    """The minimum utility for firing: a number, a function without arguments, or None for no minimum."""
 
     @property
     def _indifferent(self) -> bool:
-        """Whether utilities are only what productions say of themselves."""
+        """Whether utilities are only the productions' own."""
         return not self._adaptors and not self._own_utility
 
     _weighed: Weighed | None = None
@@ -60,7 +60,7 @@ class ACTR(ProductionSystem):
         super()._convert_info(objects, methods)
 
     def _process_productions(self) -> Iterator[Any]:
-        """Matches, chooses the best, waits, matches again, fires; then lets everything else happen first."""
+        """Matches, chooses the best, waits, matches again, fires; then waits for everything else at that moment."""
         self._begin()
         matcher = self._rules.matcher
         assert matcher is not None
@@ -90,7 +90,7 @@ class ACTR(ProductionSystem):
                 yield AGAIN
 
     def _choose(self, matching: list[Production]) -> Production | None:
-        """Returns one of those with the highest utility, or None where that is below the threshold."""
+        """Returns one of those with the highest utility, or None if that is below the threshold."""
         trace = self.sch.trace
         if len(matching) == 1 and self._indifferent and self.production_threshold is None:
             if trace is not None and trace.all:
@@ -119,11 +119,11 @@ class ACTR(ProductionSystem):
             return None
         return pick(self.random, [p for p, u in zip(matching, utilities, strict=True) if u == best])
 
-    # -- what is told of utilities
+    # -- what a trace receives about utilities
 
     @property
     def _own_utility(self) -> bool:
-        """Whether the modeller says himself what a production is worth."""
+        """Whether the modeller's own `get_activation` computes utilities."""
         return type(self).get_activation is not ACTR.get_activation
 
     def _trace_utilities(self, weighed: Weighed, trace: Trace) -> None:
@@ -201,13 +201,13 @@ class ACTR(ProductionSystem):
     # -- utility
 
     def add_adaptor(self, module: ProceduralSubModule) -> None:
-        """Takes in a module that adds to utilities; done by the module itself when it becomes an attribute."""
+        """Adds a utility module; the module calls this when it becomes an attribute."""
         self._adaptors.append(module)
         for production in self._productions:
             module.create(production)
 
     def reward(self, value: float) -> None:
-        """Gives a reward to the productions that led here."""
+        """Applies a reward to the productions that fired before it."""
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "reward", {"value": value})
@@ -215,11 +215,11 @@ class ACTR(ProductionSystem):
             adaptor.reward(value)
 
     def success(self) -> None:
-        """Gives a reward of 1."""
+        """Applies a reward of 1."""
         self.reward(1)
 
     def failure(self) -> None:
-        """Gives a reward of -1."""
+        """Applies a reward of -1."""
         self.reward(-1)
 
     def get_activation(self, production: Production | str | None = None) -> Any:

@@ -1,4 +1,4 @@
-"""Production compilation: a request and the production that uses its answer become one production without memory."""
+"""Production compilation: combines a production that makes a request and one that uses the answer into one without a request."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from actr3d.actr.procedural.utility import PMNew, ProceduralSubModule, utility_m
 
 
 class CompiledProduction(Production):
-    """What two productions did, one after the other, for the values they had bound.
+    """A production that does what two productions did in sequence, for the values that they had bound.
 
     Args:
         pre: The production that made the request.
         post: The production that used what was retrieved.
-        number: Tells compiled productions of the same parents apart.
-        kept: What `pre` did besides requesting.
-        retrieve: The buffer that need not be looked at any more.
+        number: Distinguishes compiled productions of the same parents.
+        kept: The statements of `pre` other than the request.
+        retrieve: The buffer that it no longer needs to match.
     """
 
     def __init__(
@@ -58,12 +58,12 @@ class CompiledProduction(Production):
 
     @property
     def place(self) -> str:
-        """Where its parents stand."""
+        """The places of its parents."""
         return f"compiled from {self.pre.place} and {self.post.place}"
 
     @property
     def code(self) -> str:
-        """What its parents' bodies do, as text."""
+        """The statements of its parents as text."""
         return "\n".join(map(ast.unparse, [*self._kept, *self.post.node.body]))
 
     @cached_property
@@ -75,7 +75,7 @@ class CompiledProduction(Production):
         return self.post.body_of(self.post.node.body)
 
     def fire(self) -> None:
-        """Carries out what the first production kept, then all that the second did."""
+        """Runs the kept statements of the first production, then all of the second."""
         sch = self.system.sch
         bound: dict[str, Any] = {**(self.bound or {}), **self.pre_bound}
         sch.fired = sch.firing = self
@@ -93,9 +93,9 @@ class CompiledProduction(Production):
 
 
 def _fill(pattern: Any, bound: Bindings) -> Any:
-    """Puts values for the variables of a pattern's text."""
+    """Replaces the variables in a pattern's text by their values."""
     if isinstance(pattern, str):
-        # The longest name first: ?a must not take the beginning of ?ab.
+        # The longest name first: ?a must not match the beginning of ?ab.
         for name in sorted(bound, key=len, reverse=True):
             pattern = pattern.replace(f"?{name}", str(bound[name]))
         return pattern
@@ -105,11 +105,11 @@ def _fill(pattern: Any, bound: Bindings) -> Any:
 
 
 class PMCompile(ProceduralSubModule):
-    """Learns new productions: one that makes a request, followed by one that uses its answer, become one that needs none.
+    """Learns new productions: combines one that makes a request and the next one, which uses the answer.
 
     Args:
         keep: The buffers (or the one buffer) that the productions may match and change.
-        request: How the requesting statement begins, such as `'memory.request'`.
+        request: The beginning of the requesting statement, such as `'memory.request'`.
         retrieve: The buffer in which the answer arrives.
     """
 
@@ -130,7 +130,7 @@ class PMCompile(ProceduralSubModule):
             self.pre.append(prod)
 
     def _kept(self, prod: Production) -> list[ast.stmt] | None:
-        """Returns what a requesting production does besides; None if it does not request, or does what cannot be compiled."""
+        """Returns a production's statements other than the request; None if it makes none, or cannot be compiled."""
         kept: list[ast.stmt] = []
         requests = False
         for statement in prod.node.body:

@@ -1,4 +1,4 @@
-"""One choice among the productions that matched: their utilities, and why each was chosen or not."""
+"""The conflict set: the productions that matched, their utilities, and why each was chosen or not."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class ConflictSet:
-    """What a production system had to choose from, and what it chose."""
+    """The productions that matched at one time, and the one that was chosen."""
 
     utilities: Mapping[str, float]
     """The utility of each production that matched, by its name."""
     parts: Mapping[str, Mapping[str, float]]
     """What each utility module added to it, by the module's name."""
     threshold: float | None
-    """The least utility that could fire; None for no limit."""
+    """The minimum utility for firing; None for no minimum."""
     weighed: bool
     """Whether utilities decided; a plain production system chooses at random."""
     chosen: str | None
-    """The production that is about to fire; None where all lie below the threshold."""
+    """The production that is about to fire; None if all are below the threshold."""
 
     @property
     def held_back(self) -> bool:
-        """Whether even the best production lies below the threshold."""
+        """Whether even the best production is below the threshold."""
         return self.threshold is not None and bool(self.utilities) and max(self.utilities.values()) < self.threshold
 
     def verdict(self, name: str) -> str | None:
-        """Says why a production was chosen or not; None where there was nothing to choose."""
+        """Returns why a production was chosen or not; None if there was nothing to choose."""
         utility = self.utilities.get(name)
         if self.held_back:
             if utility is None:
@@ -35,7 +35,7 @@ class ConflictSet:
             return f"held back: its utility {utility:.4g} is below the production threshold {self.threshold:.4g}"
         if self.chosen is None:
             return None
-        if self.chosen not in self.utilities:  # a trace that begins later does not know
+        if self.chosen not in self.utilities:  # a trace that begins later does not contain them
             return "selected" if name == self.chosen else None
         if name == self.chosen:
             return self._why_chosen()

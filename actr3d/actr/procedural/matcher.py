@@ -1,4 +1,4 @@
-"""Finds the productions that match: those that ask for a certain value are looked up by it, so that the others cost nothing.
+"""Finds the productions that match: productions that test for a certain value are indexed by it, so that the others cost nothing.
 
 Each production is compiled into straight-line code that reads each slot at most once, and only if all tests before it hold.
 """
@@ -35,12 +35,12 @@ class Matcher:
         self._always: list[Production] = []
         self._by_value: list[tuple[Callable[[], Any], dict[Any, list[Production]]]] = []
         self.observed = Observed()
-        """What productions saw that no model's change records."""
+        """What productions read that is not recorded as a change of a model."""
         self.last: list[Production] = []
         """The productions that matched when they were last tried."""
 
     def build(self, productions: Sequence[Production]) -> None:
-        """Takes in all productions of the system, in their order."""
+        """Compiles and indexes all productions of the system, in their order."""
         for production in productions:
             if production not in self._attempts:
                 self._attempts[production] = attempt_for(self._remembering(production), self._context, self._reader)
@@ -55,7 +55,7 @@ class Matcher:
         self._always = []
         indexes: dict[Reading, dict[Any, list[Production]]] = {}
         for production, of in wanted.items():
-            # A value that every such production shares finds nobody faster than trying does.
+            # A value that all these productions test for is useless as an index.
             best = max(of, key=lambda pair: len(spread[pair[0]]), default=None)
             if best is not None and len(spread[best[0]]) > 1:
                 indexes.setdefault(best[0], {}).setdefault(best[1], []).append(production)
@@ -64,9 +64,9 @@ class Matcher:
         self._by_value = [(self._reader(name, key), index) for (name, key), index in indexes.items()]
 
     def _reader(self, name: str, key: Any) -> Callable[[], Any]:
-        """Returns a reader that remembers what it read, where the trace would not know otherwise.
+        """Returns a function that reads a slot, and stores the value if the trace would not record it otherwise.
 
-        It is not read again for that: a property may answer otherwise, or change something, each time it is asked.
+        The trace must not read it again, because a property may return another value, or change something, at each call.
         """
         target = self._context[name]
         read = reader_of(target, key)
@@ -83,7 +83,7 @@ class Matcher:
         return remember
 
     def _remembering(self, production: Production) -> list[Condition]:
-        """Returns a production's conditions, in which the modeller's functions leave word of what they said."""
+        """Returns a production's conditions with the modeller's functions wrapped, so that their results are stored."""
         found: list[Condition] = []
         for number, condition in enumerate(production.conditions):
             if condition.op == "call":
@@ -136,7 +136,7 @@ class Matcher:
         return result
 
     def matches(self, production: Production) -> bool:
-        """Tells whether one production matches now; if so, it keeps what it bound."""
+        """Returns whether one production matches now; if so, it keeps what it bound."""
         try:
             bound = self._attempts[production]()
         except Exception as error:
@@ -155,15 +155,15 @@ def _by_variable(key: Any) -> bool:
 # -- the code that tries one production
 
 Shape = tuple[str, str, int, Any, Any]
-"""A test as the code sees it: (operation, where, number, slot, value); «where» is a buffer, a reader or an extra test."""
+"""A test in the generated code: (operation, where, number, slot, value); «where» is a buffer, a reader or an extra test."""
 Attempt = Callable[[], Bindings | None]
 """Tries a production."""
 Maker = Callable[[Sequence[Buffer], Sequence[Callable[[], Any]], Sequence[tuple[Condition, Any]]], Attempt]
-"""Makes an attempt of a production's buffers, its readers of anything else, and what straight code cannot test."""
+"""Makes an attempt from a production's buffers, its readers of anything else, and the tests that need a function call."""
 
 
 def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
-    """Returns a function that reads a slot of an object as text, in the quickest way for that kind of object."""
+    """Returns a function that reads a slot of an object as text, in the fastest way for that kind of object."""
     if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
 
         def read_attribute() -> str | Missing:
@@ -180,12 +180,12 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
 
 
 def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any], reader: Callable[[str, Any], Callable[[], Any]]) -> Attempt:
-    """Returns a function that tries a production now: it gives what the patterns bind, or None where they do not match.
+    """Returns a function that tries a production: it returns what the patterns bind, or None if they do not match.
 
     Args:
         conditions: The production's conditions.
-        context: The objects they look at, by name.
-        reader: Makes what reads a slot, given as a name and a key, that is not one of a buffer's chunk.
+        context: The objects that they test, by name.
+        reader: Makes a function that reads a slot, given a name and a key, of anything but a buffer's chunk.
     """
     buffers: list[Buffer] = []
     readers: list[Callable[[], Any]] = []
@@ -214,7 +214,7 @@ def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any], rea
 
 @lru_cache(maxsize=4096)
 def _compile(tests: tuple[Shape, ...]) -> Maker:
-    """Writes and compiles the code for tests of one shape; productions of equal shape share it."""
+    """Generates and compiles the code for tests of one shape; productions of equal shape share it."""
     lines: list[str] = []
     last: list[str] = []
     bound: dict[str, str] = {}
@@ -246,14 +246,14 @@ def _compile(tests: tuple[Shape, ...]) -> Maker:
             lines.append(f"if {text} == {value!r}: return None")
         elif value in bound and not extra:
             lines.append(f"if {text} {'!=' if op == 'same' else '=='} {bound[value]}: return None")
-        else:  # a modeller's function may have bound the variable, or bound it anew
+        else:  # a modeller's function may have bound the variable, or changed it
             last.append(f"if {value!r} not in b or {text} {'!=' if op == 'same' else '=='} b[{value!r}]: return None")
     lines.append("b = {" + ", ".join(f"{name!r}: {text}" for name, text in bound.items()) + "}")
     return _assemble([*lines, *last, "return b"], tests)
 
 
 def _assemble(lines: Sequence[str], tests: Sequence[Shape]) -> Maker:
-    """Compiles a function of these lines, inside one that gives it the objects it looks at by name."""
+    """Compiles a function of these lines inside one that provides the objects it tests by name."""
     given = {f"{where}{number}": f"{_GIVEN[where]}[{number}]" for _, where, number, _, _ in tests}
     outer = [f"{name} = {place}" for name, place in given.items()]
     code = ["def make(buffers, readers, extras, MISSING, as_text, holds):", *(f"    {line}" for line in outer), "    def attempt():"]
@@ -265,12 +265,12 @@ def _assemble(lines: Sequence[str], tests: Sequence[Shape]) -> Maker:
 
 
 _PLACE = str(Path(__file__).with_name("<attempt>"))
-"""What tracebacks call such code: a place in the library, so that it is taken for no line of the modeller's."""
+"""The file name of generated code in tracebacks: a place in the library, so that it does not look like the modeller's code."""
 _GIVEN = {"buffer": "buffers", "reader": "readers", "extra": "extras"}
 
 
 def _holds(extra: tuple[Condition, Any], bound: Bindings) -> bool:
-    """Tests what straight code cannot: emptiness, a modeller's function, a slot whose name is itself in a variable (`?s:1`)."""
+    """Tests what needs a function call: emptiness, a modeller's function, a slot named by a variable (`?s:1`)."""
     condition, target = extra
     if condition.op == "empty":
         return is_empty(target)

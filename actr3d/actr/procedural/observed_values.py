@@ -1,7 +1,7 @@
-"""What productions see that no model's change records: plain objects, properties, and what modellers' functions say.
+"""What productions read that is not recorded as a change of a model: plain objects, properties, results of modellers' functions.
 
-It is not looked at again for an explanation: a property may answer otherwise, or change something, each time it is
-asked. What can be read without running any code is told to a trace after each match, the rest as it was last seen.
+An explanation must not read it again, because a property may return another value, or change something, at each call.
+After each match, a trace receives the current values that can be read without running any code, and the last known of the rest.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from actr3d.actr.procedural.safe_reading import UNKNOWN, plain_empty, plain_valu
 
 
 class Asked(NamedTuple):
-    """What a modeller's function in a pattern said when it was last asked."""
+    """The last result of a modeller's function in a pattern."""
 
     given: Bindings
-    """The variables as it got them."""
+    """The variables before the call."""
     agrees: bool
     bound: Bindings
-    """The variables after it, and after the functions that followed it."""
+    """The variables after it, and after the functions that followed."""
     time: int
-    """When [us]."""
+    """The time of the call [us]."""
 
     def plain(self) -> list[Any]:
-        """Returns it as plain values, for the trace and for explanations."""
+        """Returns the result as plain values, for the trace and for explanations."""
         return [_plain(self.given), self.agrees, _plain(self.bound)]
 
 
 def _plain(bound: Bindings) -> dict[str, Any]:
-    """Returns variables as a trace keeps them: plain values as they are, others as text."""
+    """Returns variables as a trace keeps them: plain values unchanged, others as text."""
     found: dict[str, Any] = {}
     for name, value in bound.items():
         found[name] = value if type(value) in LASTING_TYPES else plain_text(value) or f"<{type(value).__name__}>"
@@ -42,21 +42,21 @@ def _plain(bound: Bindings) -> dict[str, Any]:
 
 
 def answer_label(production: str, number: int) -> str:
-    """Returns the label under which a trace has what the function in a production's condition said."""
+    """Returns the label under which a trace has the result of the function in a production's condition."""
     return f"{production}()[{number}]"
 
 
 def tells_changes(target: Any, key: Any) -> bool:
-    """Tells whether a trace learns of every change of an attribute, as long as its value is plain."""
+    """Returns whether a trace records every change of an attribute, as long as its value is plain."""
     if not isinstance(target, Model) or not isinstance(key, str) or "." in key:
         return False
     return type(target).__getitem__ is Model.__getitem__ and key not in UNWATCHED and key[:1] != "_"
 
 
 def is_recorded(target: Any, key: Any) -> bool:
-    """Tells whether every change of what a reading reads goes through the trace by itself.
+    """Returns whether the trace records every change of a slot or attribute anyway.
 
-    A key of None asks whether the target is empty.
+    A key of None stands for whether the target is empty.
     """
     if key is None or reads_chunk(target, key):
         return hasattr(target, "chunk")
@@ -64,27 +64,27 @@ def is_recorded(target: Any, key: Any) -> bool:
 
 
 def _lasts(target: Any, key: str) -> bool:
-    """Tells whether an attribute's present value never changes by itself."""
+    """Returns whether an attribute's current value is immutable."""
     own: dict[str, Any] = target.__dict__
     return type(own.get(key, MISSING)) in LASTING_TYPES
 
 
 class Observed:
-    """What the productions of one system see beyond what the trace records by itself."""
+    """What the productions of one system read beyond what the trace records anyway."""
 
     def __init__(self) -> None:
         self.looked: dict[str, Any] = {}
-        """What productions saw when they last looked, as text; None for what was not there."""
+        """What productions read last, as text; None for what was missing."""
         self.asked: dict[tuple[str, int], Asked] = {}
-        """What functions said, by the production's name and the condition's number."""
+        """The last results of functions, by the production's name and the condition's number."""
         self.used = False
-        """Whether productions look at anything of that kind."""
+        """Whether productions read anything of that kind."""
         self._watched: dict[str, tuple[Any, Any]] = {}
-        self._told: dict[str, Any] = {}
+        self._reported: dict[str, Any] = {}
         self._listener: object = None
 
     def watch(self, name: str, key: Any, target: Any) -> str:
-        """Takes in one reading, and returns its label; a key of None asks whether the target is empty."""
+        """Adds one reading, and returns its label; a key of None stands for whether the target is empty."""
         label = f"{name}.{key}"
         if not (hasattr(target, "chunk") if key is None else reads_chunk(target, key)):
             self._watched[label] = target, key
@@ -92,21 +92,21 @@ class Observed:
         return label
 
     def news(self, listener: object) -> dict[str, Any]:
-        """Returns what has changed since the same listener last asked, or all for a new one.
+        """Returns what has changed since the last call by the same listener, or everything for a new one.
 
-        Values are as text, None for what is not there; emptiness is True or False; a function's word is a list of the
-        variables before, whether it agreed, and the variables after it.
+        Values are text, None for what is missing; emptiness is True or False; a function's result is a list of the variables
+        before, whether it agreed, and the variables after.
         """
         if listener is not self._listener:
-            self._listener, self._told = listener, {}
+            self._listener, self._reported = listener, {}
         known = self.everything()
-        news = {label: value for label, value in known.items() if self._told.get(label, UNKNOWN) != value}
-        # What is not among it is told by the trace's other events now; if it comes back, that is news.
-        self._told = known
+        news = {label: value for label, value in known.items() if self._reported.get(label, UNKNOWN) != value}
+        # The trace's other events now report what is not included here; if it is included again, that is news.
+        self._reported = known
         return news
 
     def everything(self) -> dict[str, Any]:
-        """Returns all that productions see now, or saw when they last looked, as `news` tells it."""
+        """Returns everything that productions read, now or last, in the form of `news`."""
         known: dict[str, Any] = {}
         for label, (target, key) in self._watched.items():
             if not (tells_changes(target, key) and _lasts(target, key)):

@@ -1,4 +1,4 @@
-"""Productions: what a method with patterns as its defaults becomes."""
+"""Productions: made from methods whose defaults are patterns."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Owner(Protocol):
 
 
 class Production:
-    """One rule of a production system: patterns to match, and a body to carry out.
+    """One rule of a production system: patterns to match, and a body to run.
 
     Args:
         system: The production system it belongs to.
@@ -35,12 +35,12 @@ class Production:
         func: The modeller's method; its parameters name what to match, its defaults are the patterns.
 
     Raises:
-        ProductionException: If a pattern cannot be read, or the body's source is not to be had.
+        ProductionException: If a pattern cannot be parsed, or the body's source is not available.
     """
 
     base_utility: float = 0
     parents: tuple[str, ...] = ()
-    """The names of the two productions that a compiled one was made of."""
+    """The names of the two productions that a compiled one was made from."""
 
     def __init__(self, system: Owner, name: str, func: Callable[..., Any]) -> None:
         self.system = system
@@ -55,13 +55,13 @@ class Production:
         except PatternException as error:
             raise PatternException(f"production '{name}' ({self.place}): {error}") from None
         self.bound: Bindings | None = None
-        """What the last match bound."""
+        """The variables that the last match bound."""
         self.context: dict[str, Any] = {}
         """What the body sees by name; set when the system begins."""
 
     @property
     def place(self) -> str:
-        """Where the modeller wrote it: `file:line`."""
+        """Where it is written: `file:line`."""
         return place(self.original_func)
 
     @cached_property
@@ -69,7 +69,7 @@ class Production:
         """The syntax tree of the modeller's method.
 
         Raises:
-            ProductionException: If its source is not to be had.
+            ProductionException: If its source is not available.
         """
         node = function_node(self.original_func)
         if node is None:
@@ -94,7 +94,7 @@ class Production:
 
     @cached_property
     def more_bound(self) -> bool:
-        """Whether a function among the patterns may bind variables too."""
+        """Whether a function among the patterns may also bind variables."""
         return any(condition.op == "call" for condition in self.conditions)
 
     @cached_property
@@ -123,17 +123,17 @@ class Production:
         return self.body_of(self.node.body)
 
     def share_globals(self) -> None:
-        """Makes what the body declares global, and an initializer has assigned, a global of the modeller's file."""
+        """Moves names that the body declares global, and an initializer has assigned, to the globals of the modeller's file."""
         func = self.original_func
         for name in assigned_globals(func) & self.context.keys():
             func.__globals__[name] = self.context.pop(name)
 
     def scope(self, bound: Bindings) -> Bindings:
-        """Returns the bound variables in the form the body asks for."""
+        """Returns the bound variables in the form that the body needs."""
         return Scope(bound, self.context, self.original_func) if self._looks_up else bound
 
     def fire(self) -> None:
-        """Carries out the body, with what the last match bound."""
+        """Runs the body with the variables that the last match bound."""
         sch = self.system.sch
         bound = sch.bound = self.scope(self.bound or {})
         sch.fired = sch.firing = self
@@ -146,7 +146,7 @@ class Production:
             sch.firing = None
 
     def note(self, error: Exception) -> None:
-        """Adds to an error which production it happened in, and what a misspelt name may have meant."""
+        """Adds a note to an error: the production in which it occurred, and what a misspelt name may mean."""
         hint = hint_for(error, [*(self.system.sch.bound or {}), *self.context, *self.original_func.__globals__])
         error.add_note(f"in production '{self.name}' ({self.place}) at {self.system.now():g} s{hint}")
 
@@ -155,7 +155,7 @@ class Production:
 
 
 def defaults_of(func: Callable[..., Any]) -> dict[str, Any] | None:
-    """Returns the parameters of a function with their defaults, or None where one has none: then it is no production."""
+    """Returns the parameters of a function with their defaults, or None if one has none, so that it is no production."""
     spec = inspect.getfullargspec(func)
     if spec.varargs is not None or spec.varkw is not None or len(spec.args) != len(spec.defaults or ()):
         return None

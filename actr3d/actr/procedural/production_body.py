@@ -1,9 +1,8 @@
-"""Turns the body of a production into a function of what the production has bound.
+"""Converts the body of a production to a function of the bound variables.
 
-A body sees, nearest first: its bound variables and whatever it assigns itself; the attributes of its agent and of the
-agent's ancestors; the names of a function that the agent's class is written in; the globals of its own file. What it
-assigns becomes visible to `?name` in the texts it passes on.
-Lines keep their numbers, so that a traceback shows the modeller's own file.
+A body sees, nearest first: its bound variables and the names that it assigns; the attributes of its agent and of the agent's
+ancestors; the variables of a function around the agent's class; the globals of its own file. `?name` in the texts that it
+passes on sees what it assigns. Line numbers are kept, so that a traceback shows the modeller's own file.
 """
 
 from __future__ import annotations
@@ -27,12 +26,12 @@ _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
 class Scope(dict[str, Any]):
-    """What a body has bound; what is not bound here is looked up further out.
+    """The variables that a body has bound; other names are looked up further out.
 
     Args:
-        bound: What the patterns bound.
-        context: What the agent and its ancestors offer by name.
-        func: The modeller's function; it knows the names around it and the globals of its file.
+        bound: The variables that the patterns bound.
+        context: The attributes of the agent and its ancestors, by name.
+        func: The modeller's function, for the variables around it and the globals of its file.
     """
 
     def __init__(self, bound: Mapping[str, Any], context: Mapping[str, Any], func: Callable[..., Any]) -> None:
@@ -82,19 +81,18 @@ def compile_body(
     context: Mapping[str, Any],
     more_bound: bool = False,
 ) -> Body:
-    """Makes a function of a body's statements.
+    """Compiles a body's statements to a function.
 
     Args:
-        statements: The body, or some of its statements, as parsed; they are left as they are.
-        func: The modeller's function they are taken from: its file's globals and the variables around it stay live.
+        statements: The body, or some of its statements, as parsed; they are not changed.
+        func: The modeller's function that they come from; its file's globals and the variables around it stay live.
         name: The production's name, which tracebacks show.
         bound: The variables that the patterns bind.
-        context: What the agent and its ancestors offer by name; fixed from here on.
+        context: The attributes of the agent and its ancestors by name; fixed from now on.
         more_bound: Whether a function among the patterns may bind more variables, so that any name may be one.
 
     Returns:
-        A function that takes the bound variables. Where the body assigns names, or with `more_bound`, these must be a
-        `Scope`.
+        A function that takes the bound variables. If the body assigns names, or with `more_bound`, they must be a `Scope`.
 
     Raises:
         ProductionException: If the body contains `yield`, or cannot be compiled.
@@ -102,7 +100,7 @@ def compile_body(
     names = _names_of(tuple(statements))
     around = cells(func)
     if for_python_actr(func.__globals__):
-        # There, a body does not see its file: what Python itself names so is meant, whatever the file calls by that name.
+        # There, a body does not see its file's globals: a builtin's name means the builtin, whatever the file assigns to it.
         context = {**{n: BUILTINS[n] for n in names if n in BUILTINS}, **context}
     seen = frozenset(n for n in names if n in context or n in around)
     code, given = _code_of(statements, func, name, tuple(bound), seen, more_bound)
@@ -117,7 +115,7 @@ def compile_body(
 
 _CODES: dict[Any, tuple[CodeType, Sequence[str]]] = {}
 MOST_CODES = 10_000
-"""How many bodies' code is kept."""
+"""The number of bodies whose code is kept."""
 
 
 @lru_cache(maxsize=MOST_CODES)
@@ -128,7 +126,7 @@ def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
 def _code_of(
     statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: tuple[str, ...], seen: frozenset[str], more_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
-    """Returns what `_compile` makes, once for all agents of a class: they differ in what their names mean, not in their code."""
+    """Returns the result of `_compile`, once for all agents of a class: their names have different values, but their code is equal."""
     places = tuple((statement.lineno, statement.col_offset) for statement in statements)
     key = (func.__code__, func.__code__.co_filename, func.__qualname__, name, places, bound, seen, more_bound)
     made = _CODES.get(key)
@@ -143,7 +141,7 @@ def _code_of(
 def _compile(
     statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: Iterable[str], more_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
-    """Compiles a function that takes what the body is given by name, and returns the body as a function; and those names."""
+    """Compiles a function that takes objects by name and returns the body as a function; returns its code, and these names."""
     filename = func.__code__.co_filename
     stored = stored_names(statements)
     used = used_names(statements)
@@ -163,14 +161,14 @@ def _compile(
     module = ast.fix_missing_locations(ast.Module([outer], []))
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # whatever there is to say was said when the file itself was compiled
+            warnings.simplefilter("ignore")  # the compiler has issued all warnings about the file
             return compile(module, filename, "exec", dont_inherit=True), given
     except SyntaxError as error:
         raise ProductionException(f"{filename}:{error.lineno or first.lineno}: production '{name}': {error.msg}") from error
 
 
 def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) -> None:
-    """Raises an error where a body waits."""
+    """Raises an error if a body contains `yield`."""
     for node in statements:
         for part in _own_nodes(node):
             if isinstance(part, (ast.Yield, ast.YieldFrom, ast.Await)):
@@ -182,7 +180,7 @@ def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) ->
 
 
 class _Mangler(ast.NodeTransformer):
-    """Gives private attributes (`self.__x`) the name that Python gives them in the methods of the same class."""
+    """Renames private attributes (`self.__x`) as Python does in the methods of the same class."""
 
     def __init__(self, func: Callable[..., Any]) -> None:
         path = func.__qualname__.split(".")
@@ -195,7 +193,7 @@ class _Mangler(ast.NodeTransformer):
         return node
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
-        return node  # a class inside has a name of its own
+        return node  # an inner class mangles with its own name
 
 
 def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:
@@ -207,8 +205,8 @@ def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:
 
 
 def _function(name: str, parameters: Sequence[str], body: list[Any], at: ast.AST) -> ast.FunctionDef:
-    """Returns a plain function definition that stands where `at` stands."""
+    """Returns a plain function definition at the position of `at`."""
     args = ast.arguments(posonlyargs=[], args=[ast.arg(p) for p in parameters], kwonlyargs=[], kw_defaults=[], defaults=[])
     node: Any = ast.FunctionDef(name=name, args=args, body=body or [ast.Pass()], decorator_list=[])
-    node.type_params = []  # Python 3.12 and newer ask for it
+    node.type_params = []  # required from Python 3.12 on
     return ast.copy_location(node, at)

@@ -22,7 +22,7 @@ from actr3d.errors import ProductionException, did_you_mean
 from actr3d.trace import Trace
 
 FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
-"""Parameters that may be functions without arguments, which are no productions then."""
+"""Parameters that may be functions without arguments; these are not productions then."""
 
 BEFORE_FIRST_CYCLE: list[Callable[[ProductionSystem], Callable[[], object] | None]] = []
 """Called with a system that is about to begin, before its methods without parameters; what they return is called after these.
@@ -255,7 +255,7 @@ class ProductionSystem(WithParameters, Model):
             at: A past time of a traced run [s]; None for now.
 
         Raises:
-            ParameterError: If it is no time, lies ahead, or the run was not traced (level «all») or the agent not there then.
+            ParameterError: If `at` is no time or in the future, or the run was not traced (level «all») or had no such agent then.
         """
         return EXPLAINERS[-1](self, at)
 

@@ -1,7 +1,7 @@
-"""Which names a piece of code assigns, and how its assignments are led to a production's bound variables.
+"""Finds the names that code assigns, and redirects assignments to a production's bound variables.
 
-Python decides by the place of an assignment whose name it is; the rules here are Python's own: comprehensions, lambdas,
-functions and classes inside a body have names of their own, and `global` and `nonlocal` give them away again.
+The rules are Python's: comprehensions, lambdas, functions and classes inside a body are scopes of their own, and `global` and
+`nonlocal` assign a name to another scope.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, cast
 
 BOUND = "__bound__"
-"""How a compiled body calls its bound variables."""
+"""The name of the bound variables in a compiled body."""
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _SCOPES = (*_FUNCTIONS, ast.Lambda, ast.ClassDef)
 _COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
@@ -33,7 +33,7 @@ class Names:
         return self.assigned - self.declared_global - self.declared_nonlocal
 
     def _collect(self, node: ast.AST, inner: bool) -> None:
-        """Takes in a node; `inner` tells whether it is inside a comprehension, whose targets are its own."""
+        """Collects the names of a node; `inner` is whether it is inside a comprehension, whose targets are its own."""
         if isinstance(node, ast.Name):
             if isinstance(node.ctx, (ast.Store, ast.Del)) and not inner:
                 self.assigned.add(node.id)
@@ -65,7 +65,7 @@ class Names:
 
 
 def outside(node: Any) -> list[ast.expr]:
-    """Returns the parts of a function, lambda or class that are evaluated where it stands: decorators, defaults, bases."""
+    """Returns the parts of a function, lambda or class that are evaluated in the scope around it: decorators, defaults, bases."""
     if isinstance(node, ast.ClassDef):
         return [*node.decorator_list, *node.bases, *(keyword.value for keyword in node.keywords)]
     defaults = [*node.args.defaults, *(d for d in node.args.kw_defaults if d is not None)]
@@ -94,7 +94,7 @@ def used_names(nodes: Iterable[ast.AST]) -> set[str]:
 
 
 class Rebinder(ast.NodeTransformer):
-    """Makes every use of an assigned name a use of the bound variables, so that they always hold its newest value.
+    """Replaces every use of an assigned name by a use of the bound variables, so that they always contain its current value.
 
     Args:
         stored: The names the body assigns.
@@ -103,7 +103,7 @@ class Rebinder(ast.NodeTransformer):
     def __init__(self, stored: set[str]) -> None:
         self.stored = stored
         self._seen_by_functions = stored
-        """What functions inside see; it differs from `stored` only inside a class."""
+        """The names that inner functions see; they differ from `stored` only inside a class."""
 
     def body(self, statements: Iterable[ast.stmt]) -> list[ast.stmt]:
         """Rewrites statements (in place) and returns them."""
@@ -123,7 +123,7 @@ class Rebinder(ast.NodeTransformer):
         return ast.fix_missing_locations(ast.copy_location(call, at))
 
     def _sync(self, names: Iterable[str], at: ast.AST) -> list[ast.stmt]:
-        """Statements that bind names which Python could only assign plainly."""
+        """Returns statements that copy plainly assigned names to the bound variables."""
         out: list[ast.stmt] = []
         for name in names:
             if name in self.stored:
@@ -157,7 +157,7 @@ class Rebinder(ast.NodeTransformer):
         return [self.visit(node) for node in nodes]
 
     def _outside(self, node: Any) -> None:
-        """Rewrites what is evaluated where a function, lambda or class stands."""
+        """Rewrites the parts of a function, lambda or class that are evaluated in the scope around it."""
         if isinstance(node, ast.ClassDef):
             node.bases = self._visit_all(node.bases)
             for keyword in node.keywords:
@@ -205,7 +205,7 @@ class Rebinder(ast.NodeTransformer):
 
     def _comprehension(self, node: Any) -> Any:
         first, *others = node.generators
-        first.iter = self.visit(first.iter)  # evaluated where the comprehension stands
+        first.iter = self.visit(first.iter)  # evaluated in the scope around the comprehension
         targets = {n.id for g in node.generators for n in ast.walk(g.target) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
         before = self._function_scope(targets)
         first.target = self.visit(first.target)
@@ -239,7 +239,7 @@ class Rebinder(ast.NodeTransformer):
         return node
 
     def visit_Match(self, node: ast.Match) -> Any:
-        """A pattern can name a class or a constant only plainly: it gets a plain copy of the bound variable."""
+        """Rewrites a match statement; patterns can refer to a class or constant only by a plain name, so they get plain copies."""
         named = {n.id for case in node.cases for n in ast.walk(case.pattern) if isinstance(n, ast.Name) and n.id in self.stored}
         copies: list[ast.stmt] = []
         for name in sorted(named):

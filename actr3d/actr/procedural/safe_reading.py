@@ -1,4 +1,4 @@
-"""Reads values without running any code of the modeller's."""
+"""Reads values without running any of the modeller's code."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 
 UNKNOWN: Final = Missing()
-"""Stands for a value that only code could tell: a property's, or that of an object with items of its own."""
+"""Represents a value that only the modeller's code can compute: a property's, or an item of an object with its own items."""
 
 _ITEMS: tuple[Any, ...] = tuple(vars(kind)["__getitem__"] for kind in (dict, list, tuple))
 _WITH_LENGTH = (str, dict, tuple, list, set, frozenset)
 
 
 def plain_value(target: Any, path: Slot) -> Any:
-    """Follows a slot's name from an object; returns MISSING where it leads nowhere, UNKNOWN where only code can tell."""
+    """Returns the value of a slot in an object; MISSING if there is none, UNKNOWN if only the modeller's code can compute it."""
     value: Any = target
     for name in path.split(".") if isinstance(path, str) else (path,):
         value = _step(value, name)
@@ -67,7 +67,7 @@ def _attribute(target: Any, kind: Any, name: str) -> Any:
 
 
 def plain_empty(target: Any) -> bool | Missing:
-    """Tells whether an object counts as empty, as the pattern None asks; UNKNOWN where only code can tell."""
+    """Returns whether the pattern None matches an object; UNKNOWN if only the modeller's code can compute it."""
     if target is None:
         return True
     if isinstance(target, Buffer):

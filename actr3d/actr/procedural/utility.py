@@ -1,6 +1,6 @@
-"""Modules that give productions their utility, and learn it.
+"""Utility modules: compute the utilities of productions, and learn them.
 
-Each is an attribute of an agent: `pm = PMNew(alpha=0.1)`. An agent's utilities are the sum of what all of them say.
+Each is an attribute of an agent: `pm = PMNew(alpha=0.1)`. A production's utility is the sum of the parts of all modules.
 """
 
 from __future__ import annotations
@@ -20,29 +20,29 @@ class ProceduralSubModule(WithParameters, Model):
     """The base of all utility modules; each method may be overridden."""
 
     def start(self) -> None:
-        """Joins the agent."""
+        """Registers the module with the agent."""
         self.parent.add_adaptor(self)  # type: ignore[union-attr]
 
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
-        """Takes in a production; `parents` are the two that a compiled one was made of."""
+        """Is called for each new production; `parents` are the two that a compiled one was made from."""
 
     def selecting(self, prod: Any) -> None:
-        """Is told that a production has been chosen."""
+        """Is called when a production has been chosen."""
 
     def firing(self, prod: Any) -> None:
-        """Is told that a production fires."""
+        """Is called when a production fires."""
 
     def reward(self, value: float) -> None:
-        """Takes a reward."""
+        """Is called with each reward."""
 
     def utility(self, prod: Any) -> float:
         """Returns this module's part of a production's utility."""
         return 0
 
     def _standing(self, prod: Any) -> float | None:
-        """Returns its part without using up a random number; None where only a choice tells it.
+        """Returns its part without drawing a random number; None if it is known only when a choice is made.
 
-        A modeller's own module is asked at choices only.
+        A modeller's own module is called only when a choice is made.
         """
         if type(self).utility.__module__ != __name__:
             return None
@@ -52,10 +52,10 @@ class ProceduralSubModule(WithParameters, Model):
             return None
 
     def below_threshold(self) -> None:
-        """Is told that no production's utility reached the threshold."""
+        """Is called when no production's utility has reached the threshold."""
 
     _decisive: ClassVar[frozenset[str]] = frozenset()
-    """The attributes of the module that say what all productions are worth."""
+    """The attributes of the module that the utilities of all productions depend on."""
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         super()._trace_change(trace, key, value)
@@ -64,7 +64,7 @@ class ProceduralSubModule(WithParameters, Model):
                 self._trace_part(trace, production, self._standing(production))
 
     def _learned(self, prod: Any) -> None:
-        """Records what a production's utility has become by learning."""
+        """Records a production's utility after learning."""
         trace = self.sch.trace
         if trace is not None and trace.all and self.parent is not None:
             part = self._standing(prod)
@@ -85,8 +85,8 @@ class PMNoise(ProceduralSubModule):
     """Adds logistic noise to utilities.
 
     Args:
-        noise: s of what is drawn anew at each choice.
-        baseNoise: s of what is drawn once for each production.
+        noise: s of the noise drawn at each choice.
+        baseNoise: s of the noise drawn once for each production.
     """
 
     _decisive = frozenset({"noise"})
@@ -115,7 +115,7 @@ class PMPGC(ProceduralSubModule):
     """Utility as expected gain, U = P G - C, learned from successes, failures and the time that was spent.
 
     Args:
-        goal: G, what reaching the goal is worth [s].
+        goal: G, the value of reaching the goal [s].
 
     Source: Anderson & Lebiere (1998), chapter 3.
     """
@@ -129,7 +129,7 @@ class PMPGC(ProceduralSubModule):
         self._rewarded = False
 
     def selecting(self, prod: Any) -> None:
-        """Notes a production with the time of its choice [s], and first forgets those that a reward has reached."""
+        """Records a production with the time of its choice [s]; after a reward, clears the earlier ones first."""
         if self._rewarded:
             self.history.clear()
             self._rewarded = False
@@ -156,7 +156,7 @@ class PMPGC(ProceduralSubModule):
         self._rewarded = True
 
     def _learned(self, prod: Any) -> None:
-        # All such modules of one agent count in the same history of a production.
+        # All such modules of one agent share a production's history.
         for module in utility_modules(self.parent):
             if isinstance(module, PMPGC):
                 ProceduralSubModule._learned(module, prod)
@@ -222,7 +222,7 @@ class PMNew(ProceduralSubModule):
         """Whether a reward has come since the latest choice; public, so that Python ACT-R's logs show it."""
 
     def selecting(self, prod: Any) -> None:
-        """Notes a production with the time of its choice [s], and first forgets those that a reward has reached."""
+        """Records a production with the time of its choice [s]; after a reward, clears the earlier ones first."""
         if self.clearFlag:
             self.history.clear()
             self.clearFlag = False
@@ -232,7 +232,7 @@ class PMNew(ProceduralSubModule):
         prod.util = 0
 
     def reward(self, value: float) -> None:
-        """Moves the utility of each production since the latest reward towards the reward less the time since its choice."""
+        """Moves the utility of each production since the latest reward towards the reward minus the time since its choice."""
         now = self.now()
         whole = self._profile is not None and self._profile.total_utility
         for prod, chosen in self.history:
@@ -242,7 +242,7 @@ class PMNew(ProceduralSubModule):
         self.clearFlag = True
 
     def utility(self, prod: Any) -> float:
-        """Returns what has been learned of a production; 0 as long as no reward has reached it."""
+        """Returns a production's learned utility; 0 before its first reward."""
         return prod.util
 
     def recreated(self, prod: Any, first: Any) -> None:
@@ -253,12 +253,12 @@ class PMNew(ProceduralSubModule):
 
 
 class PMTD(ProceduralSubModule):
-    """Temporal-difference learning: a production is worth its reward and what the next one is worth, discounted by time.
+    """Temporal-difference learning: a production's utility is its reward plus the utility of the next one, discounted by time.
 
     Args:
         alpha: The learning rate.
         discount: k in the hyperbolic discount 1 / (1 + k t) [1/s].
-        cost: What firing costs.
+        cost: The cost of firing.
 
     Source: Fu & Anderson (2004), Proceedings of the Cognitive Science Society.
     """
