@@ -11,8 +11,6 @@ import pytest
 from living import near
 from reference import LIBRARIES, model_file, recording_buffer
 
-from actr3d.actr.kernel.model import ensure_converted
-
 Modules = Callable[[Any], dict[str, Any]]
 
 UTILITIES: dict[str, Modules] = {
@@ -39,7 +37,7 @@ def states(agent: Any) -> list[dict[str, float]]:
 
 def choose(library: Any, modules: dict[str, Any], seed: int, threshold: float | None) -> tuple[list[Any], list[dict[str, float]], float]:
     agent = model_file("choosing").make(library, threshold, **modules)()
-    ensure_converted(agent)
+    agent._ensure_converted()
     agent.random.seed(seed)
     for adaptor in agent._adaptors:  # base noise comes from the seed too
         for production in agent._productions:
@@ -87,7 +85,7 @@ def test_compilation(seed: int) -> None:
         events: list[tuple[float, dict[Any, Any] | None]] = []
         goal = recording_buffer(library, events)
         agent = model_file("recalling").make(library, goal, noise=library.PMNoise(noise=1.5))()
-        ensure_converted(agent)
+        agent._ensure_converted()
         agent.random.seed(seed)
         agent.run(limit=30)
         record = [(repr(sorted((chunk or {}).items())), time) for time, chunk in events]

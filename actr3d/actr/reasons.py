@@ -16,15 +16,15 @@ MOST_SHOWN = 12
 
 @dataclass(frozen=True, kw_only=True)
 class ConditionReason:
-    """How one condition of a production stands."""
+    """Whether one condition of a production holds."""
 
     condition: str
     holds: bool | None
-    """None where it cannot be told, as of what rests on a variable that no condition has bound."""
+    """None if it is not known, for example because it depends on a variable that no condition has bound."""
     expected: str
     found: str
     seen: str | None
-    """How what was found is known; None where it is certain at that time."""
+    """How what was found is known; None if it is certain at that time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,28 +35,28 @@ class ProductionReason:
     system: str
     """The production system it belongs to, as a dotted path."""
     parents: tuple[str, ...] = ()
-    """The two productions that a compiled one was made of."""
+    """The two productions that a compiled one was made from."""
     matches: bool | None
-    """None where it cannot be told: see `condition` and `found`."""
+    """None if it is not known: see `condition` and `found`."""
     condition: str | None = None
-    """The first condition that fails; None where all hold."""
+    """The first condition that fails; None if all hold."""
     expected: str | None = None
     found: str | None = None
     seen: str | None = field(default=None, compare=False)
-    """How what was found is known, such as «as seen since 0.050 s»; None where it is certain at that time."""
+    """How what was found is known, such as «as seen since 0.050 s»; None if it is certain at that time."""
     bindings: Mapping[str, str]
-    """What the conditions before the failing one bound."""
+    """The variables bound by the conditions before the failing one."""
     conditions: tuple[ConditionReason, ...] = field(default=(), compare=False)
-    """How each condition stands, in the order in which they are tried; also those after the failing one, as far as can be told."""
+    """All conditions in the order in which they are tested; also those after the failing one, as far as they are known."""
     utility: float | None
-    """The sum of the parts that are known; None where a part cannot be told."""
+    """The sum of the parts; None if a part is not known."""
     parts: Mapping[str, float | None]
-    """The production's own utility as «base», and what each utility module adds, by its name; None where it is not known:
-    noise is drawn only when there is a choice to make. Where the agent has its own `get_activation`, only what that said."""
+    """The production's own utility as «base», and what each utility module adds, by its name; None if it is not known: noise is
+    drawn only when a choice is made. If the agent has its own `get_activation`, only its result."""
     selected: bool
     """Whether it has been chosen and is about to fire, if it still matches then."""
     verdict: str | None
-    """Why it was chosen or lost at the latest choice, with the utilities of that moment; None where no choice stands."""
+    """Why it was chosen or lost at the latest choice, with the utilities of that moment; None if there is no current choice."""
 
     def __str__(self) -> str:
         bound = "".join(f"  ?{name}={value}" for name, value in self.bindings.items())
@@ -80,12 +80,12 @@ class ProductionReason:
 
 @dataclass(frozen=True, kw_only=True)
 class CandidateReason:
-    """How one chunk stood in a request."""
+    """The activation of one candidate of a request."""
 
     chunk: str
     activation: float
     parts: Mapping[str, float]
-    """What each activation module added, by its class (numbered where there are several), and «partial», what mismatches cost."""
+    """What each activation module added, by its class (numbered if there are several), and «partial», the mismatch penalty."""
     verdict: str
     """Why it won or lost."""
 
@@ -96,27 +96,27 @@ class CandidateReason:
 
 @dataclass(frozen=True, kw_only=True)
 class RetrievalReason:
-    """The last request to a memory, and what came of it."""
+    """The last request to a memory, and its outcome."""
 
     memory: str
     time: float
-    """When it was made [s]."""
+    """The time of the request [s]."""
     request: str
     """The pattern as it was written."""
     asked: str
-    """The pattern with the values its variables had."""
+    """The pattern with the values of its variables."""
     threshold: float | None
     require_new: bool
     finsts: tuple[str, ...]
-    """What counted as retrieved lately."""
+    """The chunks that counted as retrieved recently."""
     excluded: tuple[str, ...]
-    """Matching chunks left out for that reason."""
+    """Matching chunks that were excluded for that reason."""
     candidates: tuple[CandidateReason, ...]
     """The matching chunks, most active first."""
     outcome: str
     """«retrieved», «failed», or «pending»: the answer is still on its way."""
     latency: float | None
-    """How long the answer takes [s]; None where it is not known yet."""
+    """The time until the answer [s]; None if it is not known yet."""
 
     def __str__(self) -> str:
         limit = "no threshold" if self.threshold is None else f"threshold {self.threshold:g}"
@@ -137,13 +137,13 @@ class RetrievalReason:
 
 @dataclass(frozen=True, kw_only=True)
 class FeatureReason:
-    """How one feature stood in a search."""
+    """The result of a search for one feature."""
 
     feature: str
     salience: float | None
-    """None where it is not what was asked for."""
+    """None if the feature does not match the request."""
     verdict: str
-    """Why it was brought or not."""
+    """Why it was chosen or not."""
 
     def __str__(self) -> str:
         weight = "" if self.salience is None else f"salience {self.salience:.4g}, "
@@ -152,20 +152,20 @@ class FeatureReason:
 
 @dataclass(frozen=True, kw_only=True)
 class SearchReason:
-    """The last search of a module in a view, top-down or bottom-up, and what came of it."""
+    """The last search of a module in a view, top-down or bottom-up, and its outcome."""
 
     module: str
     time: float
-    """When its view was taken in [s]."""
+    """The time of its view [s]."""
     asked: str
     """The request with the values of its variables."""
     bottom_up: bool
     features: tuple[FeatureReason, ...]
-    """What was noticed, then what was refused."""
+    """The noticed features, then the refused ones."""
     outcome: str
     """«found», «found, but the buffer was kept», «failed», or «pending»: the answer is still on its way."""
     why: str | None
-    """Why nothing was brought although something was noticed, or could have been."""
+    """Why nothing was found although something was noticed, or could have been."""
 
     def __str__(self) -> str:
         way = "bottom-up search" if self.bottom_up else "search"
@@ -181,17 +181,17 @@ class SearchReason:
 
 @dataclass(frozen=True, kw_only=True)
 class Explanation:
-    """Why an agent does what it does at one time."""
+    """The explanation of an agent's behaviour at one time."""
 
     time: float
     """[s]"""
     agent: str
     begun: bool
-    """Whether the agent had begun to run; before that, its methods without parameters have not set anything up."""
+    """Whether the agent had begun to run; before that, its methods without parameters have not run."""
     productions: tuple[ProductionReason, ...]
     retrievals: tuple[RetrievalReason, ...]
     searches: tuple[SearchReason, ...] = ()
-    """Of vision: the last top-down and the last bottom-up search of each module."""
+    """The last top-down and the last bottom-up search of each vision module."""
 
     def production(self, name: str) -> ProductionReason:
         """Returns the reason of one production.

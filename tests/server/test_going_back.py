@@ -12,7 +12,7 @@ from typing import Any, cast, get_args
 import pytest
 
 from actr3d.actr.declarative.memory import Memory
-from actr3d.actr.explain.snapshot import picture_of
+from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.loading.global_seed import shared_random
@@ -85,7 +85,7 @@ def told(shown: Shown) -> dict[str, Any]:
     physics, apertures = shown.scene()
     parts: dict[str, Any] = {}
     for mind in shown.simulation.minds.values():
-        parts |= picture_of(mind)
+        parts |= snapshot_of(mind)
     drawn = {kind: _plain(value) for kind, value in shown.drawn(KINDS).items()}
     now: dict[str, Any] = {"physics": physics.hex(), "apertures": apertures, "parts": parts, "result": shown.result()}
     now |= {f"drawn {kind}": value for kind, value in drawn.items()}

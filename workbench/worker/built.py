@@ -9,7 +9,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from actr3d.actr.explain.snapshot import picture_of
+from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
@@ -306,7 +306,7 @@ class BuiltRun:
         """Returns what all parts of all minds are like."""
         told: dict[str, dict[str, Any]] = {}
         for mind in self._simulation.minds.values():
-            told |= picture_of(mind)
+            told |= snapshot_of(mind)
         return told
 
     def names(self) -> Names:

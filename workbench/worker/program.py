@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.explain.snapshot import picture_of
+from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.kernel.tree import children_of
 from actr3d.actr.loading import run_text
@@ -375,7 +375,7 @@ class ProgramRun:
         """Returns what all parts of its latest models are like."""
         told: dict[str, dict[str, Any]] = {}
         for top in self._tops():
-            told |= {top.name(path): part for path, part in picture_of(top.model).items()}
+            told |= {top.name(path): part for path, part in snapshot_of(top.model).items()}
         return told
 
     def names(self) -> Names:

@@ -1,6 +1,6 @@
-"""Says why: which productions match and what keeps the others from it, and who won a retrieval and why.
+"""Explains an agent: which productions match and why the others do not, and which chunk won a retrieval and why.
 
-An explanation of the present reads the model; one of a past time reads the trace, and needs nothing else.
+An explanation of the current state reads the model; one of a past time reads the trace, and needs nothing else.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     """Returns the state at a past time.
 
     Raises:
-        ParameterError: If it cannot be told, or the agent was not there.
+        ParameterError: If it is not known, or the agent did not exist then.
     """
     try:
         time = microseconds(at, "explain(at)")

@@ -1,4 +1,4 @@
-"""A memory as a table, for who looks on: its chunks, and what their activation is made of. Nothing is changed or drawn for it."""
+"""A memory as a table for observers: its chunks, and the parts of their activations. Nothing is changed or drawn."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from actr3d.actr.declarative.spreading import DMSalience, DMSpreading
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.errors import ChunkError
 
-_TOLD: frozenset[type[MemorySubModule]] = frozenset({DMBaseLevel, DMFixed, DMSpreading, DMSalience, DMAssociate, DMInhibition})
-"""The modules that can be asked at any time: they draw no random numbers, and run no code of a modeller's."""
+_READABLE: frozenset[type[MemorySubModule]] = frozenset({DMBaseLevel, DMFixed, DMSpreading, DMSalience, DMAssociate, DMInhibition})
+"""The modules that can be read at any time: they draw no random numbers, and run none of the modeller's code."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,19 +27,19 @@ class MemoryRow:
     chunk: str
     slots: Mapping[str, Any]
     activation: float | None
-    """The sum of its parts; None where one of them cannot be told."""
+    """The sum of its parts; None if one of them is not known."""
     parts: Mapping[str, float | None]
-    """What each activation module adds now, by its class (numbered where there are several); None for what is drawn at a
-    retrieval only, or known only to a modeller's own code."""
+    """What each activation module adds now, by its class (numbered if there are several); None for a part that is drawn only at
+    a retrieval, or computed by the modeller's own code."""
 
 
 def memory_rows(memory: Memory, words: str = "", most: int | None = None) -> list[MemoryRow]:
-    """Returns the chunks of a memory, in the order they came.
+    """Returns the chunks of a memory, in the order in which they were added.
 
     Args:
         memory: The memory.
-        words: Only chunks whose text has all of these, in small or large letters.
-        most: How many rows at most; None for all.
+        words: Selects chunks whose text contains all of these, ignoring case.
+        most: The maximum number of rows; None for all.
     """
     wanted = words.lower().split()
     found = (chunk for chunk in memory.dm if all(word in chunk_text(chunk).lower() for word in wanted))
@@ -67,13 +67,13 @@ def _parts(memory: Memory, chunk: Chunk) -> Iterator[tuple[str, float | None]]:
 
 
 def _part(module: MemorySubModule, chunk: Chunk) -> float | None:
-    """Returns what a module adds to a chunk's activation now; None where only a retrieval can tell."""
-    if type(module) not in _TOLD or not LASTING_TYPES.issuperset(map(type, chunk.values())):
+    """Returns what a module adds to a chunk's activation now; None if it is known only at a retrieval."""
+    if type(module) not in _READABLE or not LASTING_TYPES.issuperset(map(type, chunk.values())):
         return None
     warned = set(module._warned) if isinstance(module, DMSpreading) else set[Any]()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # who retrieves is warned, not who looks on
+            warnings.simplefilter("ignore")  # a retrieval warns, an observer does not
             return module.activation(chunk)
     except (ChunkError, ArithmeticError, ValueError):
         return None

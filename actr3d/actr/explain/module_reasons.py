@@ -16,7 +16,7 @@ from actr3d.trace import TraceEvent
 
 
 def _retrieval_reason(memory: str, time: float, data: Mapping[str, Any], outcome: str) -> RetrievalReason:
-    """Makes a reason of what a request's trace event holds."""
+    """Makes a reason from the data of a request's trace event."""
     threshold: float | None = data["threshold"]
     chosen: int | None = data["chosen"]
     rows: Sequence[Sequence[Any]] = data["candidates"]
@@ -56,12 +56,12 @@ def _retrieval_reason(memory: str, time: float, data: Mapping[str, Any], outcome
 
 
 def _numbered(names: Sequence[str]) -> list[str]:
-    """Tells modules of one class apart: DMNoise, DMNoise 2."""
+    """Numbers modules of one class: DMNoise, DMNoise 2."""
     return [name if names[:i].count(name) == 0 else f"{name} {names[:i].count(name) + 1}" for i, name in enumerate(names)]
 
 
 def live_retrieval(memory: Memory) -> RetrievalReason | None:
-    """Returns the reason of a memory's last request; None where there was none."""
+    """Returns the reason of a memory's last request; None before the first."""
     record = latest_retrieval(memory)
     if record is None:
         return None
@@ -70,12 +70,12 @@ def live_retrieval(memory: Memory) -> RetrievalReason | None:
 
 
 def past_retrieval(memory: str, request: TraceEvent, outcome: str) -> RetrievalReason:
-    """Returns the reason of a memory's request, as a trace has it, with what had come of it by then."""
+    """Returns the reason of a memory's request in a trace, with its outcome at that time."""
     return _retrieval_reason(memory, request.data.get("made", request.time), request.data, outcome)
 
 
 def _search_reason(module: str, time: float, data: Mapping[str, Any], outcome: str) -> SearchReason:
-    """Makes a reason of what a search's trace event holds."""
+    """Makes a reason from the data of a search's trace event."""
     features: list[FeatureReason] = []
     for number, (slots, salience) in enumerate(data["noticed"]):
         verdict = "chosen" if number == data["chosen"] else "not drawn"
@@ -94,17 +94,17 @@ def _search_reason(module: str, time: float, data: Mapping[str, Any], outcome: s
 
 
 def live_searches(module: Searching) -> list[SearchReason]:
-    """Returns the reasons of a module's last searches, top-down and bottom-up, as far as there were any."""
+    """Returns the reasons of a module's last searches, top-down and bottom-up, if there were any."""
     return [_search_reason(path_of(module), seconds(time), data, outcome) for time, data, outcome in latest_searches(module)]
 
 
 def past_search(module: str, search: TraceEvent, outcome: str) -> SearchReason:
-    """Returns the reason of a module's search, as a trace has it, with what had come of it by then."""
+    """Returns the reason of a module's search in a trace, with its outcome at that time."""
     return _search_reason(module, search.time, search.data, outcome)
 
 
 def outcome_of(sight: Mapping[str, Any]) -> str:
-    """Returns the outcome that a trace tells of."""
+    """Returns the outcome of a search from the data of its «sight» event."""
     if sight["failed"]:
         return "failed"
     return "found, but the buffer was kept" if sight.get("held") else "found"

@@ -1,4 +1,4 @@
-"""A past state of an agent, put together from the trace."""
+"""A past state of an agent, reconstructed from the trace."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from actr3d.trace import Trace, TraceEvent
 
 
 class Record(NamedTuple):
-    """A value as an event tells it."""
+    """A value recorded by an event."""
 
     value: Any
     event: int
     """The number of the event in the trace."""
     time: int
-    """When it happened [us]."""
+    """The time of the event [us]."""
 
 
 class _Part:
-    """What a trace says of one part of the tree up to a time."""
+    """What a trace contains about one part of the tree up to a time."""
 
     def __init__(self) -> None:
         self.attributes: dict[str, Record] = {}
@@ -43,15 +43,15 @@ class _Part:
         self.chosen: str | None = None
         self.matched: Collection[str] = ()
         self.latest_match = -1
-        """The number of the event that told of it; what was seen until then is told before that, where it changed."""
+        """The number of the event of the latest match; changes of observed values are recorded before it."""
         self.unborn: set[str] = set()
         self.request: TraceEvent | None = None
         self.outcome = "pending"
         self.searches: dict[bool, tuple[TraceEvent, str]] = {}
-        """By whether it was bottom-up: the latest search, and what has come of it."""
+        """The latest search and its outcome, by whether it was bottom-up."""
 
     def take(self, number: int, event: TraceEvent) -> None:
-        """Takes in an event of this part."""
+        """Processes an event of this part."""
         kind, data = event.kind, event.data
         if kind in ("state", "buffer"):
             self._note(self.attributes, number, event)
@@ -84,12 +84,12 @@ class _Part:
 
 
 class Past:
-    """What everything was at a time, after all that happened at that time; see `State` for what each method tells.
+    """The state of everything at a time, after all events of that time; see `State` for the methods.
 
     Args:
         trace: The run's trace.
         time: The time [us].
-        parts: What is asked about.
+        parts: The parts to reconstruct.
     """
 
     def __init__(self, trace: Trace, time: int, parts: Collection[Model]) -> None:
@@ -143,7 +143,7 @@ class Past:
         return Fact(as_text(told.value)) if told is not None and certain else NOT_KNOWN
 
     def _seen(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
-        """Returns what production systems, whatever they call the object, have seen, and until which event it held for them."""
+        """Returns what production systems read of an object, under any name, and the event until which it was valid for each."""
         found: list[tuple[Record, int]] = []
         for system, name in self._named.get(id(target), ()):
             known = self._of(system)

@@ -1,4 +1,4 @@
-"""The model as it is now. Asking changes nothing: no code of the modeller's is run, and no random number is drawn."""
+"""The current state of the model. Reading it runs none of the modeller's code, and draws no random number."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ LAST_SEEN = "as last seen"
 
 
 class Present:
-    """See `State` for what each method tells.
+    """The current state; see `State` for the methods.
 
     Args:
-        agent: The agent that is asked about.
+        agent: The agent to explain.
     """
 
     def __init__(self, agent: ProductionSystem) -> None:

@@ -1,4 +1,4 @@
-"""What all parts of a model are like at present, for who looks on; no code of the modeller's is run."""
+"""The current state of all parts of a model, for observers; none of the modeller's code is run."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 
 MOST_PARTS = 400
-"""So many parts are told of; a grid world has one for each of its cells."""
+"""The maximum number of parts in a snapshot."""
 
 
-def picture_of(top: Model) -> dict[str, dict[str, Any]]:
-    """Returns by path, in the order of the tree: what a part `is`, its `class`, and what it is like.
+def snapshot_of(top: Model) -> dict[str, dict[str, Any]]:
+    """Returns the state of all parts by path, in the order of the tree: the kind (`is`), the `class`, and the state of each.
 
-    A buffer has its `chunk` (None for none), a production system its `productions` and the one that is `chosen`, every other
-    part its `state`: its plain attributes.
+    A buffer has its `chunk` or None, a production system its `productions` and the `chosen` one, and every part but a buffer its
+    `state`: its plain attributes.
     """
     return {path_of(part): _part(part) for part in islice(subtree(top), MOST_PARTS)}
 
 
 def _part(part: Any) -> dict[str, Any]:
-    told: dict[str, Any] = {"is": _kind(part), "class": type(part).__name__}
+    known: dict[str, Any] = {"is": _kind(part), "class": type(part).__name__}
     if isinstance(part, Buffer):
-        return {**told, "chunk": traceable(part.chunk)}
-    told["state"] = state_of(part)
+        return {**known, "chunk": traceable(part.chunk)}
+    known["state"] = state_of(part)
     if isinstance(part, ProductionSystem):
         rules = rules_of(part)
         chosen = rules.chosen
-        told["productions"] = [production.name for production in rules.productions]
-        told["chosen"] = None if chosen is None else chosen.name
-    return told
+        known["productions"] = [production.name for production in rules.productions]
+        known["chosen"] = None if chosen is None else chosen.name
+    return known
 
 
 def _kind(part: Any) -> str:

@@ -1,4 +1,4 @@
-"""What can be told of a state of an agent, present or past: each fact, and how it is known."""
+"""The interface through which explanations read the state of an agent, current or past: facts, and how they are known."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from actr3d.actr.reasons import RetrievalReason, SearchReason
 
 
 class Fact(NamedTuple):
-    """A slot's value, or whether there is nothing in an object."""
+    """A slot's value, or whether an object is empty."""
 
     value: Any
-    """Text, MISSING for no such slot, True or False for emptiness; UNKNOWN where it cannot be told."""
+    """Text, MISSING for no such slot, True or False for emptiness; UNKNOWN if it is not known."""
     seen: str | None = None
-    """How it is known, such as «as seen since 0.050 s», or why it is not; None where it is certain at that time."""
+    """How it is known, such as «as seen since 0.050 s», or why it is not; None if it is certain at that time."""
 
 
 class Answer(NamedTuple):
-    """What a modeller's function among the patterns said."""
+    """The result of a modeller's function among the patterns."""
 
     given: Bindings
-    """The variables as it got them."""
+    """The variables before the call."""
     agrees: bool
     bound: Bindings
-    """The variables after it."""
+    """The variables after the call."""
     seen: str
 
 
@@ -39,7 +39,7 @@ OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can tell")
 
 
 class State(Protocol):
-    """What is asked of the present, or of a past, to tell why."""
+    """A current or past state."""
 
     time: float
 
@@ -48,11 +48,11 @@ class State(Protocol):
         ...
 
     def exists(self, part: Model) -> bool:
-        """Returns whether a part had come into the tree."""
+        """Returns whether a part was in the tree."""
         ...
 
     def learned(self, system: ProductionSystem, production: Production) -> bool:
-        """Returns whether a compiled production had been learned."""
+        """Returns whether a production existed; a compiled one does from when it is learned."""
         ...
 
     def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
@@ -60,19 +60,19 @@ class State(Protocol):
         ...
 
     def empty(self, system: ProductionSystem, name: str) -> Fact:
-        """Returns whether a buffer or object holds nothing."""
+        """Returns whether a buffer or object is empty."""
         ...
 
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
-        """Returns the slots there are, for the sake of a better message."""
+        """Returns the existing slots, for messages."""
         ...
 
     def answer(self, system: ProductionSystem, production: Production, number: int) -> Answer | None:
-        """Returns what the function in a condition said when it was last asked; it is not asked again."""
+        """Returns the last result of the function in a condition; it is not called again."""
         ...
 
     def matched(self, system: ProductionSystem, production: Production) -> bool:
-        """Returns whether a production was among those that matched when they were last tried."""
+        """Returns whether a production was among those that matched at the latest match."""
         ...
 
     def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
@@ -80,7 +80,7 @@ class State(Protocol):
         ...
 
     def choice(self, system: ProductionSystem) -> ConflictSet | None:
-        """Returns the latest choice, as long as it stands: until the production fires, or another choice is made."""
+        """Returns the latest conflict set, until the production fires or another choice is made."""
         ...
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:
@@ -88,10 +88,10 @@ class State(Protocol):
         ...
 
     def searches(self, module: Any) -> list[SearchReason]:
-        """Returns the reasons of the latest searches of a module that sees."""
+        """Returns the reasons of the latest searches of a vision module."""
         ...
 
 
 def is_unknown(value: object) -> bool:
-    """Returns whether a fact's value cannot be told."""
+    """Returns whether a fact's value is not known."""
     return isinstance(value, Missing) and value is UNKNOWN

@@ -1,4 +1,4 @@
-"""Tries a production against a state, present or past, and says which condition fails first."""
+"""Tests the conditions of a production against a current or past state, and finds the first that fails."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AT_THE_LAST_MATCH = "as at the latest match"
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """A condition that does not hold, or of which that cannot be told."""
+    """A condition that does not hold, or for which this is not known."""
 
     condition: str
     expected: str
@@ -27,14 +27,14 @@ class Failure:
 
 
 class Trial:
-    """Tries one production; `failure` is the first condition that fails, None where all hold.
+    """The test of one production; `failure` is the first condition that fails, None if all hold.
 
-    A production is left at that condition. What the others are like, as far as they can be told without it, is in `conditions`.
+    The later conditions do not affect the result; `conditions` contains what is known about them.
 
     Args:
         system: The production system.
         production: Its production.
-        state: What it is tried against.
+        state: The state in which it is tested.
     """
 
     def __init__(self, system: ProductionSystem, production: Production, state: State) -> None:
@@ -43,24 +43,24 @@ class Trial:
         self._state = state
         self._bound: Bindings = {}
         self._open: set[str] = set()
-        """The variables that are bound, but nobody knows to what."""
+        """The variables that are bound to an unknown value."""
         self._fact: str | None = None
-        """What the present condition has found, and how that is known."""
+        """What the current condition has found, and how that is known."""
         self._how: str | None = None
         self.seen: str | None = None
-        """How the facts that it rests on are known; None where all are certain."""
+        """How the facts that it depends on are known; None if all are certain."""
         self.bindings: dict[str, str] = {}
-        """What the conditions before the failing one have bound, as text."""
+        """The variables bound by the conditions before the failing one, as text."""
         self.failure: Failure | None = None
         self.conditions = tuple(self._try(number, condition) for number, condition in enumerate(production.conditions))
 
     @property
     def matches(self) -> bool | None:
-        """Whether all conditions hold; None where that cannot be told."""
+        """Whether all conditions hold; None if that is not known."""
         return self.failure is None or (None if self.failure.unknown else False)
 
     def _try(self, number: int, condition: Condition) -> ConditionReason:
-        """Tries one condition; the first that fails settles the production."""
+        """Tests one condition; the first that fails decides the result."""
         settled = self.failure is not None
         self._fact = self._how = None
         failure = self._failure(number, condition)
@@ -125,7 +125,7 @@ class Trial:
         return f"no slot '{key}'{did_you_mean(str(key), known)}" if known else f"{name} is empty"
 
     def _not_bound(self, condition: Condition, expected: str, variable: str) -> Failure:
-        """Says that a variable has no value; where a condition before has failed, it was that one's to bind it."""
+        """Returns the failure of an unbound variable; it is not certain if an earlier condition, which may bind it, has failed."""
         settled = self.failure is not None
         return Failure(condition=_text(condition), expected=expected, found=f"?{variable} is not bound", unknown=settled)
 
@@ -147,7 +147,7 @@ class Trial:
         return None
 
     def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
-        """Takes what cannot be told for true where the production matched last; else says so."""
+        """Returns None, for a condition that holds, if the production matched last; otherwise an unknown failure."""
         if self.failure is None and self._state.matched(self._system, self._production):
             self._how = AT_THE_LAST_MATCH
             return None
@@ -155,7 +155,7 @@ class Trial:
 
 
 def _text(condition: Condition) -> str:
-    """Says a condition with the name of what it is about."""
+    """Returns a condition as text, with the name of the object that it tests."""
     return f"{condition.name or 'self'}: {'None' if condition.op == 'empty' else condition}"
 
 
@@ -168,7 +168,7 @@ def _texts(bound: Bindings) -> dict[str, str]:
 
 
 def _expected(condition: Condition, wanted: Any) -> str:
-    """Says what a condition on a slot expects."""
+    """Returns what a condition on a slot expects."""
     op, value = condition.op, condition.value
     if op == "bind":
         return f"some value for ?{value}"

@@ -78,6 +78,13 @@ class Model(Part):
 
     # -- conversion
 
+    # Modules of existing models call these two, which python_actr has under the same names.
+    def _ensure_converted(self) -> None:
+        ensure_converted(self)
+
+    def _is_converted(self) -> bool:
+        return self._converted
+
     def _convert(self, parent: Model | None = None) -> None:
         """Gives the model the tree's clock, its own copies of its class's attributes, and its methods."""
         own = self.__dict__

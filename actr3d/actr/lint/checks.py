@@ -1,7 +1,7 @@
-"""Says what is most likely not meant in a model: it runs once for each class, when an agent begins.
+"""Runs all checks of a model, once for each class, when an agent begins.
 
 A check only warns (`ModelWarning`, at the modeller's own file and line); it never changes what the model does, and
-looks at nothing whose reading could.
+reads nothing whose reading could.
 """
 
 from __future__ import annotations

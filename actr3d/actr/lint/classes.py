@@ -1,4 +1,4 @@
-"""Checks the classes that modellers write: their methods' names, and attributes that are nearly parameters."""
+"""Checks the modeller's classes: names of methods, and attributes that look like misspelt parameters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def is_modellers(klass: type) -> bool:
 
 
 def check_names_of_methods(klass: type, func: Callable[..., Any]) -> None:
-    """Warns of methods that a later one of the same name in the same class has replaced."""
+    """Warns about methods that are replaced by a later one of the same name in the same class."""
     node = _class_node(klass, func)
     if node is None:
         return
@@ -39,9 +39,9 @@ def check_names_of_methods(klass: type, func: Callable[..., Any]) -> None:
 
 
 def _replaced(body: list[ast.stmt], seen: dict[str, ast.FunctionDef]) -> Iterator[tuple[ast.FunctionDef, ast.FunctionDef]]:
-    """Yields each method that certainly takes the place of an earlier one, after that; `seen` are the methods so far.
+    """Yields pairs of an earlier method and one that certainly replaces it; `seen` are the methods so far.
 
-    A branch that may or may not be taken replaces nothing for certain, and what stands in it may be replaced.
+    A branch that may not be taken replaces nothing for certain, but methods in it may be replaced.
     """
     for part in body:
         if isinstance(part, ast.FunctionDef):
@@ -62,7 +62,7 @@ def _replaced(body: list[ast.stmt], seen: dict[str, ast.FunctionDef]) -> Iterato
 
 
 def _class_node(klass: type, func: Callable[..., Any]) -> ast.ClassDef | None:
-    """Returns the definition of a class that a function of it stands in."""
+    """Returns the definition of a class that contains a function of it."""
     line = func.__code__.co_firstlineno
     found: ast.ClassDef | None = None
     for node in _classes(source_of(func), klass):
@@ -78,12 +78,12 @@ def _classes(text: str, klass: type) -> list[ast.ClassDef]:
 
 @lru_cache(maxsize=64)
 def _definitions(text: str) -> tuple[ast.ClassDef, ...]:
-    """Returns the definitions of all classes in a file, which each of its classes is looked for in."""
+    """Returns the definitions of all classes in a file."""
     return tuple(node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.ClassDef))
 
 
 def check_parameters(system: ProductionSystem) -> None:
-    """Warns of attributes in an agent's class that are named nearly like a parameter of agents."""
+    """Warns about attributes of an agent's class whose names are similar to those of parameters of agents."""
     for klass in type(system).__mro__:
         if not is_modellers(klass):
             continue
@@ -96,7 +96,7 @@ def check_parameters(system: ProductionSystem) -> None:
 
 
 def _place_of_attribute(klass: type, attribute: str) -> tuple[str, int]:
-    """Returns the file and the line where an attribute stands in a class, or else that of the class."""
+    """Returns the file and the line of an attribute in a class, or otherwise those of the class."""
     module = sys.modules.get(klass.__module__)
     filename = getattr(module, "__file__", None) or "<model>"
     text = getattr(module, SOURCE, None) or "".join(linecache.getlines(filename))

@@ -14,7 +14,7 @@ Thing = tuple[str, Any, Any]
 
 
 def check_contradictions(production: Production) -> None:
-    """Warns where conditions rule each other out, in one slot or by way of the variables they share."""
+    """Warns if conditions exclude each other, in one slot or through the variables that they share."""
     tests = [condition for condition in production.conditions if condition.op != "call"]
     empty = {condition.name for condition in tests if condition.op == "empty"}
     filled = {condition.name for condition in tests if condition.op != "empty"}
@@ -33,7 +33,7 @@ def check_contradictions(production: Production) -> None:
 
 
 def _in_one_slot(conditions: Iterable[Condition]) -> str:
-    """Returns what is asked of one slot that cannot be, or an empty text."""
+    """Returns the contradiction in the conditions of one slot, or an empty text."""
     wanted: set[str] = set()
     refused: set[str] = set()
     same: set[str] = set()
@@ -51,14 +51,14 @@ def _in_one_slot(conditions: Iterable[Condition]) -> str:
 
 
 class _Equals:
-    """Which slots and variables must have the same value, and which value where a condition names it."""
+    """The slots and variables that must have the same value, and the value if a condition names it."""
 
     def __init__(self) -> None:
         self._leads_to: dict[Thing, Thing] = {}
         self._values: dict[Thing, str] = {}
 
     def first(self, thing: Thing) -> Thing:
-        """Returns the one that stands for all that equal `thing`."""
+        """Returns the representative of all things equal to `thing`."""
         while thing in self._leads_to:
             thing = self._leads_to[thing]
         return thing
@@ -68,7 +68,7 @@ class _Equals:
         return self._values.get(self.first(thing))
 
     def join(self, one: Thing, other: Thing) -> set[str]:
-        """Notes that two things are equal; returns the values that they must have, two where they cannot be equal."""
+        """Records that two things are equal; returns the values that they must have, two if they cannot be equal."""
         one, other = self.first(one), self.first(other)
         known = {self._values[thing] for thing in (one, other) if thing in self._values}
         if one != other:
@@ -78,12 +78,12 @@ class _Equals:
         return known
 
     def give(self, thing: Thing, value: str) -> None:
-        """Notes a thing's value."""
+        """Records a thing's value."""
         self._values.setdefault(self.first(thing), value)
 
 
 def _across_slots(conditions: Iterable[Condition]) -> list[str]:
-    """Returns what cannot be because of variables that several slots share."""
+    """Returns the contradiction in variables that several slots share, or an empty text."""
     equals = _Equals()
     pairs: list[tuple[Condition, Thing, Thing]] = []
     for condition in conditions:

@@ -1,4 +1,4 @@
-"""Checks what modellers' methods do: calls that were forgotten, and names that nothing knows."""
+"""Checks the code of modellers' methods: forgotten calls, and unknown names."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _VARIABLE = re.compile(r"(?<!\w)\?(\w+)")
 
 
 def check_actions(production: Production, productions: Sequence[Production]) -> None:
-    """Warns of what a production's body, or a method without parameters, most likely does not mean."""
+    """Warns about likely mistakes in a production's body, or in a method without parameters."""
     node = function_node(production.original_func)
     if node is None:
         return
@@ -39,14 +39,14 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
         _check_slots(call, owner, method, func, where, context)
         if method == "modify":
             _check_values(call, production, productions)
-        elif not production.more_bound:  # where a function is among the patterns, it may bind any variable
+        elif not production.more_bound:  # a function among the patterns may bind any variable
             check = _check_variables if method in GIVERS else _check_wildcards if method in READERS else None
             if check is not None:
                 check(call, func, where, known)
 
 
 def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
-    """Warns of what a method of a part most likely does not mean; productions are checked as such."""
+    """Warns about likely mistakes in a part's method that is no production."""
     node = function_node(func)
     if node is None or not node.args.args or len(node.args.args) == len(node.args.defaults):
         return
@@ -57,7 +57,7 @@ def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
 
 
 def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapping[str, Any]) -> None:
-    """Finds statements that name a method and do not call it."""
+    """Finds statements that name a method without calling it."""
     for part in ast.walk(node):
         if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute) and _is_method(part.value, names):
             text = ast.unparse(part.value)
@@ -75,7 +75,7 @@ def _is_method(node: ast.Attribute, names: Mapping[str, Any]) -> bool:
 
 
 def _resolve(node: ast.expr, names: Mapping[str, Any]) -> Any:
-    """Returns what a name or a dotted path of models' attributes stands for; None where that cannot be told."""
+    """Returns the object that a name or a dotted path of models' attributes refers to; None if it is not known."""
     if isinstance(node, ast.Name):
         return names.get(node.id)
     if isinstance(node, ast.Attribute):
@@ -85,7 +85,7 @@ def _resolve(node: ast.expr, names: Mapping[str, Any]) -> Any:
 
 
 def _calls(node: ast.FunctionDef, names: Mapping[str, Any]) -> Iterator[tuple[ast.Call, object, str]]:
-    """Yields the calls of methods that make, change or look for chunks, with whose they are and their names."""
+    """Yields the calls of methods that make, change or search for chunks, with the owners and names of the methods."""
     for part in ast.walk(node):
         if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
             owner = _resolve(part.func.value, names)
@@ -94,7 +94,7 @@ def _calls(node: ast.FunctionDef, names: Mapping[str, Any]) -> Iterator[tuple[as
 
 
 def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[..., Any], where: str, names: Mapping[str, Any]) -> None:
-    """Finds slots that are asked for or changed and never given, or given and never looked at, where a similar one is."""
+    """Finds slots that are requested or changed but never set, or set but never read, if there is a similar one."""
     words = vocabulary(func)
     text = (text_of(call.args[0]) or "") if call.args else ""
     if method in READERS and isinstance(owner, (Memory, Partial)):
@@ -107,7 +107,7 @@ def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[...,
     elif method in GIVERS:
         read = words.matched | words.asked
         slots = [slot for slot in slots_in(text) if slot not in read | words.mentioned | words.modified]
-        read &= words.giving  # where one is read and never given, that is said there
+        read &= words.giving  # slots that are read but never set are reported where they are read
         near = [(slot, slip_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
         found = [(slot, f"nothing ever looks at a slot '{slot}'", f"; did you mean '{meant}'?") for slot, meant in near if meant]
     else:
@@ -128,14 +128,14 @@ def _check_variables(call: ast.Call, func: Callable[..., Any], where: str, known
 
 
 def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known: set[str]) -> None:
-    """Finds variables in a request that stand for anything, but are named nearly like a bound one and occur nowhere else."""
+    """Finds variables in a request that match anything, but whose names are similar to a bound one and occur nowhere else."""
     if not (call.args and isinstance(call.args[0], ast.Constant) and isinstance(call.args[0].value, str)):
         return
     text = call.args[0].value
     try:
         names = {word for _, sign, word in parse(text) if sign in ("?", "!?")} - known
     except PatternException:
-        return  # it will be said when the request is made
+        return  # the request itself will raise this
     everywhere = _VARIABLE.findall(source_of(func))
     for name in sorted(names):
         meant = slip_of(name, known)
@@ -144,7 +144,7 @@ def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known
 
 
 def _check_values(call: ast.Call, production: Production, productions: Sequence[Production]) -> None:
-    """Finds values that hold a variable's name, or a space where patterns compare the slot with a word."""
+    """Finds values that contain a variable's name, or a space although patterns compare the slot with a word."""
     for keyword in call.keywords:
         value = keyword.value.value if isinstance(keyword.value, ast.Constant) else None
         if not isinstance(value, str):

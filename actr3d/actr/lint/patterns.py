@@ -1,4 +1,4 @@
-"""Checks the patterns of productions: what they are, the variables they use, the slots and values they ask for."""
+"""Checks the patterns of productions: their types, variables, slots and values."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from actr3d.errors import did_you_mean
 from actr3d.saying import warn_at
 
 SURE = 0.74
-"""How near a name must be to another (0 to 1) to be taken for a slip."""
+"""The similarity to another name (0 to 1) from which a name counts as misspelt."""
 
 
 def check_patterns(production: Production) -> None:
-    """Warns of patterns that ask for nothing at all, because they are no patterns."""
+    """Warns about objects that are no patterns, and therefore match anything."""
     for name, pattern in production.pattern_specs.items():
         parts = cast("list[Any]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
         for part in parts:
@@ -30,7 +30,7 @@ def check_patterns(production: Production) -> None:
 
 
 def check_variables(production: Production) -> None:
-    """Warns of variables that are compared, or name a slot, and have no value by then."""
+    """Warns about variables that are compared, or name a slot, before they are bound."""
     bound: set[str] = set()
     if production.more_bound:
         return  # a function may bind any
@@ -48,7 +48,7 @@ def check_variables(production: Production) -> None:
 
 
 def check_slots(production: Production) -> None:
-    """Warns of slots that are never given a value, of attributes that an object does not have, and of states it is never in."""
+    """Warns about slots that are never set, about missing attributes of objects, and about states that never occur."""
     for condition in production.conditions:
         key = condition.key
         if condition.op in ("empty", "call") or (isinstance(key, str) and key[:1] == "?"):
@@ -78,7 +78,7 @@ def _check_slot(production: Production, key: int | str) -> None:
 
 
 def slots_held(parts: Iterable[object]) -> set[Any]:
-    """Returns the slots of the chunks that buffers and memories hold now, and of those that a library fills buffers with."""
+    """Returns the slots of the chunks that are in buffers and memories now, and those that a library sets in buffers."""
     found: set[Any] = set()
     for part in parts:
         if isinstance(part, Buffer):
@@ -90,9 +90,9 @@ def slots_held(parts: Iterable[object]) -> set[Any]:
 
 
 def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
-    """Returns the first part of a dotted path that leads nowhere, with what may be meant; empty texts where it leads on.
+    """Returns the first part of a dotted path that does not exist, with a hint; empty texts if the path exists.
 
-    No code of the modeller's is run for that.
+    None of the modeller's code is run.
     """
     walked: list[str] = []
     for name in path.split("."):
@@ -108,7 +108,7 @@ def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
 
 
 def _check_state(production: Production, condition: Condition, target: object) -> None:
-    """Warns where a state that is True or False is compared with a word that is nearly one of these."""
+    """Warns if a state that is True or False is compared with a word that is similar to one of these."""
     wanted = condition.value
     if condition.op not in ("is", "not"):
         return

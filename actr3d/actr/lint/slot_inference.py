@@ -1,4 +1,4 @@
-"""Tells all slots that chunks can ever have, where a program's text says them all."""
+"""Infers all slots that chunks can ever have, if a program's text contains them all."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from actr3d.actr.procedural.utility import ProceduralSubModule
 
 _LIBRARIES = frozenset({"actr3d", "python_actr", "ccm", "__future__"})
 _PLAIN = (Buffer, Memory, ImaginalModule, Motor, ProceduralSubModule, TextOutput, Timer)
-"""Modules that put nothing into buffers but what a text of the program says."""
+"""Modules that put only chunks from the program's texts into buffers."""
 _UNTOLD = frozenset(
     {
         "SOSVision",
@@ -43,14 +43,14 @@ _UNTOLD = frozenset(
         "add_adaptor",
     }
 )
-"""Names by which chunks can be made or changed in ways that are not followed here."""
+"""Names through which chunks can be made or changed in ways that are not analysed here."""
 
 
 def all_slots(production: Production) -> frozenset[Slot] | None:
     """Returns every slot that a chunk can ever have in the run of a production's program.
 
-    None unless that is sure: the program is one file, its agents have only parts of the library's that make no chunks by
-    themselves, and every chunk that is set or added is written as one literal text.
+    None unless that is certain: the program is one file, its agents have only parts of the library that make no chunks of their
+    own, and every chunk that is set or added is written as one literal text.
     """
     func = production.original_func
     if func.__module__ != "__main__" or func.__globals__.get("__file__") != func.__code__.co_filename:
@@ -69,7 +69,7 @@ def all_slots(production: Production) -> frozenset[Slot] | None:
 
 @lru_cache(maxsize=16)
 def _literal_slots(text: str) -> frozenset[Slot] | None:
-    """Returns the slots of all literal texts that chunks are made of, or None where there may be others."""
+    """Returns the slots of all literal texts that chunks are made from, or None if there may be others."""
     tree = syntax_tree(text)
     found: set[Slot] = set()
     called: set[int] = set()
@@ -95,13 +95,13 @@ def _literal_slots(text: str) -> frozenset[Slot] | None:
 
 
 def _slots(text: str) -> list[Slot]:
-    """Returns the slots of a chunk's text; a slot named by a number may be meant by its place, and the other way round."""
+    """Returns the slots of a chunk's text; a numbered slot may be meant by name, and a slot named by digits by number."""
     slots = [slot for slot, _ in parse_slots(text)]
     return [*slots, *(int(slot) for slot in slots if isinstance(slot, str) and slot.isdecimal()), *map(str, slots)]
 
 
 def _is_plain(call: ast.Call, method: str) -> bool:
-    """Returns whether a call says which slots there will be: one literal text, or keywords of `modify`, which needs them to be there."""
+    """Returns whether a call's slots are certain: one literal text, or keywords of `modify`, which requires that the slots exist."""
     if method == "modify":
         return not call.args and all(keyword.arg for keyword in call.keywords)
     texts = [arg for arg in call.args[:1] if isinstance(arg, ast.Constant) and isinstance(arg.value, str)]
@@ -109,6 +109,6 @@ def _is_plain(call: ast.Call, method: str) -> bool:
 
 
 def _is_known(module: str) -> bool:
-    """Returns whether a module is the library or Python's own, and so sets nothing by itself."""
+    """Returns whether a module belongs to the library or to Python, and so sets nothing by itself."""
     root = module.partition(".")[0]
     return root in _LIBRARIES or root in sys.stdlib_module_names

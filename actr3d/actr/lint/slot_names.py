@@ -1,4 +1,4 @@
-"""The names that a model file uses for slots, as far as its text tells, and which of them look like slips."""
+"""The names that a model file uses for slots, and which of them look misspelt."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from actr3d.actr.kernel.source_code import source_of, syntax_tree
 
 _NAMED = re.compile(r"(?:^|\s)(\w+):(?:\S|$)")
 _COMPUTED = "\0"
-"""Stands in an f-string's text for what is computed."""
+"""Marks a computed value in an f-string's text."""
 READERS = ("request", "find_matching_chunks")
-"""Methods whose text asks for a chunk, and gives none its slots."""
+"""Methods whose text requests a chunk, and sets no slots."""
 GIVERS = ("set", "add")
 """Methods whose text makes a chunk."""
 
 
 class Vocabulary:
-    """The names in a model file that are, or may become, slots, by what they are used for.
+    """The names in a model file that are, or may become, slots, by their use.
 
     Args:
         tree: The file.
@@ -36,9 +36,9 @@ class Vocabulary:
         self.modified: set[str] = set()
         """The keywords of `modify`."""
         self.mentioned: set[str] = set()
-        """Whatever else may name a slot: keyword arguments, attributes, names, and texts that are one word."""
+        """Everything else that may name a slot: keyword arguments, attributes, names, and texts of one word."""
         self.together: list[set[str]] = []
-        """Slots that one text names together."""
+        """Sets of slots that occur in one text."""
         self._walk(tree, self.given)
 
     @property
@@ -47,11 +47,11 @@ class Vocabulary:
         return self.given | self.modified | self.mentioned
 
     def apart(self, one: str, other: str) -> bool:
-        """Returns whether no text has both of two slots."""
+        """Returns whether no text contains both of two slots."""
         return not any(one in names and other in names for names in self.together)
 
     def _walk(self, node: ast.AST, texts: set[str]) -> None:
-        """Takes in a node; slots named in its texts are added to `texts`."""
+        """Collects the names in a node; slots named in its texts are added to `texts`."""
         text = text_of(node)
         if text is not None:
             names = set(slots_in(text))
@@ -88,7 +88,7 @@ class Vocabulary:
                 self._walk(keyword, texts)
 
     def _pattern(self, node: ast.AST) -> None:
-        """Takes in a pattern; only its texts and a dict's keys name slots."""
+        """Collects the slots of a pattern, which are named only by its texts and a dict's keys."""
         for part in ast.walk(node):
             names = set(slots_in(text_of(part) or ""))
             if isinstance(part, ast.Dict):
@@ -98,7 +98,7 @@ class Vocabulary:
 
 
 def vocabulary(func: Callable[..., Any]) -> Vocabulary:
-    """Returns the names that the file of a function uses."""
+    """Returns the names used in the file of a function."""
     return _vocabulary(source_of(func))
 
 
@@ -113,7 +113,7 @@ def is_production(node: ast.FunctionDef) -> bool:
 
 
 def text_of(node: ast.AST) -> str | None:
-    """Returns a text as it is written, with a mark for whatever is computed; None for what is no text."""
+    """Returns a text as it is written, with a mark for each computed value; None if the node is no text."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         return node.value
     if isinstance(node, ast.JoinedStr):
@@ -127,15 +127,15 @@ def slots_in(text: str) -> list[str]:
 
 
 def slip_of(name: str, known: Iterable[str]) -> str | None:
-    """Returns the one of the known names of which `name` looks like a slip of the fingers."""
+    """Returns the known name of which `name` looks like a misspelling."""
     return next((other for other in sorted(known) if is_slip(name, other)), None)
 
 
 def is_slip(one: str, other: str) -> bool:
-    """Returns whether two names differ by one slip: a letter too many, too few or wrong, two exchanged, or capitals.
+    """Returns whether two names differ by one typing error: a letter too many, too few or wrong, two exchanged, or capitals.
 
-    Names that people make on purpose are none: `num1` and `num2`, `left_x` and `left_y`, `word` and `words`, `height`
-    and `weight`; nor are those of less than four letters.
+    Deliberately similar names do not count: `num1` and `num2`, `left_x` and `left_y`, `word` and `words`, `height` and
+    `weight`; nor do names of fewer than four letters.
     """
     if one == other or min(len(one), len(other)) < 4:
         return False
@@ -152,6 +152,6 @@ def is_slip(one: str, other: str) -> bool:
         return False
     if len(middle) == 2:
         return middle == changed[::-1]
-    # At its ends a name is changed on purpose, and so is a letter that stands alone in it.
+    # Changes at the ends of a name, and of a single letter in it, are deliberate.
     alone = not (one[start - 1 : start].isalpha() and one[len(one) - end :][:1].isalpha())
     return len(middle) <= 1 and len(changed) <= 1 and not alone and len(one) + len(other) >= 9

@@ -1,4 +1,4 @@
-"""What a body answers, in the forms that a mind, a trace and a recording take."""
+"""Converts the answers of a body to the forms that agents, traces and recordings need."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ def _told_fields(kind: type[Any]) -> tuple[str, ...]:
 def plain_answer(answer: Any) -> Any:
     """Returns an answer as plain values, lists and dicts.
 
-    A frozen dataclass becomes a dict of its fields, but for those that are `UNTOLD`; what has a `summary()`, as a view has, that.
+    A frozen dataclass becomes a dict of its fields except those marked `UNTOLD`; an object with a `summary()`, such as a view,
+    becomes that.
     """
     kind = cast("type[Any]", type(answer))
     if answer is None or kind in PLAIN_TYPES:
@@ -36,9 +37,9 @@ def plain_answer(answer: Any) -> Any:
 
 
 def answer_slots(word: str, answer: Any) -> dict[str | int, Any]:
-    """Returns the slots of the chunk that an answer becomes: the word first, then what was sensed, under its names or in order."""
+    """Returns the slots of a chunk made from an answer: the word first, then the sensed values, by name or in order."""
     slots: dict[str | int, Any] = {0: word}
-    if hasattr(answer, "summary"):  # what has one is too large for slots
+    if hasattr(answer, "summary"):  # such an object is too large for slots
         slots["seen"] = answer
     elif is_dataclass(answer):
         slots.update({field.name: getattr(answer, field.name) for field in fields(answer)})

@@ -1,4 +1,4 @@
-"""The motor module: pressing a key."""
+"""The motor module: presses keys."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Motor(WithParameters, Model):
         self.busy = False
 
     def press(self, key: Any) -> Iterator[float]:
-        """Presses a key, unless a press is under way."""
+        """Presses a key, unless another press is in progress."""
         if self.busy:
             return
         self._trace_request("press", key=key)
@@ -41,10 +41,10 @@ class Motor(WithParameters, Model):
         self.busy = False
 
     def _environment(self) -> Any:
-        """Returns the model the agent is in.
+        """Returns the model that contains the agent.
 
         Raises:
-            AttributeError: If there is none, or it takes no keys.
+            AttributeError: If there is none, or it has no `key_pressed`.
         """
         environment = self.parent and self.parent.parent
         if not hasattr(environment, "key_pressed"):

@@ -1,4 +1,4 @@
-"""Text output: a mouth that prints."""
+"""Text output: prints what an agent says."""
 
 from __future__ import annotations
 

@@ -66,8 +66,10 @@ class ProductionSystem(WithParameters, Model):
     _by_utility = False
 
     _rules: Rules
+    # Parts of the rules under the names that python_actr has, for existing models.
     _productions: list[Production]
-    """The same list as in the rules; existing models use this name."""
+    _initializers: list[Production]
+    _context: dict[str, Any]
     _top: Model
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
@@ -78,7 +80,7 @@ class ProductionSystem(WithParameters, Model):
             own["_profile"] = find_profile(wanted, f"{type(self).__name__}.profile")
             self.sch.round_ms = self.sch.round_ms or own["_profile"].whole_milliseconds
         rules = own["_rules"] = Rules(by_utility=self._by_utility)
-        own["_productions"] = rules.productions
+        own["_productions"], own["_initializers"] = rules.productions, rules.initializers
         for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
             if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
                 objects[name] = methods.pop(name)
@@ -142,7 +144,7 @@ class ProductionSystem(WithParameters, Model):
         context["self"] = self
         context["top"] = top
         self.__dict__["_top"] = top
-        self._rules.context = context
+        self.__dict__["_context"] = self._rules.context = context
         for production in (*self._rules.initializers, *self._rules.productions):
             production.context = context
             for name in production.keys:
