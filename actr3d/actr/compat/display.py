@@ -1,4 +1,4 @@
-"""The old windows, which are no more: a model that asks for one runs on without."""
+"""python_actr's `display`, which opened a window: here a model runs without one."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from actr3d.saying import warn_modeller
 
 
 def display(root: Any, engine: str | None = None, **args: Any) -> None:  # noqa: ARG001 - as models call it
-    """Says that there is no window; the workbench shows worlds."""
+    """Warns that no window is opened; the workbench shows worlds."""
     warn_modeller("display() opens no window here; the model runs on without it")
 
 

@@ -1,4 +1,4 @@
-"""Grid worlds: rectangular maps of cells in which agents with bodies stand, turn and move."""
+"""Grid worlds: rectangular maps of cells, and the agents' bodies that turn and move in them."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ COMPASS = ((0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1))
 
 
 class Cell:
-    """One place of a grid world; a model derives its own kind, with attributes that productions match and actions change.
+    """One cell of a grid world; models derive their own class, with attributes that productions match and actions change.
 
     Setting a public attribute wakes every production system of the world.
     """
 
     wall = False
-    """Whether nobody can move in here."""
+    """Whether the cell cannot be entered."""
 
     x: int
     """The column, from 0 at the left."""
     y: int
     """The row, from 0 at the top."""
     agents: list[Any]
-    """The agents whose bodies stand here, in the order they came."""
+    """The agents whose bodies are here, in the order in which they arrived."""
     _world: World | None = None
 
     def load(self, char: str) -> None:
-        """Sets the cell up as its character of the map says; for subclasses. A `#` is a wall."""
+        """Initializes the cell from its character of the map; for subclasses. A `#` is a wall."""
         self.wall = char == "#"
 
     @property
     def world(self) -> World:
-        """The world that the cell is part of.
+        """The world of the cell.
 
         Raises:
-            GridError: If it is part of none.
+            GridError: If it has none.
         """
         if self._world is None:
             raise GridError("this cell is part of no world; a world makes its cells itself")
@@ -51,7 +51,7 @@ class Cell:
 
     @property
     def neighbour(self) -> list[Cell]:
-        """The cell in each of the world's directions; beyond the edge of the map there is wall."""
+        """The neighbouring cell in each of the world's directions; a wall beyond the edge of the map."""
         world = self.world
         return [world._neighbour(self, 8 * i // world.directions) for i in range(world.directions)]
 
@@ -67,24 +67,24 @@ class Cell:
 
 
 class NotPlacedError(GridError, AttributeError):
-    """A body stands in no world yet; patterns that look at its place do not match."""
+    """A body is in no world yet; patterns that test its place do not match."""
 
 
 class Body(Model):
-    """An agent's body in a grid world; it is given its place by `World.add`.
+    """An agent's body in a grid world; `World.add` gives it its place.
 
     Directions are whole numbers from 0 (north, up) clockwise; with 8 directions 1 is north-east, with 4 it is east.
-    Every way of moving returns whether it moved as far as asked: a wall, or the edge of the map, stops it.
+    Every movement returns whether it was complete: a wall, or the edge of the map, stops it.
     """
 
     color: str | None = None
-    """The colour it is drawn in; None for the viewer's own choice."""
+    """The colour in which it is drawn; None for the viewer's default."""
     x: int
-    """The column it stands in, from 0 at the left."""
+    """The column, from 0 at the left."""
     y: int
-    """The row it stands in, from 0 at the top."""
+    """The row, from 0 at the top."""
     dir: int
-    """Where it faces."""
+    """The direction that it faces."""
     _cell: Cell | None = None
     _agent: Any = None
 
@@ -100,7 +100,7 @@ class Body(Model):
             super().__setattr__(key, value)
 
     def _place(self, cell: Cell) -> None:
-        """Puts the body into a cell, wherever it was before."""
+        """Moves the body to a cell."""
         before = self._cell
         if before is not None:
             before.agents.remove(self._agent)
@@ -111,14 +111,14 @@ class Body(Model):
         if before is None or before.y != cell.y:
             super().__setattr__("y", cell.y)
 
-    # -- where it is and what is around it
+    # -- the place and the cells around
 
     @property
     def cell(self) -> Cell:
-        """The cell it stands in.
+        """The cell of the body.
 
         Raises:
-            GridError: If it stands in no world.
+            GridError: If it is in no world.
         """
         if self._cell is None:
             raise NotPlacedError("this body stands in no world; put its agent into one with world.add(agent)")
@@ -126,15 +126,15 @@ class Body(Model):
 
     @property
     def world(self) -> World:
-        """The world it stands in.
+        """The world of the body.
 
         Raises:
-            GridError: If it stands in no world.
+            GridError: If it is in no world.
         """
         return self.cell.world
 
     def _seen(self, eighths: int) -> Cell:
-        """Returns the next cell, so many eighths of a turn to the right of ahead."""
+        """Returns the neighbouring cell in a direction, given in eighths of a turn to the right of ahead."""
         world = self.world
         return world._neighbour(self.cell, 8 * self.dir // world.directions + eighths)
 
@@ -181,31 +181,31 @@ class Body(Model):
     # -- moving
 
     def turn(self, amount: int) -> None:
-        """Turns clockwise by so many directions; counter-clockwise where negative.
+        """Turns clockwise by a number of directions; counter-clockwise if it is negative.
 
         Raises:
-            GridError: If it stands in no world.
+            GridError: If it is in no world.
         """
         directions = self.world.directions
         self.dir = (self.dir + _whole(amount, "turn")) % directions
 
     def turn_left(self, amount: int = 1) -> None:
-        """Turns counter-clockwise by so many directions."""
+        """Turns counter-clockwise by a number of directions."""
         self.turn(-amount)
 
     def turn_right(self, amount: int = 1) -> None:
-        """Turns clockwise by so many directions."""
+        """Turns clockwise by a number of directions."""
         self.turn(amount)
 
     def turn_around(self) -> None:
-        """Turns to face the other way."""
+        """Turns around."""
         self.turn(self.world.directions // 2)
 
     def go_in_direction(self, dir: int) -> bool:
         """Moves one cell in a direction, without turning; returns whether it moved.
 
         Raises:
-            GridError: If it stands in no world.
+            GridError: If it is in no world.
         """
         world = self.world
         ahead = world._neighbour(self.cell, 8 * _whole(dir, "dir") // world.directions)
@@ -215,37 +215,37 @@ class Body(Model):
         return True
 
     def go_forward(self, dist: int = 1) -> bool:
-        """Moves so many cells ahead, or up to a wall; returns whether it moved all the way.
+        """Moves a number of cells ahead, or up to a wall; returns whether it moved all the way.
 
         Raises:
-            GridError: If it stands in no world.
+            GridError: If it is in no world.
         """
         directions = self.world.directions
         return all(self.go_in_direction(self.dir % directions) for _ in range(_whole(dist, "dist")))
 
     def go_backward(self, dist: int = 1) -> bool:
-        """Moves so many cells backwards, or up to a wall, without turning; returns whether it moved all the way.
+        """Moves a number of cells backwards, or up to a wall, without turning; returns whether it moved all the way.
 
         Raises:
-            GridError: If it stands in no world.
+            GridError: If it is in no world.
         """
         back = self.world.directions // 2
         return all(self.go_in_direction(self.dir + back) for _ in range(_whole(dist, "dist")))
 
     def go_towards(self, target: Any, y: int | None = None) -> bool:
-        """Turns to, and moves into, the free neighbouring cell that is nearest to a target; of equally near ones the first clockwise.
+        """Turns to the free neighbouring cell that is nearest to a target, and enters it; of equally near ones the first clockwise.
 
-        It sees one step ahead only, so a wall between may keep it going to and fro.
+        It plans only one step, so a wall in between may make it move back and forth.
 
         Args:
             target: A column, with the row in `y`; or a cell, a body, an agent with a body, or a pair (column, row).
             y: The row.
 
         Returns:
-            Whether it moved: not where it is there already, or walled in.
+            Whether it moved: False if it is there already, or surrounded by walls.
 
         Raises:
-            GridError: If it stands in no world, or the target has no place.
+            GridError: If it is in no world, or the target has no place.
         """
         goal = self._target(target, y)
         here = self.cell
@@ -270,7 +270,7 @@ class Body(Model):
             return self.world.get_cell(thing.x, thing.y)
         raise GridError(f"go_towards: give a column and a row, or something that has a place in the world (got {target!r})")
 
-    # -- as older models spell them
+    # -- the spelling of older models
 
     aheadCell = ahead_cell  # noqa: N815
     leftCell = left_cell  # noqa: N815
@@ -294,13 +294,13 @@ class World(Model):
 
     Args:
         cell: The class of its cells.
-        width: How many columns; as many as the map has unless given.
-        height: How many rows; as many as the map has unless given.
-        directions: How many ways there are to face and to go: 4, or 8 with the diagonals.
+        width: The number of columns; by default that of the map.
+        height: The number of rows; by default that of the map.
+        directions: The number of directions: 4, or 8 with the diagonals.
         filename: A text file with the map.
-        map: The map: one character a cell, one line a row. Empty lines before and after it do not count, and lines
-            that are shorter than others are filled up with spaces.
-        log: As for every model.
+        map: The map: one character per cell, one line per row. Empty lines before and after it are ignored, and short lines are
+            filled with spaces.
+        log: As in every model.
         attrs: Become attributes.
 
     Raises:
@@ -367,7 +367,7 @@ class World(Model):
     getCell = get_cell  # noqa: N815
 
     def _neighbour(self, cell: Cell, eighth: int) -> Cell:
-        """Returns the next cell in a direction counted in eighths of a turn; one of wall beyond the edge."""
+        """Returns the neighbouring cell in a direction, given in eighths of a turn; a wall beyond the edge."""
         dx, dy = COMPASS[eighth % 8]
         x, y = cell.x + dx, cell.y + dy
         if 0 <= x < self.width and 0 <= y < self.height:
@@ -378,7 +378,7 @@ class World(Model):
         return self._outside[x, y]
 
     def _cell_changed(self, cell: Cell, key: str, value: Any) -> None:
-        """Wakes whoever may look at a cell that has changed."""
+        """Wakes everything that may depend on a cell that has changed."""
         if not self._converted:
             return
         for model in (self, *self._bodies):
@@ -404,11 +404,11 @@ class World(Model):
         """Puts an agent's body into a cell, and the agent into the world unless it is part of another model.
 
         Args:
-            agent: The agent; one without a body is given one. Several may stand in one cell.
-            x: The column; with no place given a cell without walls and agents is chosen at random.
+            agent: The agent; if it has no body, it gets one. Several may be in one cell.
+            x: The column; without any place, a cell without walls and agents is chosen at random.
             y: The row.
-            dir: Where it faces: 0 is north (up), then clockwise.
-            color: The colour it is drawn in.
+            dir: The direction that it faces: 0 is north (up), then clockwise.
+            color: The colour in which it is drawn.
             cell: The cell, instead of `x` and `y`.
 
         Raises:
@@ -435,14 +435,14 @@ class World(Model):
         body.dir = dir
 
     def _free_name(self) -> str:
-        """Returns the attribute that the next agent gets: agent, agent2, agent3."""
+        """Returns the name of the next agent: agent, agent2, agent3."""
         number = 1
         while (name := "agent" if number == 1 else f"agent{number}") in self.__dict__:
             number += 1
         return name
 
     def _cell_for(self, x: int | None, y: int | None, cell: Cell | None) -> Cell:
-        """Returns the cell that `add` was given a place for, or a free one."""
+        """Returns the cell given by the arguments of `add`, or a free one."""
         if (x is None) != (y is None):
             raise GridError(f"World.add: give both x and y, or neither (got x={x!r}, y={y!r})")
         if x is not None and y is not None:
@@ -461,7 +461,7 @@ class World(Model):
 
 
 def _body_of(agent: Model) -> Body:
-    """Returns the agent's body: itself, its attribute `body`, or another attribute that is one; a new one where it has none."""
+    """Returns the agent's body: itself, its attribute `body`, or another attribute that is one; otherwise a new one."""
     if isinstance(agent, Body):
         return agent
     given = agent.__dict__.get("body")
@@ -483,7 +483,7 @@ def _whole(value: object, what: str) -> int:
 
 
 def _rows(map: str | None, width: int | None, height: int | None) -> list[str]:
-    """Returns the map's lines, all of one length; of spaces where there is only a size."""
+    """Returns the map's lines, padded to equal length; lines of spaces if only a size is given."""
     if map is None and (width is None or height is None):
         raise GridError("World: give a map, or a width and a height")
     lines = [] if map is None else map.splitlines()
@@ -503,7 +503,7 @@ def _rows(map: str | None, width: int | None, height: int | None) -> list[str]:
 
 
 def _read_map(filename: str | Path) -> str:
-    """Reads a map from a file of the present folder, or from one beside the model file."""
+    """Reads a map from a file in the current folder, or from one beside the model file."""
     path = Path(filename)
     program = getattr(sys.modules.get("__main__"), "__file__", None)
     places = [path] if program is None else [path, Path(program).parent / path]

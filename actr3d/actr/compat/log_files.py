@@ -34,7 +34,7 @@ td i { opacity: .75; }
 
 
 def _word(word: str) -> str:
-    """Returns a word as HTML, the slot's name of `slot:value` set apart."""
+    """Returns a word as HTML, with the slot's name of `slot:value` in italics."""
     slot, colon, value = word.partition(":")
     return f"<i>{html.escape(slot)}:</i>{html.escape(value)}" if colon else html.escape(word)
 
@@ -52,13 +52,13 @@ def _cell(value: Any, rows: int) -> str:
 
 
 def html_page(rows: list[tuple[float, str, Any]], title: str) -> str:
-    """Returns the page for log lines (time [s], key, value); what never changes stands in a table of its own below."""
+    """Returns the page for log lines (time [s], key, value), with a separate table below for values that never change."""
     columns: dict[str, list[tuple[int, Any]]] = {}
     for index, (_, key, value) in enumerate(rows):
         columns.setdefault(key, []).append((index, value))
     changing = sorted(key for key, values in columns.items() if len(values) > 1)
     fixed = sorted(key for key, values in columns.items() if len(values) == 1)
-    # One row for each moment, and a further one wherever a column changes again within that moment.
+    # One row for each moment, and another whenever a column changes again within that moment.
     moments: list[tuple[float, dict[str, Any]]] = []
     for time, key, value in rows:
         if key not in changing:
@@ -94,7 +94,7 @@ def write_html(path: Path, rows: list[tuple[float, str, Any]]) -> None:
 
 
 def finished(flush: bool = True) -> None:  # noqa: ARG001 - as models call it
-    """Writes what the log's settings ask for, and begins a new log."""
+    """Writes the files that the log's settings request, and starts a new log."""
     if LOG:
         if LOG.do_summary:
             LOG.display_all()

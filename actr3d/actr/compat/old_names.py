@@ -1,4 +1,4 @@
-"""The old names, `python_actr`, `ccm` and their parts: what model files that are loaded here get when they import them."""
+"""The old import names, `python_actr`, `ccm` and their submodules, for model files that are loaded here."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 ROOTS = ("python_actr", "ccm")
-"""The names under which models know the library."""
+"""The old names of the library."""
 
 _EVERYTHING = ("actr3d.actr", "actr3d.actr.loading.sweep", "actr3d.actr.compat.display")
 _PARTS: dict[str, tuple[str, ...]] = {
@@ -45,15 +45,15 @@ _PARTS: dict[str, tuple[str, ...]] = {
     "actr.timer": ("actr3d.actr.modules.timer",),
     "actr.vision": ("actr3d.actr.modules.vision",),
 }
-"""Each part of the old library, and which of our modules it offers the names of."""
+"""Each submodule of the old library, and the modules here whose names it contains."""
 
 PACKAGES = frozenset({"", "actr", "lib", "lib.actr"})
 ROOT_ONLY = frozenset({"Model", "ProductionSystem", "display", "finished", "log", "log_everything", "run"})
-"""What the root package alone offers; models name variables like these before they import the rest."""
+"""Names that only the root package exports; models use variables of the same names before they import the rest."""
 
 
 class OldNames:
-    """The old library as one program sees it: modules that hold our names, made when they are asked for.
+    """The old library as one program sees it: modules with the names of this library, made on demand.
 
     Args:
         used: Called whenever the program imports one of them.
@@ -64,10 +64,10 @@ class OldNames:
         self.used = used
 
     def imported(self, name: str, wanted: Sequence[str] | None) -> ModuleType:
-        """Returns what an import statement gives: the module itself to `from ... import`, its root to a plain import.
+        """Returns the result of an import statement: the module for `from ... import`, its root for a plain import.
 
         Raises:
-            ModuleNotFoundError: If the old library had no such part.
+            ModuleNotFoundError: If the old library has no such module.
         """
         self.used()
         roots = name.split(".")
@@ -78,7 +78,7 @@ class OldNames:
         """Returns the module of an old name.
 
         Raises:
-            ModuleNotFoundError: If the old library had no such part.
+            ModuleNotFoundError: If the old library has no such module.
         """
         with _LOCK:
             return self.modules.get(name) or self._make(name)
@@ -99,7 +99,7 @@ class OldNames:
         if part in PACKAGES:
             module.__path__ = []
         module.__dict__.update(names)
-        # Every part is there after `import ccm`, and those of the root package come with `from ccm import *` too.
+        # Every submodule is available after `import ccm`, and those of the root package also after `from ccm import *`.
         inner = _inner_parts(part)
         for short in inner:
             if short not in names:
@@ -113,7 +113,7 @@ class OldNames:
 
 
 class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Answers with the modules of the program in force; where there is none, it knows nothing."""
+    """Finds the modules of the active program; without one, it finds nothing."""
 
     def find_spec(self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
         part = _part(fullname)
@@ -127,15 +127,15 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         return names.module(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Does nothing: the module has its names already."""
+        """Does nothing, because the module is complete."""
 
 
 _LOCK = RLock()
 _IN_FORCE: list[OldNames] = []
 _REAL: dict[str, ModuleType] = {}
-"""What the old names meant before the first program came into force, a real python_actr for instance."""
+"""The modules of the old names before the first program became active, such as the real python_actr."""
 _FINDER = _Finder()
-# It stays: to take a finder away while another thread goes through the list would hide the next one from that thread.
+# It is never removed: while another thread iterates over the list, that would hide the next finder from it.
 sys.meta_path.insert(0, _FINDER)
 
 
@@ -144,7 +144,7 @@ def _spec(name: str, part: str) -> ModuleSpec:
 
 
 def _inner_parts(part: str) -> list[str]:
-    """Returns the short names of the parts directly inside a part."""
+    """Returns the short names of the submodules directly inside a module."""
     inside = "actr" if part == "lib.actr" else part
     prefix = f"{inside}." if inside else ""
     return [
@@ -153,7 +153,7 @@ def _inner_parts(part: str) -> list[str]:
 
 
 def _part(fullname: str) -> str | None:
-    """Returns what follows the root in a dotted name, `actr.dm` also for `lib.actr.dm`; None for other packages."""
+    """Returns the part of a dotted name after the root, `actr.dm` also for `lib.actr.dm`; None for other packages."""
     root, _, part = fullname.partition(".")
     if root not in ROOTS:
         return None
@@ -167,10 +167,10 @@ def is_old_name(name: str) -> bool:
 
 @contextmanager
 def aliases(names: OldNames | None = None) -> Generator[None]:
-    """Makes the old names importable for everybody inside the block, also by `importlib.import_module`.
+    """Makes the old names importable for all code inside the block, also by `importlib.import_module`.
 
-    Blocks of several threads may end in any order: while any is open, the names are those of the last that began; after
-    all of them everything is as it was, a real python_actr included.
+    Blocks of several threads may end in any order: while any is open, the names are those of the last one that began. After
+    all have ended, everything is restored, including a real python_actr.
     """
     names = names or OldNames()
     with _LOCK:
@@ -187,7 +187,7 @@ def aliases(names: OldNames | None = None) -> Generator[None]:
 
 
 def _put_in() -> None:
-    """Lets `sys.modules` have those old names that are in force, or the real ones where none are."""
+    """Puts the active old names into `sys.modules`, or the real modules if none are active."""
     _taken_out()
     if _IN_FORCE:
         sys.modules.update(_IN_FORCE[-1].modules)

@@ -1,4 +1,4 @@
-"""The version of python_actr whose behaviour models find here; some print it."""
+"""The version of python_actr that this library is compatible with; some models print it."""
 
 name = "python_actr"
 version_info = (1, 9, 5)

@@ -1,6 +1,6 @@
-"""The random numbers that all of a program shares: those of Python's module `random`, and numpy's where that is imported.
+"""Seeds the random numbers that a whole program shares: those of Python's module `random`, and of numpy if it is imported.
 
-The core does without numpy; what a model draws from `numpy.random` comes from the seed all the same.
+The core does not use numpy, but what a model draws from `numpy.random` also comes from the seed.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ NUMPY = "numpy.random"
 
 
 def seed_shared(seed: int | str) -> None:
-    """Lets all shared numbers come from a seed."""
+    """Seeds all shared generators."""
     random.seed(seed)
     numpy_random = sys.modules.get(NUMPY)
     if numpy_random is not None:
@@ -32,7 +32,7 @@ def _seed_numpy(numpy_random: Any, seed: int | str) -> None:
 
 @contextmanager
 def shared_random(seed: int | str) -> Generator[None]:
-    """Lets all shared numbers come from a seed inside the block; everybody else finds them as they left them."""
+    """Seeds all shared generators inside the block, and restores their states afterwards."""
     before, numpy_random = random.getstate(), _numpy_random()
     numpys = None if numpy_random is None else (numpy_random.get_bit_generator(), numpy_random.get_state(legacy=False))
     late = _LateNumpy(seed)
@@ -56,7 +56,7 @@ def _numpy_random() -> Any:
 
 
 class _LateNumpy(importlib.abc.MetaPathFinder):
-    """Lets numpy's numbers come from a seed where they are imported only after that was set.
+    """Seeds numpy's generator if numpy is imported later.
 
     Args:
         seed: The seed.

@@ -1,8 +1,8 @@
 """Loads and runs model files: as programs, unchanged, from a file or from text.
 
-A file that is run is a program: `__main__`, alone in `sys.argv`, its folder first on the path. So a process runs one
-program at a time (or one inside another, as a parameter sweep does). A text that is loaded is a module; any number of
-them can be loaded and used at once, also by several threads. See `actr3d.actr.loading.program` for what both share.
+A file that is run is a program: `__main__`, the only entry of `sys.argv`, with its folder first on the path. A process therefore
+runs one program at a time (or one inside another, as a parameter sweep does). A text that is loaded is a module; any number of
+modules can be loaded and used at once, also by several threads. See `actr3d.actr.loading.program` for the common part.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _LOADING = Lock()
 
 @contextmanager
 def _as_main(module: ModuleType, program: Program) -> Generator[None]:
-    """Lets a module be the program: `__main__`, alone in `sys.argv`, its folder first on the path; its helper modules go with it."""
+    """Makes a module the program: `__main__`, in `sys.argv`, with its folder first on the path; removes helper modules afterwards."""
     main, path, argv, known = sys.modules.get("__main__"), list(sys.path), list(sys.argv), set(sys.modules)
     importlib.invalidate_caches()  # helper modules may be newer than the last look into their folder
     sys.modules["__main__"] = module
@@ -52,9 +52,9 @@ def _as_main(module: ModuleType, program: Program) -> Generator[None]:
 
 
 def _module(name: str, filename: str, program: Program) -> ModuleType:
-    """Makes the module that a model's text is to run in, and forgets the text's lines when nothing of the module is left."""
+    """Makes the module for a model's text; its lines for tracebacks are removed with the last object of the module."""
     module = ModuleType(name)
-    # Its functions hold its globals only; through these they hold the module, which must be there as long as they are.
+    # Functions hold only the globals of their module; this entry keeps the module alive as long as its functions.
     module.__dict__.update({"__file__": filename, "__actr3d_module__": module})
     weakref.finalize(module, drop_lines, program.files).atexit = False
     return module
@@ -70,22 +70,22 @@ def run_text(
     prepare: Callable[[ModuleType], None] | None = None,
     helpers: HelperTexts | None = None,
 ) -> ModuleType:
-    """Runs a model's text as a program, until it and the threads it has started are over.
+    """Runs a model's text as a program, until it and the threads it has started end.
 
     Args:
         source: The program.
-        filename: How tracebacks call it.
-        limits: Its seed, end and trace; None for a fresh seed, no end and no trace.
-        folder: Where it finds its own helper modules; the present folder unless given.
-        names: Globals it starts with.
+        filename: Its name in tracebacks.
+        limits: Its seed, end and trace; None for a new seed, no end and no trace.
+        folder: The folder of its helper modules; by default the current folder.
+        names: Its initial globals.
         prepare: Called with the module before it runs.
-        helpers: Where the texts of its helper modules are kept, and come from where they are known.
+        helpers: Stores the texts of its helper modules, or provides recorded ones.
 
     Returns:
-        The program's module, as it is in the end.
+        The program's module after the run.
 
     Raises:
-        ModelFileError: If it, or a helper module, is no Python 3.
+        ModelFileError: If it, or a helper module, is not Python 3.
         Exception: Whatever the program raises.
     """
     program = Program((folder or Path.cwd()).resolve(), helpers)
@@ -99,7 +99,7 @@ def run_text(
 
 
 def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLimits) -> None:
-    """Runs a program's code under its limits, and puts everything back afterwards."""
+    """Runs a program's code within its limits, and restores everything afterwards."""
     outer = RunLimits.current()
     with ExitStack() as stack:
         stack.callback(logs.begin())
@@ -108,19 +108,19 @@ def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLi
         stack.enter_context(_as_main(module, program))
         stack.enter_context(shared_random(limits.program_seed))
         logs.LOG.source = module.__file__
-        stack.callback(_finish)  # also where the program fails: what it logged until then is kept
+        stack.callback(_finish)  # also if the program fails: its log so far is written
         try:
             exec(code, module.__dict__)
         except EndOfRun:
             if outer is not None and outer.ended:
-                raise  # the program that runs this one has no time left either
+                raise  # the outer program has no time left either
         finally:
             limits.wait_for_threads()
         module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = logs.LOG.announce
 
 
 def _finish() -> None:
-    """Ends the program's log; one that has closed its output gets no last line."""
+    """Finishes the program's log, without a last line if its output is closed."""
     out = sys.stdout
     if getattr(out, "closed", False):
         sys.stdout = None
@@ -134,7 +134,7 @@ def run_file(path: Path | str, *, limits: RunLimits | None = None) -> ModuleType
     """Runs a model file as a program; see `run_text`.
 
     Raises:
-        ModelFileError: If there is no such file, or it or a helper module is no Python 3.
+        ModelFileError: If the file does not exist, or it or a helper module is not Python 3.
         Exception: Whatever the program raises.
     """
     path = Path(path)
@@ -144,33 +144,32 @@ def run_file(path: Path | str, *, limits: RunLimits | None = None) -> ModuleType
 def load_text(
     source: str, filename: str = "<model>", *, folder: Path | str | None = None, helpers: HelperTexts | None = None
 ) -> ModuleType:
-    """Loads a model's text as a module; its classes can be used afterwards, for as long as one likes.
+    """Loads a model's text as a module, whose classes can be used afterwards without restriction.
 
-    What it has put into `sys.modules`, and its lines for tracebacks, go when nothing of the module is in use any more:
-    neither the module itself nor a function, class or instance of it. A text whose top level fails leaves nothing in
-    `sys.modules`.
+    Its entries in `sys.modules`, and its lines for tracebacks, are removed when nothing of the module is in use any more: neither
+    the module itself nor a function, class or instance of it. A text whose top level fails leaves nothing in `sys.modules`.
 
     Args:
         source: The text.
-        filename: How tracebacks call it; several texts may have one name.
-        folder: Where it finds its own helper modules, now and later; None for none. Each text loads them for itself.
-        helpers: Where the texts of its helper modules are kept, and come from where they are known.
+        filename: Its name in tracebacks; several texts may have the same name.
+        folder: The folder of its helper modules, now and later; None for none. Each text loads its own instances of them.
+        helpers: Stores the texts of its helper modules, or provides recorded ones.
 
     Raises:
-        ModelFileError: If it, or a helper module, is no Python 3.
+        ModelFileError: If it, or a helper module, is not Python 3.
         Exception: Whatever its top level raises.
     """
     importlib.invalidate_caches()
     program = Program(None if folder is None else Path(folder).resolve(), helpers)
     with _LOADING:
-        # Two runs of one process load one text under one name; a second module of the same text gets a number.
+        # The name depends on the text only, so that two processes give it the same; a second module of one text gets a number.
         name = stem = f"actr3d_model_{crc32(f'{filename}:{source}'.encode(errors='replace')):08x}"
         number = 1
         while name in sys.modules:
             number += 1
             name = f"{stem}_{number}"
         module = _module(name, filename, program)
-        # dataclasses and pickling look a class's module up; `sys.modules` is not to keep it alive.
+        # dataclasses and pickle look up a class's module; `sys.modules` must not keep it alive.
         known: dict[str, Any] = {name: _Loaded(module), **program.as_package(f"{name}_files")}
         sys.modules.update(known)
     weakref.finalize(module, _forget, known).atexit = False
@@ -183,13 +182,13 @@ def load_text(
         module.__dict__[WRITTEN_FOR_PYTHON_ACTR] = True
     for value in list(vars(module).values()):
         if isinstance(value, type) and value.__module__ == name:
-            # A function holds the names of its module; a class without functions holds nothing of it.
+            # A function holds the globals of its module; a class without functions holds nothing of it.
             type.__setattr__(value, "__actr3d_module__", module)
     return module
 
 
 class _Loaded(ModuleType):
-    """Stands for a loaded text in `sys.modules` without keeping it alive; it is empty when the text's module is gone."""
+    """Represents a loaded text in `sys.modules` without keeping it alive; it is empty when the text's module no longer exists."""
 
     def __init__(self, module: ModuleType) -> None:
         super().__init__(module.__name__)
@@ -214,7 +213,7 @@ _MODULES: weakref.WeakKeyDictionary[_Loaded, weakref.ref[ModuleType]] = weakref.
 
 
 def _forget(known: dict[str, Any]) -> None:
-    """Takes a loaded text, and its helper modules, out of `sys.modules`, unless another has come there since."""
+    """Removes a loaded text, and its helper modules, from `sys.modules`, unless another has replaced it."""
     for name, entry in known.items():
         if sys.modules.get(name) is entry:
             for inner in [inner for inner in list(sys.modules) if inner == name or inner.startswith(f"{name}.")]:

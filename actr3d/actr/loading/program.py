@@ -1,8 +1,8 @@
-"""What the files of one program share: what `import` means in them, and where the text of each is kept.
+"""Import isolation: what the files of one program share, namely the meaning of `import`, and their texts.
 
-Every file that is loaded here, helper modules too, has builtins of its own, whose `__import__` is the program's: so the old
-names mean this library in it whenever and in whatever thread it imports them, and in nobody else's files. Of helper
-modules, those beside the program count, and those that lie where the program itself has extended `sys.path` to.
+Every file that is loaded here, including helper modules, has its own builtins, whose `__import__` is the program's. So the old
+names mean this library in it, whenever and in whatever thread it imports them, and in no other files. Helper modules are
+those beside the program, and those in folders that the program has added to `sys.path`.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ from actr3d.actr.loading.source_text import compile_source, read_source
 class Program:
     """The files of one program.
 
-    It does not hold the program's main module, which holds it: helper modules, which `sys.modules` keeps alive, must not
-    keep the main module alive.
+    It has no reference to the program's main module, which refers to it: helper modules, which `sys.modules` keeps alive, must
+    not keep the main module alive.
 
     Args:
-        folder: Where its helper modules lie; None for none.
-        helpers: Where the texts of helper modules are kept, and come from where they are known; None for new ones.
+        folder: The folder of its helper modules; None for none.
+        helpers: Stores the texts of helper modules, or provides recorded ones; None for a new store.
     """
 
     def __init__(self, folder: Path | None, helpers: HelperTexts | None = None) -> None:
         self.folder = folder
         self.helpers = helpers or HelperTexts()
         self.files: list[FileName] = []
-        """The names of its texts, under which tracebacks find their lines."""
+        """The names under which tracebacks find the lines of its texts."""
         self.used_old_names = False
         """Whether it has imported python_actr or ccm."""
         self.old = OldNames(self._note_old_names)
@@ -54,10 +54,10 @@ class Program:
         vars(self._builtins)["__import__"] = self.imported
 
     def prepare(self, source: str, filename: str, module: ModuleType) -> CodeType:
-        """Compiles a text, and lets a module be the one it can be run in.
+        """Compiles a text, and prepares a module to run it.
 
         Raises:
-            ModelFileError: If it is no Python 3.
+            ModelFileError: If it is not Python 3.
         """
         name = FileName(filename)
         code = compile_source(source, name)
@@ -67,10 +67,10 @@ class Program:
         return code
 
     def as_package(self, name: str) -> dict[str, ModuleType]:
-        """Lets the helper modules stand in a package of this name, so that those of two programs can be there at once.
+        """Puts the helper modules into a package of this name, so that those of several programs can exist at once.
 
         Returns:
-            What is to be known to `sys.modules`: the package; nothing where the program has no folder.
+            The entries for `sys.modules`: the package; none if the program has no folder.
         """
         if self.folder is None:
             return {}
@@ -84,7 +84,7 @@ class Program:
 
     @contextmanager
     def running(self) -> Generator[None]:
-        """Lets the helper modules stand in `sys.modules` by their own names inside the block."""
+        """Puts the helper modules into `sys.modules` by their own names inside the block."""
         self._path = list(sys.path)
         _RUNNING.append(self)
         try:
@@ -101,7 +101,7 @@ class Program:
         return any(path.is_relative_to(root) for root in roots) and not _is_installed(path)
 
     def _added(self) -> list[str]:
-        """Returns the folders with which the program has extended `sys.path`."""
+        """Returns the folders that the program has added to `sys.path`."""
         return [entry for entry in sys.path if entry not in self._path]
 
     def owns_module(self, module: ModuleType) -> bool:
@@ -109,7 +109,7 @@ class Program:
         return any(self.owns(place) for place in (getattr(module, "__file__", None) or "", *getattr(module, "__path__", ())))
 
     def short_name(self, fullname: str) -> str:
-        """Returns by which name the program itself knows a module."""
+        """Returns the name of a module inside the program."""
         return fullname if self._package is None else fullname.removeprefix(f"{self._package}.")
 
     def _note_old_names(self) -> None:
@@ -117,7 +117,7 @@ class Program:
         if self in _RUNNING:
             logs.LOG.announce = True
 
-    # -- what `import` means
+    # -- the meaning of `import`
 
     def imported(
         self,
@@ -127,10 +127,10 @@ class Program:
         fromlist: Sequence[str] | None = (),
         level: int = 0,
     ) -> ModuleType:
-        """Does what an import statement in one of the program's files asks for; the parameters are those of `__import__`.
+        """Executes an import statement in one of the program's files; the parameters are those of `__import__`.
 
         Raises:
-            ImportError: If it cannot be had.
+            ImportError: If the module cannot be imported.
         """
         if level == 0:
             if is_old_name(name):
@@ -143,7 +143,7 @@ class Program:
                 return self._helper(name, fromlist)
         if level or name in sys.modules:
             return builtins.__import__(name, globals, locals, fromlist or (), level)
-        with aliases(self.old):  # an installed package may be written for the old names too
+        with aliases(self.old):  # an installed package may also use the old names
             return builtins.__import__(name, globals, locals, fromlist or (), level)
 
     def _is_helper(self, root: str) -> bool:
@@ -158,7 +158,7 @@ class Program:
         where = [str(self.folder), *self._added()]
         sys.modules[self._package].__path__[:] = where
         spec = PathFinder.find_spec(full, where)
-        # A folder without `__init__.py` stands behind everything else of its name.
+        # Everything else of that name takes precedence over a folder without `__init__.py`.
         return spec is not None and (spec.loader is not None or importlib.util.find_spec(root) is None)
 
     def _helper(self, name: str, fromlist: Sequence[str] | None) -> ModuleType:
@@ -170,7 +170,7 @@ class Program:
 
 
 class _HelperLoader(SourceFileLoader):
-    """Loads a helper module as the program itself is loaded; from its file, or from a text that is known."""
+    """Loads a helper module in the same way as the program; from its file, or from a recorded text."""
 
     def __init__(self, program: Program, name: str, path: str, text: str | None = None) -> None:
         super().__init__(name, path)
@@ -185,7 +185,7 @@ class _HelperLoader(SourceFileLoader):
 
 
 class _HelperFinder(importlib.abc.MetaPathFinder):
-    """Finds the helper modules of programs that are loaded, and of the one that is being run."""
+    """Finds the helper modules of loaded programs, and of the running one."""
 
     def find_spec(self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
         program = _PACKAGES.get(fullname.partition(".")[0]) or (_RUNNING[-1] if _RUNNING else None)
@@ -207,7 +207,7 @@ class _HelperFinder(importlib.abc.MetaPathFinder):
 
 _PACKAGES: WeakValueDictionary[str, Program] = WeakValueDictionary()
 _RUNNING: list[Program] = []
-sys.meta_path.insert(0, _HelperFinder())  # it stays, as the finder of the old names does
+sys.meta_path.insert(0, _HelperFinder())  # it is never removed; see the finder of the old names
 
 
 def _is_installed(path: Path) -> bool:

@@ -1,4 +1,4 @@
-"""Returns whether a file that does not compile is written for Python 2, and by what one sees it."""
+"""Recognizes Python 2 in a file that does not compile, and names the sign of it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ PYTHON_2_NAMES = frozenset(
         "commands",
     }
 )
-"""Names of Python 2 that Python 3 does not know; a file that compiles may still use them."""
+"""Names of Python 2 that do not exist in Python 3; a file that compiles may still use them."""
 
 _SIGNS: tuple[tuple[re.Pattern[str], str], ...] = (
     (re.compile(r"^\s*print\s+[^(=\s]|^\s*print\s+\(.*\)\s*[%,]|[:;]\s*print\s+[\"'\w]|^\s*print\s*>>"), "a print statement"),
@@ -54,19 +54,19 @@ _SIGNS: tuple[tuple[re.Pattern[str], str], ...] = (
 
 
 LONGEST = 1000
-"""So much of a line is looked at [characters]: no statement of Python 2 needs more, and nested brackets make the search slow."""
+"""The maximum length of a line that is searched [characters]: no sign needs more, and nested brackets make the search slow."""
 
 
 def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
-    """Returns the line at which a file is seen to be Python 2, and the sign; None where nothing tells.
+    """Returns the first line that shows a file to be Python 2, and the sign; None if there is no sign.
 
     Args:
         source: The file's text.
-        error: What Python 3 says of it.
+        error: The error of Python 3.
     """
     lines = [line[:LONGEST] for line in _without_texts(source).split("\n")]
     number = error.lineno or 0
-    # The line Python 3 stopped at, or the one before, where a statement's end was missed.
+    # The line of the error, or the one before, if the end of a statement is missing.
     for line in (number, number - 1):
         if 0 < line <= len(lines):
             for sign, reason in _SIGNS:
@@ -78,9 +78,9 @@ def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
 
 
 def print_to(tree: ast.Module) -> int | None:
-    """Returns the line of the first `print >> file, ...`, which Python 3 compiles though it cannot run it; None for no such line.
+    """Returns the line of the first `print >> file, ...`, which Python 3 compiles but cannot run; None if there is none.
 
-    Lines that ask for Python's version first are left alone, and so are files with a `print` of their own.
+    Ignores code under a test of Python's version, and files that define their own `print`.
     """
     found: list[int] = []
     waiting: list[ast.AST] = [tree]
@@ -104,7 +104,7 @@ def print_to(tree: ast.Module) -> int | None:
 
 
 def _gives_name(node: ast.AST, name: str) -> bool:
-    """Returns whether a node gives something a name."""
+    """Returns whether a node binds a name."""
     if isinstance(node, ast.Name):
         return node.id == name and not isinstance(node.ctx, ast.Load)
     own = (getattr(node, "name", None), getattr(node, "arg", None), getattr(node, "asname", None))
@@ -115,7 +115,7 @@ _QUIET = re.compile(r"#[^\n]*|(\"\"\"|\'\'\')[\s\S]*?\1|([\"\'])(?:\\.|(?!\2)[^\
 
 
 def _without_texts(source: str) -> str:
-    """Empties comments and texts, which may contain anything, on the lines where they are."""
+    """Removes the contents of comments and strings, which may contain anything, and keeps the line breaks."""
 
     def emptied(found: re.Match[str]) -> str:
         quote = found[1] or found[2] or ""

@@ -1,4 +1,4 @@
-"""Runs a recorded program with what its recording holds: none of its modules come from anywhere else on this machine."""
+"""Runs a recorded program only with its recorded files: none of its modules come from elsewhere on this machine."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from typing import Any
 
 from actr3d.actr.loading.helper_modules import HelperTexts
 
-_LOCK = RLock()  # all of this is of the whole process
+_LOCK = RLock()  # everything here affects the whole process
 OWN = ("actr3d", "workbench", "__main__")
-"""Modules that are in use whatever is replayed, wherever they come from."""
+"""Modules that are kept in every replay, wherever they come from."""
 
 
 @contextmanager
 def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
-    """Lets nothing be imported inside the block but the recorded modules, the standard library and installed packages.
+    """Restricts imports inside the block to the recorded modules, the standard library and installed packages.
 
-    The texts also lie in a new temporary folder, which stands first on the path, for processes that the program starts. The
-    names of files, as tracebacks and `__file__` have them, are those that were recorded.
+    The texts are also written to a new temporary folder, first on the path, for processes that the program starts. The file names
+    in tracebacks and `__file__` are the recorded ones.
 
     Args:
         file: The recorded name of the program's file.
         source: Its text.
-        helpers: Its helper modules, as `HelperTexts.loaded` has them.
+        helpers: Its helper modules, in the form of `HelperTexts.loaded`.
 
     Yields:
-        The helper modules, for whoever loads or runs the program.
+        The helper modules, for loading or running the program.
     """
     with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-") as name:
         folder, folders = Path(name), installed_folders()
@@ -54,7 +54,7 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Gene
 
 
 class _SealedFinder(importlib.abc.MetaPathFinder):
-    """Asks the usual finders, but for what the program holds itself, and elsewhere than where packages are installed."""
+    """Finds modules with the usual finders, only where packages are installed, and none that the recording contains."""
 
     def __init__(self, texts: HelperTexts, finders: Sequence[Any], folders: Sequence[str]) -> None:
         self._texts = texts
@@ -73,7 +73,7 @@ class _SealedFinder(importlib.abc.MetaPathFinder):
 
 
 def installed_folders() -> list[str]:
-    """Returns those folders on the path where packages are installed: not the present folder, and not that of a script."""
+    """Returns the folders on the path where packages are installed, without the current folder and that of the script."""
     known = {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")}
     known |= {*site.getsitepackages(), site.getusersitepackages()}
     links = {line for folder in list(known) for line in _linked(Path(folder))}
@@ -84,7 +84,7 @@ def installed_folders() -> list[str]:
 
 
 def _linked(folder: Path) -> Generator[str]:
-    """Yields the folders that `.pth` files add to the path, as an installation that can be edited does."""
+    """Yields the folders that `.pth` files add to the path, as editable installations do."""
     with suppress(OSError):
         for file in folder.glob("*.pth"):
             for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
@@ -93,25 +93,25 @@ def _linked(folder: Path) -> Generator[str]:
 
 
 def _hide(unwanted: Callable[[str], bool]) -> dict[str, ModuleType]:
-    """Removes those packages and modules from `sys.modules` whose first name is unwanted; returns them."""
+    """Removes packages and modules whose first name is unwanted from `sys.modules`, and returns them."""
     roots = {name.partition(".")[0] for name in list(sys.modules)}
     gone = {root for root in roots if root not in OWN and unwanted(root)}
     return {name: sys.modules.pop(name) for name in list(sys.modules) if name.partition(".")[0] in gone}
 
 
 def _is_installed(root: str, folders: Iterable[str]) -> bool:
-    """Returns whether a loaded module or package is built in, or comes from one of some folders."""
+    """Returns whether a loaded module or package is built in, or comes from one of the given folders."""
     module = sys.modules.get(root)
     file = getattr(module, "__file__", None)
     if root in sys.stdlib_module_names or not isinstance(file, str):
-        return True  # or it was made without a file, as nothing in a folder is
+        return True  # or it was made without a file
     return any(str(parent) in folders for parent in Path(file).parents[:2]) or "site-packages" in Path(file).parts
 
 
 def _lay_out(folder: Path, texts: Iterable[Sequence[str]]) -> None:
-    """Writes texts to files of these names below a folder; those that lie elsewhere are left out."""
+    """Writes texts to files of these names below a folder; ignores names that point elsewhere."""
     for name, text in texts:
-        with suppress(OSError, ValueError):  # a name that no file can have
+        with suppress(OSError, ValueError):  # not a valid file name
             target = folder.joinpath(name).resolve()
             if target.is_relative_to(folder.resolve()):
                 target.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Reads a model file's text and compiles it; says in one sentence what is wrong with one that is no Python 3."""
+"""Reads a model file's text and compiles it; reports in one sentence why a file is not Python 3."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from actr3d.actr.loading.python2 import print_to, python_2_reason
 from actr3d.errors import ModelFileError, did_you_mean
 
 LONGEST = 200
-"""So much of a wrong line is quoted [characters]."""
+"""The maximum length of a quoted line [characters]."""
 
 
 def read_source(path: Path) -> str:
-    """Returns a model file's text, in the encoding it declares.
+    """Reads a model file in the encoding that it declares, and returns its text.
 
     Raises:
-        ModelFileError: If there is no such file, or it is no text.
+        ModelFileError: If the file does not exist or is not text.
     """
     try:
         data = path.read_bytes()
@@ -40,7 +40,7 @@ def read_source(path: Path) -> str:
 
 
 def _why_no_text(data: bytes, error: Exception) -> str:
-    """Says what is wrong with a file's encoding; where it declares none, which line is no UTF-8."""
+    """Returns what is wrong with a file's encoding; if it declares none, the line that is not UTF-8."""
     if "encoding declaration" in str(error) or getattr(error, "encoding", None) == "utf-8":
         try:
             data.decode("utf-8")
@@ -54,7 +54,7 @@ def compile_source(source: str, filename: str) -> CodeType:
     """Compiles a model's text.
 
     Raises:
-        ModelFileError: If it is no Python 3; the message names the line, and says so where it is Python 2.
+        ModelFileError: If it is not Python 3; the message names the line, and Python 2 if that is the reason.
     """
     if "\0" in source:
         line = source.count("\n", 0, source.index("\0")) + 1

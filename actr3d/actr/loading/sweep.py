@@ -1,4 +1,4 @@
-"""Parameter sweeps: runs a model file many times, with other values for what its first lines set."""
+"""Parameter sweeps: run a model file many times, with different values for the variables that its first lines set."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from actr3d.errors import ParameterError, did_you_mean
 
 
 def parameters(source: str) -> dict[str, ast.Assign]:
-    """Returns the parameters of a model: the assignments `name = value` that stand before anything else.
+    """Returns the parameters of a model: the assignments `name = value` before any other code.
 
     A docstring, comments and imports from `__future__` may come before them.
 
     Raises:
-        SyntaxError: If the text is no Python.
+        SyntaxError: If the text is not Python.
     """
     found: dict[str, ast.Assign] = {}
     for node in ast.parse(source).body:
@@ -36,14 +36,14 @@ def parameters(source: str) -> dict[str, ast.Assign]:
 
 
 def settings(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yields every combination of the values; only a list stands for several."""
+    """Yields every combination of the values; a list is a set of alternatives, anything else one value."""
     choices = [cast("list[Any]", value) if type(value) is list else [value] for value in values.values()]
     for chosen in product(*choices):
         yield dict(zip(values, chosen, strict=True))
 
 
 def with_values(source: str, chosen: Mapping[str, Any]) -> str:
-    """Returns a model's text with other values for its parameters, on the same lines.
+    """Returns a model's text with new values for its parameters, on the same lines.
 
     Raises:
         ParameterError: If the model has no such parameter.
@@ -69,24 +69,24 @@ def with_values(source: str, chosen: Mapping[str, Any]) -> str:
 
 
 def label(source: str, chosen: Mapping[str, Any]) -> str:
-    """Returns the name of a setting, which its data's folder has: `a(3) b(x)`, or `default`."""
+    """Returns the name of a setting, used for the folder of its data: `a(3) b(x)`, or `default`."""
     known = parameters(source)
     words = [f"{name}({value})" for name, value in chosen.items() if ast.unparse(known[name].value) != repr(value)]
     return " ".join(words) or "default"
 
 
 def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
-    """Runs a model file for every combination of the given values, and writes what each run logs to a data file.
+    """Runs a model file for every combination of the given values, and writes the log of each run to a data file.
 
-    The data go to `model/a(3) b(x)/<time>.data`, and a copy of the model's text to `model/code.py`.
+    The data are written to `model/a(3) b(x)/<time>.data`, and a copy of the model's text to `model/code.py`.
 
     Args:
-        _filename: The model file, with or without `.py`; in the present folder, or beside the program that asks.
-        _iterations: How often to run each combination.
+        _filename: The model file, with or without `.py`; in the current folder, or beside the calling program.
+        _iterations: The number of runs of each combination.
         settings_of: For each parameter one value, or a list of values to try.
 
     Raises:
-        ModelFileError: If there is no such file, or it is no Python 3.
+        ModelFileError: If the file does not exist, or is not Python 3.
         ParameterError: If the model has no such parameter.
     """
     path = Path(_filename if _filename.endswith(".py") else f"{_filename}.py")
@@ -114,12 +114,12 @@ def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
 
 
 def _safe(name: str) -> str:
-    """Makes a setting's name one that a folder may have."""
+    """Returns a setting's name with the characters replaced that a folder's name must not contain."""
     return "".join("_" if c in '/\\:*?"<>|\0\n' else c for c in name)[:200]
 
 
 def _keep_copy(path: Path, source: str) -> None:
-    """Keeps the model's text beside its data; an older, different one stays under its time."""
+    """Writes the model's text beside its data; an older, different copy is renamed."""
     folder = path.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     copy = folder / "code.py"
@@ -132,7 +132,7 @@ def _keep_copy(path: Path, source: str) -> None:
 
 
 def run_with(script: str) -> None:
-    """Once named another program to run models with; models are run in this one.
+    """Raises an error: in python_actr this named another program to run models with; here they run in this one.
 
     Raises:
         ParameterError: Always.
