@@ -109,7 +109,7 @@ def _pieces(slot: Slot, rest: str, text: str) -> list[tuple[Slot, str, str]]:
     return tests
 
 
-class _Reader:
+class _PatternParser:
     """Converts patterns to conditions, and tracks which variables have been bound so far."""
 
     def __init__(self, bound: Mapping[str, Any] | None) -> None:
@@ -169,7 +169,7 @@ def conditions(patterns: object, bound: Mapping[str, Any] | None = None) -> tupl
     Raises:
         PatternException: If a text is not a pattern.
     """
-    reader = _Reader(bound)
+    reader = _PatternParser(bound)
     named: Mapping[Any, object] = (
         cast("Mapping[Any, object]", patterns) if isinstance(patterns, Mapping) and not isinstance(patterns, Chunk) else {None: patterns}
     )

@@ -89,9 +89,9 @@ class OldNames:
             raise ModuleNotFoundError(f"No module named '{name}'", name=name)
         names: dict[str, Any] = {}
         for source in _PARTS[part]:
-            ours = importlib.import_module(source)
-            public: Sequence[str] = getattr(ours, "__all__", None) or [n for n in vars(ours) if n[0] != "_"]
-            names.update({name: getattr(ours, name) for name in public if name != "annotations"})
+            offered = importlib.import_module(source)
+            public: Sequence[str] = getattr(offered, "__all__", None) or [n for n in vars(offered) if n[0] != "_"]
+            names.update({name: getattr(offered, name) for name in public if name != "annotations"})
         if part in ("actr", "lib.actr"):
             names = {name: value for name, value in names.items() if name not in ROOT_ONLY}
         module = self.modules[name] = ModuleType(name)

@@ -16,7 +16,7 @@ from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.partial_matching import Partial
 
 
-class Search(Protocol):
+class ChunkSearch(Protocol):
     """A search for chunks."""
 
     @property
@@ -205,7 +205,7 @@ def _is_plain(slot: Slot) -> bool:
     return not (isinstance(slot, str) and (slot[:1] == "?" or "." in slot))
 
 
-def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> Search:
+def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partial | None) -> ChunkSearch:
     """Returns the fastest search for a pattern.
 
     Raises:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any
 
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.profile import PYTHON_ACTR
 
 
@@ -81,7 +81,7 @@ class Finst:
     @property
     def _awaited(self) -> bool:
         """Whether a run continues until all marks have expired."""
-        return (self.parent._profile or PYTHON_ACTR).awaits_expiry
+        return (profile_of(self.parent) or PYTHON_ACTR).awaits_expiry
 
     def _mark(self, obj: Any) -> None:
         self._marks.append(obj)

@@ -10,7 +10,7 @@ from types import FunctionType
 from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import Chunk
-from actr3d.actr.declarative.chunk_query import PlainSearch, Search
+from actr3d.actr.declarative.chunk_query import ChunkSearch, PlainSearch
 from actr3d.actr.kernel.noise import total
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.saying import warn_modeller
@@ -51,7 +51,7 @@ class Retrieval:
     """The time of the request [us]."""
     pattern: Any
     """As it was written."""
-    search: Search
+    search: ChunkSearch
     """With the values of its variables."""
     modules: Sequence[object]
     """The activation modules, in the order of each candidate's parts."""

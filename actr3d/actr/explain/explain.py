@@ -11,8 +11,8 @@ from typing import TypeVar
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.explain.past_state import Past
 from actr3d.actr.explain.present_state import Present
-from actr3d.actr.explain.state import State
-from actr3d.actr.explain.trial import Trial
+from actr3d.actr.explain.state import AgentState
+from actr3d.actr.explain.trial import ProductionTrial
 from actr3d.actr.kernel.model import Model, ensure_converted
 from actr3d.actr.kernel.tree import path_of, places_in, subtree, top_of
 from actr3d.actr.modules.port import Searching
@@ -26,9 +26,9 @@ from actr3d.trace import TraceEvent
 Kind = TypeVar("Kind", bound=Model)
 
 
-def why(system: ProductionSystem, production: Production, state: State) -> ProductionReason:
+def why(system: ProductionSystem, production: Production, state: AgentState) -> ProductionReason:
     """Returns the reason of one production in a state."""
-    trial = Trial(system, production, state)
+    trial = ProductionTrial(system, production, state)
     failed = trial.failure
     choice = state.choice(system)
     none_drawn: dict[str, float] = {}

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple, cast
 from actr3d.actr.chunks.chunk import LASTING_TYPES, Slot, as_text
 from actr3d.actr.chunks.pattern import MISSING
 from actr3d.actr.explain.module_reasons import outcome_of, past_retrieval, past_search
-from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Answer, Fact, is_unknown
+from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
 from actr3d.actr.kernel.buffer import Buffer, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, places_in
 from actr3d.actr.procedural.conflict_set import ConflictSet
-from actr3d.actr.procedural.observed_values import answer_label, tells_changes
+from actr3d.actr.procedural.observed_values import answer_label, records_changes
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, utility_part_names
 from actr3d.actr.procedural.safe_reading import plain_empty
@@ -84,7 +84,7 @@ class _Part:
 
 
 class Past:
-    """The state of everything at a time, after all events of that time; see `State` for the methods.
+    """The state of everything at a time, after all events of that time; see `AgentState` for the methods.
 
     Args:
         trace: The run's trace.
@@ -134,13 +134,13 @@ class Past:
         if reads_chunk(target, key):
             return self._slot_of_chunk(target, key)
         seen = self._seen(target, key)
-        told = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and tells_changes(target, key) else None
-        certain = told is not None and type(told.value) in LASTING_TYPES
+        recorded = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and records_changes(target, key) else None
+        certain = recorded is not None and type(recorded.value) in LASTING_TYPES
         latest = max((record.event if certain else held for record, held in seen), default=-1)
-        if seen and (told is None or told.event < latest):
+        if seen and (recorded is None or recorded.event < latest):
             record, _ = max(seen, key=lambda pair: pair[0].event)
             return Fact(MISSING if record.value is None else record.value, _since(record))
-        return Fact(as_text(told.value)) if told is not None and certain else NOT_KNOWN
+        return Fact(as_text(recorded.value)) if recorded is not None and certain else NOT_KNOWN
 
     def _seen(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
         """Returns what production systems read of an object, under any name, and the event until which it was valid for each."""
@@ -153,23 +153,23 @@ class Past:
         return found
 
     def _slot_of_chunk(self, buffer: Buffer, key: Slot) -> Fact:
-        told = self._of(buffer).attributes.get("chunk")
-        if told is None:
+        recorded = self._of(buffer).attributes.get("chunk")
+        if recorded is None:
             return NOT_KNOWN
-        chunk: dict[str, Any] = told.value or {}
+        chunk: dict[str, Any] = recorded.value or {}
         value = chunk.get(str(key), MISSING)
         if value is MISSING or type(value) in LASTING_TYPES:
             return Fact(value if value is MISSING else as_text(value))
         texts = self._of(buffer).attributes.get("texts")
-        if texts is None or texts.event != told.event or str(key) not in texts.value:
+        if texts is None or texts.event != recorded.event or str(key) not in texts.value:
             return OPAQUE
-        return Fact(texts.value[str(key)], _since(told))
+        return Fact(texts.value[str(key)], _since(recorded))
 
     def empty(self, system: ProductionSystem, name: str) -> Fact:
         target = rules_of(system).context[name]
         if isinstance(target, Buffer):
-            told = self._of(target).attributes.get("chunk")
-            return NOT_KNOWN if told is None else Fact(not told.value)
+            recorded = self._of(target).attributes.get("chunk")
+            return NOT_KNOWN if recorded is None else Fact(not recorded.value)
         seen = self._seen(target, None)
         if seen:
             record, _ = max(seen, key=lambda pair: pair[0].event)
@@ -180,16 +180,16 @@ class Past:
     def slots(self, system: ProductionSystem, name: str) -> list[str]:
         target = rules_of(system).context[name]
         if isinstance(target, Buffer):
-            told = self._of(target).attributes.get("chunk")
-            return list(told.value or ()) if told is not None else []
+            recorded = self._of(target).attributes.get("chunk")
+            return list(recorded.value or ()) if recorded is not None else []
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def answer(self, system: ProductionSystem, production: Production, number: int) -> Answer | None:
+    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
         seen = self._of(system).seen.get(answer_label(production.name, number))
         if seen is None:
             return None
         given, agrees, bound = seen.value
-        return Answer(given, agrees, bound, _since(seen))
+        return FunctionResult(given, agrees, bound, _since(seen))
 
     def matched(self, system: ProductionSystem, production: Production) -> bool:
         return production.name in self._of(system).matched

@@ -8,7 +8,7 @@ from actr3d.actr.chunks.chunk import Slot
 from actr3d.actr.chunks.pattern import MISSING
 from actr3d.actr.chunks.safe_text import plain_text
 from actr3d.actr.explain.module_reasons import live_retrieval, live_searches
-from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Answer, Fact, is_unknown
+from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
 from actr3d.actr.kernel.buffer import Buffer, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of
@@ -25,7 +25,7 @@ LAST_SEEN = "as last seen"
 
 
 class Present:
-    """The current state; see `State` for the methods.
+    """The current state; see `AgentState` for the methods.
 
     Args:
         agent: The agent to explain.
@@ -67,12 +67,12 @@ class Present:
             return [str(key) for key in target.chunk or ()]
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def answer(self, system: ProductionSystem, production: Production, number: int) -> Answer | None:
+    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
         asked = _observed(system).asked.get((production.name, number))
         if asked is None:
             return None
         given, agrees, bound = asked.plain()
-        return Answer(given, agrees, bound, f"as asked at {seconds(asked.time):.3f} s")
+        return FunctionResult(given, agrees, bound, f"as asked at {seconds(asked.time):.3f} s")
 
     def matched(self, system: ProductionSystem, production: Production) -> bool:
         matcher = rules_of(system).matcher

@@ -23,7 +23,7 @@ class Fact(NamedTuple):
     """How it is known, such as «as seen since 0.050 s», or why it is not; None if it is certain at that time."""
 
 
-class Answer(NamedTuple):
+class FunctionResult(NamedTuple):
     """The result of a modeller's function among the patterns."""
 
     given: Bindings
@@ -38,7 +38,7 @@ NOT_KNOWN = Fact(UNKNOWN, "no production has looked at it")
 OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can tell")
 
 
-class State(Protocol):
+class AgentState(Protocol):
     """A current or past state."""
 
     time: float
@@ -67,7 +67,7 @@ class State(Protocol):
         """Returns the existing slots, for messages."""
         ...
 
-    def answer(self, system: ProductionSystem, production: Production, number: int) -> Answer | None:
+    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
         """Returns the last result of the function in a condition; it is not called again."""
         ...
 

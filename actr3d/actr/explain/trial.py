@@ -7,7 +7,7 @@ from typing import Any
 
 from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
-from actr3d.actr.explain.state import Fact, State, is_unknown
+from actr3d.actr.explain.state import AgentState, Fact, is_unknown
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.actr.reasons import ConditionReason
@@ -26,7 +26,7 @@ class Failure:
     unknown: bool = False
 
 
-class Trial:
+class ProductionTrial:
     """The test of one production; `failure` is the first condition that fails, None if all hold.
 
     The later conditions do not affect the result; `conditions` contains what is known about them.
@@ -37,7 +37,7 @@ class Trial:
         state: The state in which it is tested.
     """
 
-    def __init__(self, system: ProductionSystem, production: Production, state: State) -> None:
+    def __init__(self, system: ProductionSystem, production: Production, state: AgentState) -> None:
         self._system = system
         self._production = production
         self._state = state

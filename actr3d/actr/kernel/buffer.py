@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk
 from actr3d.actr.chunks.safe_text import plain_text
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.actr.kernel.tracing import lasting_slots, traceable
 from actr3d.errors import ChunkError, did_you_mean
@@ -91,7 +92,8 @@ class Buffer(Model):
                 for memory in [m for m in memories if m._buffer is self] or memories:
                     memory._collect(chunk)
                 return
-            if above._profile is not None and not above._profile.harvest:
+            profile = profile_of(above)
+            if profile is not None and not profile.harvest:
                 return
             above = above.parent
 
@@ -120,7 +122,7 @@ class Buffer(Model):
             data = {"chunk": traceable(chunk), **(_texts(chunk) if chunk and trace.all else {})}
         trace.emit(own["sch"].now_us, self._path, "buffer", data)
         if isinstance(chunk, Chunk):
-            watch = own.get("_watch") or own.setdefault("_watch", ChunkWatch(self))
+            watch = own.get("_watch") or own.setdefault("_watch", ChunkWatch(self, self._trace_chunk))
             if watch not in chunk.watches:
                 chunk.watches = (*chunk.watches, watch) if chunk.watches else watch.alone
 
@@ -162,12 +164,14 @@ class ChunkWatch:
 
     Args:
         buffer: The buffer.
+        record: Records its chunk in a trace.
     """
 
-    def __init__(self, buffer: Buffer) -> None:
+    def __init__(self, buffer: Buffer, record: Callable[[Trace, Chunk], None]) -> None:
         self.alone = (self,)
         """The watches of a chunk that has only this one."""
         self._buffer = buffer
+        self._record = record
         self.recorded: Chunk | None = None
         """The chunk in the buffer, if its latest change has been recorded and it has not been set since."""
 
@@ -177,5 +181,5 @@ class ChunkWatch:
         own = buffer.__dict__
         trace = own["sch"].trace
         if trace is not None and trace.buffer and own["chunk"] is chunk:
-            buffer._trace_chunk(trace, chunk)
+            self._record(trace, chunk)
             self.recorded = chunk

@@ -18,7 +18,7 @@ from actr3d.errors import SchedulerError, hint_for
 Method = Callable[..., Any]
 
 
-class Owner(Protocol):
+class MethodOwner(Protocol):
     """A model whose methods are wrapped."""
 
     sch: Scheduler
@@ -42,7 +42,7 @@ class Caller(Protocol):
 class MethodWrapper:
     """A method of one model; `yield model.method` waits for the end of its next call."""
 
-    def __init__(self, obj: Owner, func: Method, name: str) -> None:
+    def __init__(self, obj: MethodOwner, func: Method, name: str) -> None:
         self.obj = obj
         self.func = func
         self._method = MethodType(func, obj)
@@ -107,11 +107,11 @@ def has_setter(member: object) -> bool:
 def minding_properties(inherited: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
     """Returns a `__setattr__` that calls a class's properties for their attributes, and the inherited one for all others."""
 
-    def set_with_properties(model: Any, key: str, value: Any) -> None:
-        if key in model._setters:
-            object.__setattr__(model, key, value)
+    def set_with_properties(self: Any, key: str, value: Any) -> None:
+        if key in self._setters:
+            object.__setattr__(self, key, value)
         else:
-            inherited(model, key, value)
+            inherited(self, key, value)
 
     return set_with_properties
 

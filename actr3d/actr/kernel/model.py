@@ -27,7 +27,7 @@ from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.source_code import for_python_actr
 from actr3d.actr.kernel.tracing import UNWATCHED, traceable
-from actr3d.actr.kernel.tree import Part, forget_place, keep_path, lineage, note_move, path_of, subtree, top_of
+from actr3d.actr.kernel.tree import TreeNode, forget_place, keep_path, lineage, note_move, path_of, subtree, top_of
 from actr3d.errors import SchedulerError
 from actr3d.saying import warn_modeller
 from actr3d.trace import Trace, top_path
@@ -37,7 +37,7 @@ BEFORE_FIRST_RUN: list[Callable[[Model], object]] = []
 """Called with a top model that is about to run for the first time; `actr3d.actr` adds the checks of models here."""
 
 
-class Model(Part):
+class Model(TreeNode):
     """A part of a simulation: an agent, one of its modules, an object of its environment, or the environment.
 
     Class attributes become each instance's own: models among them become children, and methods can be waited for.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk
-from actr3d.actr.kernel.tree import Part, path_of
+from actr3d.actr.kernel.tree import TreeNode, path_of
 from actr3d.values import Naming, plain
 
 UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
@@ -13,7 +13,7 @@ UNWATCHED = frozenset({"parent", "sch", "changes", "log", "random", "name"})
 
 
 def _known_part(value: Any) -> str | None:
-    return Naming(f"<{path_of(value)}>") if issubclass(type(value), Part) else None
+    return Naming(f"<{path_of(value)}>") if issubclass(type(value), TreeNode) else None
 
 
 def traceable(value: Any) -> Any:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from actr3d.trace import Trace
 
 
-class Part:
+class TreeNode:
     """A node of the tree: it has at most one parent, and children in the order in which they were added."""
 
     name: str
@@ -65,12 +65,12 @@ class Place(NamedTuple):
     """The number of the first event after that."""
 
 
-def children_of(part: Part) -> list[Any]:
+def children_of(part: TreeNode) -> list[Any]:
     """Returns the models directly below a part, in the order in which they were added."""
     return list(part.__dict__.get("_children", {}).values())
 
 
-def lineage(part: Part) -> Iterator[Any]:
+def lineage(part: TreeNode) -> Iterator[Any]:
     """Yields a part and its ancestors, up to the top model."""
     above: Any = part
     while above is not None:
@@ -80,20 +80,20 @@ def lineage(part: Part) -> Iterator[Any]:
             break
 
 
-def subtree(part: Part) -> Iterator[Any]:
+def subtree(part: TreeNode) -> Iterator[Any]:
     """Yields a part and everything below it."""
     yield part
     for child in children_of(part):
         yield from subtree(child)
 
 
-def top_of(part: Part) -> Any:
+def top_of(part: TreeNode) -> Any:
     """Returns the top model of a part's tree."""
     *_, top = lineage(part)
     return top
 
 
-def path_of(part: Part) -> str:
+def path_of(part: TreeNode) -> str:
     """Returns the dotted names from below the top model down to a part; «top» for the top model itself.
 
     Below the top model of a trace's second run they begin with `top#2`. A part that has left the tree keeps its path.
@@ -101,19 +101,19 @@ def path_of(part: Part) -> str:
     return part._path
 
 
-def path_within(part: Part, name: str) -> str:
+def path_within(part: TreeNode, name: str) -> str:
     """Returns the path of something below a part that is no part itself."""
     path = path_of(part)
     return name if path == "top" else f"{path}.{name}"
 
 
-def keep_path(part: Part) -> None:
+def keep_path(part: TreeNode) -> None:
     """Fixes the paths of a part and of everything below it, before the part leaves the tree."""
     for below in subtree(part):
         path_of(below)  # from now on it is kept
 
 
-def forget_place(part: Part, *, keep_path: bool = False) -> None:
+def forget_place(part: TreeNode, *, keep_path: bool = False) -> None:
     """Discards what was computed from a part's place in the tree, for it and everything below it."""
     for below in subtree(part):
         below.__dict__.pop("_known_line_changes", None)
@@ -124,14 +124,14 @@ def forget_place(part: Part, *, keep_path: bool = False) -> None:
 # -- earlier places
 
 
-def note_move(part: Part, trace: Trace | None, now_us: int) -> None:
+def note_move(part: TreeNode, trace: Trace | None, now_us: int) -> None:
     """Records the paths of a part and of everything below it, before it gets another place in a traced run."""
     if trace is not None and trace.keep:
         for below in subtree(part):
             below.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), now_us, below.__dict__.get("_path")))
 
 
-def places_in(part: Part, trace: Trace) -> list[Place]:
+def places_in(part: TreeNode, trace: Trace) -> list[Place]:
     """Returns the places that a part has had since a trace began, in order."""
     places: list[Place] = []
     time, begin = -1, 0
@@ -141,7 +141,7 @@ def places_in(part: Part, trace: Trace) -> list[Place]:
     return [*places, Place(path_of(part), time, begin, maxsize)]
 
 
-def _moves_in(part: Part, trace: Trace) -> list[Move]:
+def _moves_in(part: TreeNode, trace: Trace) -> list[Move]:
     for above in lineage(part):
         moves = [move for move in above.__dict__.get("_moves", ()) if move.trace is trace]
         if moves:

@@ -11,7 +11,7 @@ from actr3d.actr.chunks.chunk import Slot, parse_slots
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.source_code import source_of, syntax_tree
-from actr3d.actr.kernel.tree import Part, subtree, top_of
+from actr3d.actr.kernel.tree import TreeNode, subtree, top_of
 from actr3d.actr.lint.classes import is_modellers
 from actr3d.actr.lint.slot_names import GIVERS, is_production
 from actr3d.actr.modules.imaginal import ImaginalModule
@@ -55,7 +55,7 @@ def all_slots(production: Production) -> frozenset[Slot] | None:
     func = production.original_func
     if func.__module__ != "__main__" or func.__globals__.get("__file__") != func.__code__.co_filename:
         return None
-    top = top_of(cast("Part", production.system))
+    top = top_of(cast("TreeNode", production.system))
     for part in subtree(top):
         kind: type[Any] = part.__class__
         library = [klass for klass in kind.__mro__ if not is_modellers(klass)]

@@ -40,6 +40,10 @@ class Reading(Event):
             raise SimulationError(f"the body has not answered '{self.word}' yet; wait for it: yield reading")
         return self._value
 
+    def take(self, answer: Any) -> None:
+        """Stores the body's answer."""
+        self._value = answer
+
     def describe(self) -> str:
         """Returns the name of the request."""
         return f"reading of '{self.word}'"
@@ -131,7 +135,7 @@ class Port(Model):
         trace = self.sch.trace
         if trace is not None and trace.all:
             trace.emit(self.sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
-        reading._value = answer
+        reading.take(answer)
         self._receive(request, answer)
         self.sch.finish(reading)
 

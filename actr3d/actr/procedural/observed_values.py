@@ -46,7 +46,7 @@ def answer_label(production: str, number: int) -> str:
     return f"{production}()[{number}]"
 
 
-def tells_changes(target: Any, key: Any) -> bool:
+def records_changes(target: Any, key: Any) -> bool:
     """Returns whether a trace records every change of an attribute, as long as its value is plain."""
     if not isinstance(target, Model) or not isinstance(key, str) or "." in key:
         return False
@@ -56,11 +56,11 @@ def tells_changes(target: Any, key: Any) -> bool:
 def is_recorded(target: Any, key: Any) -> bool:
     """Returns whether the trace records every change of a slot or attribute anyway.
 
-    A key of None stands for whether the target is empty.
+    A key of None means whether the target is empty.
     """
     if key is None or reads_chunk(target, key):
         return hasattr(target, "chunk")
-    return tells_changes(target, key) and _lasts(target, key)
+    return records_changes(target, key) and _lasts(target, key)
 
 
 def _lasts(target: Any, key: str) -> bool:
@@ -84,7 +84,7 @@ class Observed:
         self._listener: object = None
 
     def watch(self, name: str, key: Any, target: Any) -> str:
-        """Adds one reading, and returns its label; a key of None stands for whether the target is empty."""
+        """Adds one reading, and returns its label; a key of None means whether the target is empty."""
         label = f"{name}.{key}"
         if not (hasattr(target, "chunk") if key is None else reads_chunk(target, key)):
             self._watched[label] = target, key
@@ -109,7 +109,7 @@ class Observed:
         """Returns everything that productions read, now or last, in the form of `news`."""
         known: dict[str, Any] = {}
         for label, (target, key) in self._watched.items():
-            if not (tells_changes(target, key) and _lasts(target, key)):
+            if not (records_changes(target, key) and _lasts(target, key)):
                 value = self._reading(label, target, key)
                 if value is not UNKNOWN:
                     known[label] = value

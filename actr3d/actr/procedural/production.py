@@ -16,7 +16,7 @@ from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
 
 
-class Owner(Protocol):
+class ProductionOwner(Protocol):
     """The production system that a production belongs to."""
 
     sch: Scheduler
@@ -42,7 +42,7 @@ class Production:
     parents: tuple[str, ...] = ()
     """The names of the two productions that a compiled one was made from."""
 
-    def __init__(self, system: Owner, name: str, func: Callable[..., Any]) -> None:
+    def __init__(self, system: ProductionOwner, name: str, func: Callable[..., Any]) -> None:
         self.system = system
         self.name = name
         self.original_func = func
