@@ -378,14 +378,14 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(s.world, dict[str, Any](walker=3)).step(), "must be what makes an agent"),
     (lambda s: Simulation(s.world, {"walker": dict}).step(), r"must make an agent \(made \{\}\)"),
     (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
-    (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "leads to no body"),
+    (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "has no body"),
     (lambda s: Simulation(s.world, trace="some"), "no level 'some'"),
     (lambda s: Simulation(s.world, trace=cast("Any", None)), "no level None; use one of none"),
     (lambda s: Simulation(s.world, trace=cast("Any", [])), r"no level \[\]; use one of none"),
     (lambda s: s.command("stop", body=[]), r"a command is a word, and its body is named by one \(got \[\]\)"),
-    (lambda s: BodyPort().set("walk", 1), "'walk' is said to a body before the agent lives; say it while its Simulation runs"),
-    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is said to a body before the agent lives"),
-    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is said to a body before the agent lives"),
+    (lambda s: BodyPort().set("walk", 1), "'walk' is sent to a body before the agent runs; send it while its Simulation runs"),
+    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
+    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is sent to a body before the agent runs"),
     (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 

@@ -121,7 +121,7 @@ class Body(Model):
             GridError: If it is in no world.
         """
         if self._cell is None:
-            raise NotPlacedError("this body stands in no world; put its agent into one with world.add(agent)")
+            raise NotPlacedError("this body is in no world; put its agent into one with world.add(agent)")
         return self._cell
 
     @property
@@ -422,7 +422,7 @@ class World(Model):
         ensure_converted(agent)
         body = _body_of(agent)
         if body._cell is not None:
-            raise GridError(f"this agent stands in a world already, at {body._cell!r}")
+            raise GridError(f"this agent is in a world already, at {body._cell!r}")
         cell = self._cell_for(x, y, cell)
         if cell.wall:
             warn_modeller(f"an agent is put into a wall, at ({cell.x}, {cell.y})")
@@ -512,7 +512,7 @@ def _read_map(filename: str | Path) -> str:
             try:
                 return place.read_text(encoding="utf-8-sig")
             except UnicodeDecodeError as error:
-                raise GridError(f"the map file '{place}' is no text: {error}") from None
+                raise GridError(f"the map file '{place}' is not text: {error}") from None
     folder = places[-1].parent
     near = [p.name for p in folder.iterdir()] if folder.is_dir() else []
     raise GridError(f"no map file '{filename}'{did_you_mean(path.name, near)}")

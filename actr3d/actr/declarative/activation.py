@@ -195,7 +195,7 @@ class DMBaseLevel(MemorySubModule):
         now = self.now()
         times: list[float] | None = getattr(chunk, "times", None)
         if times is None:
-            raise ChunkError(f"DMBaseLevel has not met chunk '{chunk}': add it with memory.add, after the module is made")
+            raise ChunkError(f"DMBaseLevel has no data about chunk '{chunk}': add it with memory.add, after the module is made")
         limit = self.limit
         if rules.optimized_learning and limit == 0:
             times = []  # Python ACT-R counts the first time exactly until there is a second

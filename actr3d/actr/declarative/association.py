@@ -108,7 +108,7 @@ class DMInhibition(MemorySubModule):
     def activation(self, chunk: Any) -> float:
         latest: float | None = getattr(chunk, "mostRecentTime", None)
         if latest is None:
-            raise ChunkError(f"DMInhibition has not met chunk '{chunk}': add it with memory.add, after the module is made")
+            raise ChunkError(f"DMInhibition has no data about chunk '{chunk}': add it with memory.add, after the module is made")
         age = self.now() - latest
         try:
             return -math.log(1 + math.pow(age, -self.decayScale) / self.timeScale)

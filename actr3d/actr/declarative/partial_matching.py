@@ -67,7 +67,7 @@ class Partial(WithParameters):
         similarity = self.sims.get((a, b))
         if similarity is None and (a, b) in self._texts:
             if self._memory.rules is PYTHON_ACTR:  # patterns compare text, and it looks text up among numbers
-                warn_modeller(f"what is said of the similarity of {a} and {b} is not found, for patterns compare text: write '{a}', '{b}'")
+                warn_modeller(f"the similarity of {a} and {b} is not found, because patterns compare text: write '{a}', '{b}'")
             else:
                 similarity = self._texts[a, b]
         return self.limit if similarity is None else similarity

@@ -96,7 +96,7 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
         raise ParameterError(str(error)) from None
     trace = agent.sch.trace
     if trace is None or not trace.all or not trace.keep:
-        raise ParameterError("explain(at): only a run traced from before that time can tell its past; call traced() before the run")
+        raise ParameterError("explain(at): only a run traced from before that time contains its past; call traced() before the run")
     if time > agent.sch.now_us:
         raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
     top = top_of(agent)
@@ -108,7 +108,7 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     state = Past(trace, time, list({id(part): part for part in (agent, *systems, *modules, *seen)}.values()))
     if not state.exists(agent):
         came = next(place.time for place in places_in(agent, trace) if place.path is not None)
-        raise ParameterError(f"explain(at): '{path_of(agent)}' was not there at {at:g} s; it came at {seconds(came):g} s")
+        raise ParameterError(f"explain(at): '{path_of(agent)}' did not exist at {at:g} s; it was added at {seconds(came):g} s")
     return state
 
 

@@ -169,4 +169,4 @@ def check_names(kind: type, members: Mapping[str, Any]) -> None:
         value = members[name]
         usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
         if not usable:
-            raise SchedulerError(f"{kind.__name__}.{name}: the name '{name}' is taken by every model; use another")
+            raise SchedulerError(f"{kind.__name__}.{name}: the name '{name}' is reserved in every model; use another")

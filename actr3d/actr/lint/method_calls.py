@@ -140,7 +140,7 @@ def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known
     for name in sorted(names):
         meant = slip_of(name, known)
         if meant and everywhere.count(name) == 1:
-            warn_at(f"{where}'?{name}' in '{text}' stands for anything; did you mean '?{meant}'?", func, call.lineno)
+            warn_at(f"{where}'?{name}' in '{text}' matches anything; did you mean '?{meant}'?", func, call.lineno)
 
 
 def _check_values(call: ast.Call, production: Production, productions: Sequence[Production]) -> None:
@@ -159,7 +159,7 @@ def _check_values(call: ast.Call, production: Production, productions: Sequence[
             hint = ", which no pattern can name, for there is a space in it; write one word"
         else:
             continue
-        message = f"production '{production.name}': {keyword.arg}={value!r} stores that very text{hint}"
+        message = f"production '{production.name}': {keyword.arg}={value!r} stores this text literally{hint}"
         warn_at(message, production.original_func, call.lineno)
 
 

@@ -36,7 +36,7 @@ def read_source(path: Path) -> str:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
         return data.decode(encoding)
     except (SyntaxError, UnicodeDecodeError, LookupError) as error:
-        raise ModelFileError(f"'{path}' is no Python source: {_why_no_text(data, error)}") from None
+        raise ModelFileError(f"'{path}' is not Python source: {_why_no_text(data, error)}") from None
 
 
 def _why_no_text(data: bytes, error: Exception) -> str:
@@ -46,7 +46,7 @@ def _why_no_text(data: bytes, error: Exception) -> str:
             data.decode("utf-8")
         except UnicodeDecodeError as wrong:
             line = data.count(b"\n", 0, wrong.start) + 1
-            return f"line {line} is no UTF-8; save it as UTF-8, or name its encoding in the first line (# -*- coding: latin-1 -*-)"
+            return f"line {line} is not UTF-8; save it as UTF-8, or name its encoding in the first line (# -*- coding: latin-1 -*-)"
     return str(error)
 
 
@@ -58,7 +58,7 @@ def compile_source(source: str, filename: str) -> CodeType:
     """
     if "\0" in source:
         line = source.count("\n", 0, source.index("\0")) + 1
-        raise ModelFileError(f"{filename}:{line}: there is a NUL character; this is no Python source")
+        raise ModelFileError(f"{filename}:{line}: there is a NUL character; this is not Python source")
     reason: tuple[int, str] | None = None
     try:
         code = compile(source, filename, "exec", dont_inherit=True)
@@ -74,7 +74,7 @@ def compile_source(source: str, filename: str) -> CodeType:
         line = _longest_line(source)
         raise ModelFileError(f"{filename}:{line}: something here (the longest line of the file) is nested too deeply for Python") from None
     except ValueError as error:  # a text that no encoding can hold
-        raise ModelFileError(f"'{filename}' is no Python source: {error}") from None
+        raise ModelFileError(f"'{filename}' is not Python source: {error}") from None
     raise ModelFileError(f"{filename}:{reason[0]}: this file is written for Python 2 ({reason[1]}); convert it to Python 3")
 
 

@@ -137,7 +137,7 @@ def run_with(script: str) -> None:
     Raises:
         ParameterError: Always.
     """
-    raise ParameterError(f"run_with({script!r}): models run inside this program; leave the call out")
+    raise ParameterError(f"run_with({script!r}): models run inside this program; remove the call")
 
 
 __all__ = ["run", "run_with"]

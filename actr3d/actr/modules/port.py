@@ -117,11 +117,11 @@ class Port(Model):
         """
         if not self._converted:
             raise SimulationError(
-                f"'{word}' is said to a body before the agent lives; say it while its Simulation runs: in `init`, `start`, a production"
+                f"'{word}' is sent to a body before the agent runs; send it while its Simulation runs: in `init`, `start`, a production"
             )
         embodiment = self._find_embodiment()
         if embodiment is None:
-            raise SimulationError(f"port '{self._path}' leads to no body; a Simulation gives an agent one: minds={{body: agent}}")
+            raise SimulationError(f"port '{self._path}' has no body; a Simulation gives an agent one: minds={{body: agent}}")
         return embodiment
 
     def _find_embodiment(self) -> Embodiment | None:

@@ -76,9 +76,9 @@ class Production:
             if self.original_func.__name__ == "<lambda>":
                 reason = f"it is a lambda ({self.place}); write it with def"
             elif has_file(self.original_func):
-                reason = f"its source is not to be had ({self.place}): the file has changed since it was loaded; load it again"
+                reason = f"its source is not available ({self.place}): the file has changed since it was loaded; load it again"
             else:
-                reason = f"its source is not to be had ({self.place}); load the model from a file, or its text with actr3d.actr.load_text"
+                reason = f"its source is not available ({self.place}); load the model from a file, or its text with loading.load_text"
             raise ProductionException(f"production '{self.name}': {reason}")
         return node
 
