@@ -424,15 +424,15 @@ class Scheduler:
 
 
 def wait(sch: Scheduler, event: Event, result: Any) -> None:
-    """Puts an event where what it yielded says: later, on a trigger, behind another event, or on the first of several.
+    """Schedules an event according to what its generator has yielded: a delay, a trigger, another event, or the first of several.
 
     Args:
-        sch: The scheduler whose event it is.
-        event: What waits.
-        result: What it yielded.
+        sch: The scheduler of the event.
+        event: The event that waits.
+        result: The value that was yielded.
 
     Raises:
-        SchedulerError: If it cannot be waited for: it is of no such kind, nothing is in it, or its delay is no time.
+        SchedulerError: If nothing can wait for it: it has another type, is empty, or its delay is not a time.
     """
     if isinstance(result, (int, float)):
         sch.put(event, result, event.priority)
@@ -465,7 +465,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
 
 
 def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> None:
-    """Puts an event where each of several things says; the first that comes about counts."""
+    """Schedules one alternative of an event for each of several things; the first that happens cancels the others."""
     choices = list(_each(several))
     if any(choice is None for choice in choices):
         warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
@@ -479,7 +479,7 @@ def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> Non
 
 
 def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
-    """Puts an event where a dict says: after its `delay`, with its `priority` from now on."""
+    """Schedules an event after a dict's `delay`, with its `priority` from now on."""
     for word in how:
         if word not in ("delay", "priority"):
             near = did_you_mean(str(word), ("delay", "priority"))
@@ -492,11 +492,11 @@ def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
 
 
 def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:
-    """Warns, at the line that did so, of a generator that yielded None.
+    """Warns about a generator that yielded None, at the line of the `yield`.
 
     Args:
-        event: The generator's.
-        what: What it yielded, and what follows from it.
+        event: The generator's event.
+        what: The value that was yielded, and its effect.
     """
     generator = event.innermost
     frame = generator.gi_frame if generator is not None else None
@@ -508,7 +508,7 @@ def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:
 
 
 def _each(choices: Sequence[Any]) -> Iterator[Any]:
-    """Yields what is to be waited for, also from sequences inside."""
+    """Yields the alternatives, also those in nested sequences."""
     for choice in choices:
         if isinstance(choice, (list, tuple)):
             yield from _each(cast("Sequence[Any]", choice))
