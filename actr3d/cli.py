@@ -14,9 +14,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
-from actr3d.actr import logger as logs
-from actr3d.actr.limits import RunLimits
-from actr3d.actr.reading import read_source
+from actr3d.actr.compat.log_files import finished
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import SettingError
 from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
@@ -110,7 +110,7 @@ def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
     from there.
     """
     with suppress(Exception):
-        logs.finished()
+        finished()
         sys.stdout.flush()
     unwritten = all_written(out, printed)
     code = 0 if unwritten is None else _complain_of_output(unwritten)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 
 
@@ -12,7 +13,7 @@ def agent_of(source: str, seed: int = 3) -> Any:
     """Returns an agent whose random numbers come from a seed, and that has not run yet."""
     agent = load_text("from actr3d.actr import *\n" + source, "explained.py").Agent()
     with RunLimits(seed=seed):
-        agent._ensure_converted()
+        ensure_converted(agent)
     return agent
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 
 HEAD = """

@@ -152,7 +152,7 @@ def test_a_chunk_that_the_module_never_met() -> None:
     memory = Memory(Buffer())
     agent = living(memory=memory, base=DMBaseLevel(memory))
     agent.memory.dm.append(Chunk("a"))
-    with pytest.raises(ChunkError, match="DMBaseLevel has not met chunk 'a': add it"):
+    with pytest.raises(ChunkError, match="DMBaseLevel has no data about chunk 'a': add it"):
         agent.memory.get_activation("a")
 
 

@@ -7,7 +7,7 @@ from types import ModuleType
 import pytest
 
 import actr3d.actr
-from actr3d.actr.aliases import PACKAGES, ROOTS, aliases
+from actr3d.actr.compat.old_names import PACKAGES, ROOTS, aliases
 
 PARTS = (
     "",

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.recording import Recorded

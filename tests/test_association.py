@@ -82,5 +82,5 @@ def test_inhibition() -> None:
     agent.run(2)
     assert agent.memory.get_activation("a") == near(-math.log(1 + 2**-0.8 / 4))
     agent.memory.dm.append(Chunk("b"))
-    with pytest.raises(ChunkError, match="DMInhibition has not met chunk 'b'"):
+    with pytest.raises(ChunkError, match="DMInhibition has no data about chunk 'b'"):
         agent.memory.get_activation("b")

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from loud import HEAD, warned
 
+from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.loading import load_text
 from actr3d.errors import ChunkError, ModelWarning, ProductionException
 
@@ -38,7 +39,7 @@ from actr3d.errors import ChunkError, ModelWarning, ProductionException
         ("def p(goal='a ?xyz'):\n    memory.add('b ?xzy')", "nothing binds '?xzy' in 'b ?xzy'; did you mean 'xyz'?", 11),
         ("def p(goal='a ?x'):\n    imaginal.set('c:?z')", "nothing binds '?z'", 11),
         ("def init(): goal.set('?x')", "nothing binds '?x'", 10),
-        ("def p(goal='a ?x'):\n    goal.modify(a='?x')", "a='?x' stores that very text; the variable's value is a=x", 11),
+        ("def p(goal='a ?x'):\n    goal.modify(a='?x')", "a='?x' stores this text literally; the variable's value is a=x", 11),
         ("def p(goal='a'): pass\ndef p(goal='b'): pass", "class Agent has two methods 'p', in lines 10 and 11; only the second counts", 11),
         ("production_tme = 0.1", "has an attribute 'production_tme', which is no parameter; did you mean 'production_time'?", 10),
         ("def init(): memory.treshold = 3", "Memory has no parameter 'treshold'; did you mean 'threshold'?", 10),
@@ -92,7 +93,7 @@ def test_a_warning_changes_nothing() -> None:
         with warnings.catch_warnings(record=True):
             warnings.simplefilter(action)  # type: ignore[arg-type]
             agent: Any = load_text(text, "loud.py").Agent()
-            agent._ensure_converted()
+            ensure_converted(agent)
             agent.random.seed(1)
             trace = agent.traced()
             agent.run(1)

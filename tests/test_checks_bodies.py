@@ -8,7 +8,8 @@ import pytest
 from loud import HEAD, warned
 
 from actr3d.actr import Model
-from actr3d.actr.checks.vocabulary import is_slip
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.lint.slot_names import is_slip
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning
 
@@ -67,7 +68,7 @@ def test_other_slots_are_let_be(body: str) -> None:
 def test_slots_that_the_memory_holds_are_let_be() -> None:
     text = HEAD + "    def init():\n        memory.request('numbr:?x')\n        memory.add('number:1')\n"
     agent: Any = load_text(text, "loud.py").Agent()
-    agent._ensure_converted()
+    ensure_converted(agent)
     agent.memory.add({"numbr": 3})
     agent.run(0)
 
@@ -103,15 +104,18 @@ def test_slips(one: str, other: str, slip: bool) -> None:
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        ("def p(goal='a ?number'):\n    memory.request('a ?numbr')", "'?numbr' in 'a ?numbr' stands for anything; did you mean '?number'?"),
+        ("def p(goal='a ?number'):\n    memory.request('a ?numbr')", "'?numbr' in 'a ?numbr' matches anything; did you mean '?number'?"),
         (
             "def p(goal='a ?number'):\n    memory.request('b:!?nubmer')",
-            "'?nubmer' in 'b:!?nubmer' stands for anything; did you mean '?number'?",
+            "'?nubmer' in 'b:!?nubmer' matches anything; did you mean '?number'?",
         ),
-        ("def p(goal='a ?y'):\n    goal.modify(a='2 ?y')", "a='2 ?y' stores that very text; with the variable's value it is a=f'2 {y}'"),
+        (
+            "def p(goal='a ?y'):\n    goal.modify(a='2 ?y')",
+            "a='2 ?y' stores this text literally; with the variable's value it is a=f'2 {y}'",
+        ),
         (
             "def p(goal='state:start'):\n    goal.modify(state='next step')",
-            "state='next step' stores that very text, which no pattern can name, for there is a space in it; write one word",
+            "state='next step' stores this text literally, which no pattern can name, for there is a space in it; write one word",
         ),
         ("def p(goal='a'):\n    self.stop", "'self.stop' without brackets does nothing; did you mean 'self.stop()'?"),
     ],

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from loud import warned
 
+from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.loading import run_text
-from actr3d.actr.pattern import Pattern
 from actr3d.errors import ModelWarning
 
 

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actr3d.actr import Buffer, Chunk, Memory, Model
-from actr3d.actr.chunk import as_text
+from actr3d.actr.chunks.chunk import as_text
 from actr3d.errors import ChunkError
 
 WORDS = st.text("abcxyz0123456789_-.!", min_size=1, max_size=4)
@@ -134,7 +134,7 @@ def test_copies_know_no_memory() -> None:
     for twin in (chunk.copy(), copy.copy(chunk), copy.deepcopy(chunk), pickle.loads(pickle.dumps(chunk))):
         assert type(twin) is Chunk
         assert twin == chunk
-        assert twin._stores == ()
+        assert twin.stores == ()
 
 
 def test_every_way_of_changing_a_chunk_in_memory_is_noticed() -> None:

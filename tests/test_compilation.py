@@ -9,6 +9,7 @@ from living import near
 from reference import model_file
 
 import actr3d.actr as library
+from actr3d.actr.kernel.model import is_converted
 
 
 def compiling(profile: str, until: float) -> Any:
@@ -49,7 +50,7 @@ def test_act_r_7_moves_it_to_its_first_parents_each_time_it_is_made_again(times:
     expected = 0.0
     made = 0
     while made < times:
-        before = len(agent.compiling.compiled) if agent._is_converted() else 0
+        before = len(agent.compiling.compiled) if is_converted(agent) else 0
         agent.run(0.001)
         rule: Any = next(iter(agent.compiling.compiled.values()), None)
         if rule is None:

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 from living import near
 
-from actr3d.actr.explain import Explanation
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
+from actr3d.actr.reasons import Explanation
 from actr3d.errors import ParameterError
 
 NOISY = """
@@ -72,7 +73,7 @@ def agent_of(source: str, seed: int = 3) -> Any:
     """Returns an agent whose random numbers come from a seed."""
     agent = load_text(source, "explained.py").Agent()
     with RunLimits(seed=seed):
-        agent._ensure_converted()
+        ensure_converted(agent)
     return agent
 
 

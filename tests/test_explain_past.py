@@ -205,11 +205,11 @@ def test_before_an_agent_came_there_is_nothing_to_tell() -> None:
     world.run(0.1)
     assert world.late.explain(0.5).production("go").matches is not None
     assert world.late.explain(0.55).agent == "late"
-    with pytest.raises(ParameterError, match=r"'late' was not there at 0\.3 s; it came at 0\.5 s"):
+    with pytest.raises(ParameterError, match=r"'late' did not exist at 0\.3 s; it was added at 0\.5 s"):
         world.late.explain(0.3)
     world.agent = agent_class()()  # another one in its place
     world.run(0.1)
-    with pytest.raises(ParameterError, match=r"'agent' was not there at 0\.2 s"):
+    with pytest.raises(ParameterError, match=r"'agent' did not exist at 0\.2 s"):
         world.agent.explain(0.2)
 
 

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from actr3d.actr import ACTR
-from actr3d.actr.grid import Body, Cell, World
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.compat.grid import Body, Cell, World
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import GridError, ModelWarning
 
 ROOM = """
@@ -83,7 +83,7 @@ def test_a_map_may_come_from_a_file(tmp_path: Path) -> None:
     with pytest.raises(GridError, match=r"no map file .*rom.txt'; did you mean 'room.txt'\?"):
         World(filename=tmp_path / "rom.txt")
     (tmp_path / "bad.txt").write_bytes(b"\xff\xfe\x00#")
-    with pytest.raises(GridError, match="is no text"):
+    with pytest.raises(GridError, match="is not text"):
         World(filename=tmp_path / "bad.txt")
 
 
@@ -104,7 +104,7 @@ def test_unknown_places_are_refused() -> None:
 def test_an_agent_is_added_once() -> None:
     world, agent = World(map=ROOM), Agent()
     world.add(agent, 1, 1)
-    with pytest.raises(GridError, match="stands in a world already"):
+    with pytest.raises(GridError, match="is in a world already"):
         world.add(agent, 2, 1)
 
 
@@ -257,7 +257,7 @@ def test_setting_a_place_moves_the_body() -> None:
 def test_a_body_in_no_world_says_so() -> None:
     body: Any = Body()
     for act in (lambda: body.cell, lambda: body.world, body.go_forward, body.go_backward, body.turn_left, lambda: body.ahead_cell.wall):
-        with pytest.raises(GridError, match="stands in no world"):
+        with pytest.raises(GridError, match="is in no world"):
             act()
 
 

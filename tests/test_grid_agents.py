@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from actr3d.actr import ACTR, Model
-from actr3d.actr.grid import Body, World
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.compat.grid import Body, World
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import read_source, run_text
 from actr3d.trace import Trace
 

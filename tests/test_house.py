@@ -101,14 +101,14 @@ def test_imports_point_one_way(path: Path) -> None:
 @pytest.mark.parametrize(
     ("source", "module", "wrong"),
     [
-        ("import numpy", "actr3d.actr.memory", ["numpy"]),
+        ("import numpy", "actr3d.actr.declarative.memory", ["numpy"]),
         ("import numpy", "actr3d.clock", ["numpy"]),
         ("import mujoco", "actr3d.world.world", []),
-        ("def f():\n    from mujoco import MjModel", "actr3d.actr.memory", ["mujoco.MjModel"]),
-        ("from actr3d import world", "actr3d.actr.memory", ["actr3d.world"]),
+        ("def f():\n    from mujoco import MjModel", "actr3d.actr.declarative.memory", ["mujoco.MjModel"]),
+        ("from actr3d import world", "actr3d.actr.declarative.memory", ["actr3d.world"]),
         ("from ..vision import module", "actr3d.world.scene", ["actr3d.vision.module"]),
         ("from . import mesh", "actr3d.world.scene", []),
-        ("from actr3d.actr.model import Model", "actr3d.trace", ["actr3d.actr.model.Model"]),
+        ("from actr3d.actr.kernel.model import Model", "actr3d.trace", ["actr3d.actr.kernel.model.Model"]),
         ("from actr3d.simulation import Simulation", "actr3d.motor.module", ["actr3d.simulation.Simulation"]),
         ("from actr3d.actr import ACTR\nfrom actr3d.trace import Trace", "actr3d.sgoms", []),
         ("import workbench.app", "actr3d.cli", ["workbench.app"]),

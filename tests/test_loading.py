@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import compile_source, load_text, read_source, run_file, run_text
 from actr3d.errors import ModelFileError
 
@@ -46,10 +46,10 @@ def test_encodings_and_ends_of_lines(tmp_path: Path, data: bytes, text: str) -> 
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"y = 1\nx = '\xe9'\n", "'.*model.py' is no Python source: line 2 is no UTF-8"),
-        (b"# coding: klingon\n", "is no Python source: unknown encoding"),
-        (b"\x89PNG\r\n\x1a\n\x00\x00", "is no Python source"),
-        (b"x = 1\n\x00\n", "model.py:2: there is a NUL character; this is no Python source"),
+        (b"y = 1\nx = '\xe9'\n", "'.*model.py' is not Python source: line 2 is not UTF-8"),
+        (b"# coding: klingon\n", "is not Python source: unknown encoding"),
+        (b"\x89PNG\r\n\x1a\n\x00\x00", "is not Python source"),
+        (b"x = 1\n\x00\n", "model.py:2: there is a NUL character; this is not Python source"),
     ],
 )
 def test_what_is_no_text_is_refused(tmp_path: Path, data: bytes, message: str) -> None:

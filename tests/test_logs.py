@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.html import html_page
+from actr3d.actr.compat.log_files import html_page
+from actr3d.actr.kernel.log import LOG
 from actr3d.actr.loading import run_text
-from actr3d.actr.logger import LOG
 
 MODEL = """
 import ccm
@@ -89,7 +89,9 @@ def test_a_program_begins_with_a_log_of_its_own() -> None:
     try:
         LOG.do_html, LOG.do_screen, LOG.time_us = True, False, 9_000_000
         LOG.rows.append((9.0, "outer", 1))
-        seen: Any = run_text("import ccm\nfrom actr3d.actr.logger import LOG\nfound = (LOG.do_html, LOG.do_screen, LOG.time, LOG.rows)\n")
+        seen: Any = run_text(
+            "import ccm\nfrom actr3d.actr.kernel.log import LOG\nfound = (LOG.do_html, LOG.do_screen, LOG.time, LOG.rows)\n"
+        )
         assert seen.found == (False, True, 0.0, [])
         assert (LOG.do_html, LOG.do_screen, LOG.time, LOG.rows) == (True, False, 9.0, [(9.0, "outer", 1)])
     finally:

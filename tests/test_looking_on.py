@@ -8,10 +8,10 @@ from typing import Annotated, Any
 import pytest
 
 from actr3d.actr import ACTR, Buffer, DMBaseLevel, DMNoise, DMSpreading, Memory
-from actr3d.actr.activation import MemorySubModule
-from actr3d.actr.limits import EndOfRun, RunLimits
+from actr3d.actr.declarative.activation import MemorySubModule
+from actr3d.actr.explain.memory_table import memory_rows
+from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
-from actr3d.actr.memory_table import memory_rows
 from actr3d.camera import CameraParameters, glance
 from actr3d.configuration import Live
 from actr3d.errors import CameraError, ParameterError, SimulationError

@@ -10,7 +10,7 @@ import pytest
 from living import living, near
 
 from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, MemorySubModule
-from actr3d.actr.pattern import Pattern
+from actr3d.actr.chunks.pattern import Pattern
 from actr3d.errors import ChunkError, ModelWarning
 
 

@@ -9,6 +9,7 @@ import pytest
 from boxes import Ball, Box, names
 
 from actr3d.actr import ACTR, Buffer, Model
+from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.loading import load_text
 from actr3d.errors import SchedulerError
 
@@ -114,7 +115,7 @@ def test_deep_trees_have_one_clock_and_dotted_names() -> None:
     for i in range(60):
         setattr(part, f"p{i}", Model())
         part = getattr(part, f"p{i}")
-    assert part._path == ".".join(f"p{i}" for i in range(60))
+    assert path_of(part) == ".".join(f"p{i}" for i in range(60))
     world.run(2)
     assert part.now() == 2
 
@@ -160,7 +161,7 @@ def test_a_part_can_move_to_another_parent() -> None:
     world.right.other = ball
     assert ball.parent is world.right
     assert ball.name == "other"
-    assert ball._path == "right.other"
+    assert path_of(ball) == "right.other"
     assert names(world.right) == ["other"]
 
 

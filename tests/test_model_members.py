@@ -113,5 +113,5 @@ def test_attributes_named_like_internals_do_not_break_the_tree(name: str) -> Non
         world.run(1)
         assert world.odd.parent is world
     else:
-        with pytest.raises(SchedulerError, match=rf"Odd\.{name}: the name '{name}' is taken by every model; use another"):
+        with pytest.raises(SchedulerError, match=rf"Odd\.{name}: the name '{name}' is reserved in every model; use another"):
             world.odd = kind()

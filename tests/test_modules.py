@@ -9,7 +9,7 @@ import pytest
 from living import near
 
 from actr3d.actr import ACTR, Buffer, ImaginalModule, Model, Motor, SOSVision, TextOutput, Timer, Vision
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 
 
 class Agent(ACTR):

@@ -314,7 +314,7 @@ def test_parameters_are_checked(parameter: str, value: Any) -> None:
 def test_an_agent_without_a_body_is_told_so() -> None:
     agent: Any = type("Ghost", (ACTR,), {"motor": Motor()})()
     agent.run(0.1)
-    with pytest.raises(SimulationError, match="leads to no body"):
+    with pytest.raises(SimulationError, match="has no body"):
         agent.motor.walk(1)
     with pytest.raises(SimulationError, match="does not know its body yet"):
         _ = agent.motor.body

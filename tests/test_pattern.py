@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actr3d.actr import ACTR, Buffer, Chunk
+from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.loading import load_text
-from actr3d.actr.matcher import Matcher
-from actr3d.actr.pattern import Pattern
-from actr3d.actr.production import Production
+from actr3d.actr.procedural.matcher import Matcher
+from actr3d.actr.procedural.production import Production
 from actr3d.errors import ModelWarning, PatternException
 
 with warnings.catch_warnings():

@@ -235,7 +235,7 @@ class Agent(ACTR):
 
 
 def test_one_seed_gives_one_course() -> None:
-    from actr3d.actr.limits import RunLimits
+    from actr3d.actr.kernel.run_limits import RunLimits
     from actr3d.actr.loading import run_text
 
     text = HEAD + (

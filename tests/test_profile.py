@@ -8,20 +8,9 @@ from typing import Any
 import pytest
 from living import living, near
 
-from actr3d.actr import (
-    ACTR,
-    BlendingMemory,
-    Buffer,
-    Chunk,
-    DMBaseLevel,
-    DMNoise,
-    Memory,
-    Model,
-    Partial,
-    ProductionSystem,
-)
+from actr3d.actr import ACTR, BlendingMemory, Buffer, Chunk, DMBaseLevel, DMNoise, Memory, Model, Partial, ProductionSystem
+from actr3d.actr.kernel.profile import ACT_R_7
 from actr3d.actr.loading import load_text
-from actr3d.actr.profile import ACT_R_7
 from actr3d.errors import ParameterError
 
 LEVELS = ["agent", "memory", "instance"]

@@ -10,8 +10,8 @@ from living import living
 from walkers import scene_of
 
 from actr3d.actr import ACTR, Buffer, Chunk, DMFixed, Memory, Model
+from actr3d.actr.kernel.events import Trigger
 from actr3d.actr.loading import load_text
-from actr3d.actr.scheduler import Trigger
 from actr3d.simulation import Simulation
 
 

@@ -10,7 +10,7 @@ import pytest
 from walkers import Driver, scene_of
 
 from actr3d.actr import ACTR
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace, TraceEvent

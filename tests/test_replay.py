@@ -13,7 +13,7 @@ import pytest
 from forging import forge
 from walkers import driving
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.cli import main
 from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
 from actr3d.recording import Recorded

@@ -12,7 +12,8 @@ from cycle import fired, run
 from noting import Part, seen
 
 from actr3d.actr import Model
-from actr3d.actr.scheduler import Scheduler, Trigger
+from actr3d.actr.kernel.events import Trigger
+from actr3d.actr.kernel.scheduler import Scheduler
 
 
 def test_simultaneous_events_come_by_priority_then_in_order() -> None:

@@ -16,7 +16,8 @@ from living import near
 from walkers import Driver, digest, driving, scene_of
 
 from actr3d.actr import ACTR, Buffer, Model
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SimulationError, WorldError
 from actr3d.simulation import Glimpse, Simulation, history, minds
@@ -377,14 +378,14 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(s.world, dict[str, Any](walker=3)).step(), "must be what makes an agent"),
     (lambda s: Simulation(s.world, {"walker": dict}).step(), r"must make an agent \(made \{\}\)"),
     (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
-    (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "leads to no body"),
+    (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "has no body"),
     (lambda s: Simulation(s.world, trace="some"), "no level 'some'"),
     (lambda s: Simulation(s.world, trace=cast("Any", None)), "no level None; use one of none"),
     (lambda s: Simulation(s.world, trace=cast("Any", [])), r"no level \[\]; use one of none"),
     (lambda s: s.command("stop", body=[]), r"a command is a word, and its body is named by one \(got \[\]\)"),
-    (lambda s: BodyPort().set("walk", 1), "'walk' is said to a body before the agent lives; say it while its Simulation runs"),
-    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is said to a body before the agent lives"),
-    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is said to a body before the agent lives"),
+    (lambda s: BodyPort().set("walk", 1), "'walk' is sent to a body before the agent runs; send it while its Simulation runs"),
+    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
+    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is sent to a body before the agent runs"),
     (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 
@@ -410,7 +411,7 @@ def test_numbers_of_numpy_are_numbers() -> None:
 def test_no_name_of_a_living_environment_is_left_to_a_mind() -> None:
     environment = Environment()
     before = set(dir(environment))
-    environment._ensure_converted()
+    ensure_converted(environment)
     assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(minds._LATER)
 
 

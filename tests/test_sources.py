@@ -221,7 +221,7 @@ def test_no_source_is_said_plainly() -> None:
     space: dict[str, Any] = {}
     text = HEAD + "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"
     exec(text, space)
-    with pytest.raises(ProductionException, match=r"production 'init': its source is not to be had \(<string>:5\).*load_text"):
+    with pytest.raises(ProductionException, match=r"production 'init': its source is not available \(<string>:5\).*load_text"):
         space["Agent"]().run(1)
 
 

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actr3d.actr import Buffer, Chunk, Memory
-from actr3d.actr.chunk import as_text
-from actr3d.actr.pattern import Pattern
-from actr3d.actr.search import search_for
-from actr3d.actr.store import ChunkStore
+from actr3d.actr.chunks.chunk import as_text
+from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.declarative.chunk_index import ChunkStore
+from actr3d.actr.declarative.chunk_query import search_for
 
 VALUES: list[Any] = ["x", "y", "1", 1, 1.0, True, None, 0.1, "0.1", (1, 2), [1], {"k": 1}]
 SLOTS: list[Any] = ["a", "b", 0, 1]

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.log import LOG
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_file
-from actr3d.actr.logger import LOG
-from actr3d.actr.sweep import label, parameters, run, settings, with_values
+from actr3d.actr.loading.sweep import label, parameters, run, settings, with_values
 from actr3d.errors import ModelFileError, ParameterError
 
 MODEL = '''"""A model."""

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr import Buffer, Model
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import ParameterError
 from actr3d.trace import KINDS, LEVELS, Trace, TraceEvent

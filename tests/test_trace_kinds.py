@@ -15,7 +15,7 @@ from moving import moving
 from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
 from actr3d.cli import event_line
 from actr3d.errors import ParameterError

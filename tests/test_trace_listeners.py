@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import ParameterError
 from actr3d.kinds import KINDS, LEVELS
@@ -31,7 +32,7 @@ class Agent(ACTR):
 def agent_of(trace: Trace | None = None, module: str = "actr3d.actr") -> Any:
     with RunLimits(seed=2, trace=trace):
         agent = load_text(COUNTING.replace("IMPORT", module), "counting.py").Agent()
-        agent._ensure_converted()
+        ensure_converted(agent)
     return agent
 
 

@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
-from actr3d.actr.explain import Explanation
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
+from actr3d.actr.reasons import Explanation
 from actr3d.errors import ParameterError
 from actr3d.trace import Trace, TraceEvent
 
@@ -63,7 +64,7 @@ class Agent(ACTR):
 def agent_of(seed: int) -> Any:
     agent = load_text(AGENT, "late.py").Agent()
     with RunLimits(seed=seed):
-        agent._ensure_converted()
+        ensure_converted(agent)
     return agent
 
 

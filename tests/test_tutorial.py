@@ -11,7 +11,7 @@ import pytest
 from golden.make import GOLDEN, MODELS, ROOT, command, golden_file, golden_names, model_file, model_names, options
 from helpers.commands import run_command
 
-from actr3d.actr.sweep import parameters
+from actr3d.actr.loading.sweep import parameters
 from actr3d.cli import main
 
 NAMES = model_names()

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from golden.make import MODELS
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
-from actr3d.actr.sweep import with_values
+from actr3d.actr.loading.sweep import with_values
 
 approx: Any = getattr(pytest, "approx")  # noqa: B009 - its type is not known
 

@@ -206,9 +206,9 @@ def test_parameters_that_are_none_are_told() -> None:
 
 
 def test_an_agent_without_a_body_sees_nothing() -> None:
-    with pytest.raises(SimulationError, match=r"port '.*vision' leads to no body"):
+    with pytest.raises(SimulationError, match=r"port '.*vision' has no body"):
         asking("vision.request('feature:opening')")().run(1)
-    with pytest.raises(SimulationError, match="before the agent lives"):
+    with pytest.raises(SimulationError, match="before the agent runs"):
         Vision(None).request("feature:opening")
 
 

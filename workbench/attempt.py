@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.limits import fresh_seed
-from actr3d.actr.reading import read_source
+from actr3d.actr.kernel.run_limits import fresh_seed
+from actr3d.actr.loading.source_text import read_source
 from workbench.files import ModelFolder
 from workbench.texts import Texts
 from workbench.worker.messages import Start, digest_of
@@ -27,7 +27,7 @@ class Relived:
     recording: Path
     """Where it was recorded."""
     helpers: dict[str, tuple[str, str]]
-    """Its helper modules, as `actr3d.actr.helper_texts` keeps them."""
+    """Its helper modules, as `actr3d.actr.loading.helper_modules` keeps them."""
 
 
 @dataclass(frozen=True, kw_only=True)

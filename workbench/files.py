@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from actr3d.actr.reading import read_source
+from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError
 
 LARGEST = 1_000_000

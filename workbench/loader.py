@@ -12,9 +12,9 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
-from actr3d.actr.reading import compile_source
-from actr3d.actr.sources import syntax_tree
-from actr3d.actr.sweep import parameters as first_lines
+from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.loading.source_text import compile_source
+from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
 from actr3d.running.declared import has_build, problem_of_build
 

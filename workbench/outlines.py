@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from actr3d.actr.reading import read_source
+from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ModelFileError
 from workbench.files import LARGEST, MOST_FILES
 from workbench.loader import listing_of

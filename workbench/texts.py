@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from actr3d.actr.reading import read_source
+from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError
 from workbench.worker.messages import Loaded, Start, digest_of
 

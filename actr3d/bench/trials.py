@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import actr3d
-from actr3d.actr.limits import RunLimits
-from actr3d.actr.reading import read_source
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.loading.source_text import read_source
 from actr3d.running.building import Blueprint
 from actr3d.simulation import PassageResult
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from weakref import WeakSet
 
-from actr3d.actr.production_system import ProductionSystem
+from actr3d.actr.kernel.tree import subtree, top_of
+from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import did_you_mean
 from actr3d.saying import warn_at
 
@@ -18,8 +19,8 @@ _CHECKED: WeakSet[type] = WeakSet()
 def check_patterns(motor: Muscles) -> None:
     """Warns, once for each class of agent, of patterns that name a muscle group, joint or state that there is not."""
     known = [name for name in motor.__dict__ if name[0] != "_"]
-    *_, top = motor._line()
-    for system in top._tree():
+    top = top_of(motor)
+    for system in subtree(top):
         if not isinstance(system, ProductionSystem) or type(system) in _CHECKED:
             continue
         of_motor = [production for production in system._productions if any(target is motor for target in production.context.values())]

@@ -7,10 +7,10 @@ from functools import partial
 from math import copysign, radians
 from typing import Any
 
-from actr3d.actr.buffer import Buffer
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.memory import Memory
-from actr3d.actr.parameters import named_parameters
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.limbs import FINEST, BodyPart, Freedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Turn, Walk

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.model import Model
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters
 from actr3d.actr.modules.port import Port, Request, place_of_caller
-from actr3d.actr.parameters import WithParameters
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
 from actr3d.motor.checks import check_patterns

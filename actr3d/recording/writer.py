@@ -13,7 +13,7 @@ from pathlib import Path
 from threading import Event, Lock, Thread
 from typing import Any, NamedTuple
 
-from actr3d.actr.answers import plain_answer
+from actr3d.actr.modules.answers import plain_answer
 from actr3d.errors import RecordingError
 from actr3d.recording.checksums import Checksums
 from actr3d.recording.form import COLUMNS, LEFT, SCHEMA

@@ -8,8 +8,8 @@ from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from actr3d.actr.helper_texts import HelperTexts
 from actr3d.actr.loading import load_text
+from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ConfigurationError, ModelFileError, SettingError, did_you_mean
 from actr3d.fields import Field, fields_of
 from actr3d.running.declared import RIGHT, check_build

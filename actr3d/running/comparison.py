@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from actr3d.actr.answers import plain_answer
-from actr3d.actr.limits import EndOfRun
+from actr3d.actr.kernel.run_limits import EndOfRun
+from actr3d.actr.modules.answers import plain_answer
 from actr3d.clock import seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path

@@ -8,7 +8,7 @@ import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
-from actr3d.actr.python2 import PYTHON_2_NAMES
+from actr3d.actr.loading.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.saying import is_library
 

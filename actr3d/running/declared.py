@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from actr3d.actr.sources import syntax_tree
+from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.errors import ModelFileError
 
 RIGHT = "`def build(parameters: Parameters) -> Simulation`, where Parameters is a frozen dataclass, or `def build() -> Simulation`"

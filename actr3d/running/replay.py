@@ -7,11 +7,11 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from actr3d.actr.helper_texts import HelperTexts
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
-from actr3d.actr.sealed import sealed
-from actr3d.actr.shared_random import shared_random
+from actr3d.actr.loading.global_seed import shared_random
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.actr.loading.sealed import sealed
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.printing import ModelOutput, printing_to

@@ -8,11 +8,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from actr3d.actr.helper_texts import HelperTexts
-from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
-from actr3d.actr.reading import read_source
-from actr3d.actr.shared_random import shared_random
+from actr3d.actr.loading.global_seed import shared_random
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
 from actr3d.recording import Recording

@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from actr3d.actr import Buffer, Chunk, Memory
-from actr3d.actr.model import Method
+from actr3d.actr.kernel.class_members import Method
 from actr3d.errors import PlanError, did_you_mean
 from actr3d.sgoms.checks import check_plans
 from actr3d.sgoms.control import IN_BUFFER, IN_MEMORY, Control, choices

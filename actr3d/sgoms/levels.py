@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from actr3d.actr import Buffer, Chunk
-from actr3d.actr.checks.vocabulary import is_slip
-from actr3d.actr.chunk import as_text
+from actr3d.actr.chunks.chunk import as_text
+from actr3d.actr.lint.slot_names import is_slip
 from actr3d.errors import PlanError, did_you_mean
 from actr3d.sgoms.units import BEFORE, END, START
 from actr3d.trace import Trace

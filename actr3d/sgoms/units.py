@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from actr3d.actr import Memory
-from actr3d.actr.pattern import conditions
+from actr3d.actr.chunks.pattern import conditions
 from actr3d.errors import PatternException, PlanError
 
 BEFORE, START, END = "none", "start", "finished"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any, cast
 
-from actr3d.actr.chunk import LASTING_TYPES
+from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.simulation.minds import Minds
 from actr3d.world import World

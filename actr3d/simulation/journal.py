@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any, Protocol
 from weakref import ref
 
-from actr3d.actr.limits import Recorder
+from actr3d.actr.kernel.run_limits import Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
 from actr3d.kinds import LEVELS

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from actr3d.actr.chunk import LASTING_TYPES
-from actr3d.actr.limits import RunLimits
-from actr3d.actr.model import Model
+from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.actr.kernel.model import Model, attach_trace, ensure_converted, is_converted
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.kernel.tree import path_of
+from actr3d.actr.loading.global_seed import seed_shared
 from actr3d.actr.modules.port import Embodiment, Request
-from actr3d.actr.shared_random import seed_shared
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.trace import Trace
@@ -57,14 +58,14 @@ class Minds:
                 if name in bodies:
                     Embodiment(name, self.outbox).join(mind)
                 setattr(self.environment, name, mind)
-            self.environment._ensure_converted()
+            ensure_converted(self.environment)
         self._sch = self.environment.sch
         self._sch.limits = outer
         self._sch.in_lockstep = True
         if outer is not None:
             outer.clock = lambda: self._sch.now_us
         if trace is not None:
-            self.environment._attach_trace(trace)
+            attach_trace(self.environment, trace)
 
     @property
     def time(self) -> int:
@@ -131,11 +132,11 @@ class Minds:
         for place in places:
             inner = {child.name: child for child in part.get_children()}
             if place not in inner:
-                raise SimulationError(f"no parameter '{path}': '{part._path}' has no part '{place}'{did_you_mean(place, inner)}")
+                raise SimulationError(f"no parameter '{path}': '{path_of(part)}' has no part '{place}'{did_you_mean(place, inner)}")
             part = inner[place]
         known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
         if name not in known:
-            raise SimulationError(f"no parameter '{path}': '{part._path}' has no '{name}'{did_you_mean(name, known)}")
+            raise SimulationError(f"no parameter '{path}': '{path_of(part)}' has no '{name}'{did_you_mean(name, known)}")
         setattr(part, name, value)
 
 
@@ -145,6 +146,6 @@ def _made(name: str, factory: Factory) -> Model:
     mind = factory()
     if not isinstance(mind, Model):
         raise SimulationError(f"minds['{name}']: must make an agent (made {mind!r})")
-    if mind.__dict__.get("parent") is not None or (mind._converted and mind.sch.now_us > 0):
+    if mind.__dict__.get("parent") is not None or (is_converted(mind) and mind.sch.now_us > 0):
         raise SimulationError(f"minds['{name}']: must make a new agent each time it is called, for the run may go back to its start")
     return mind

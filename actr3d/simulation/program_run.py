@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from actr3d.actr.limits import Recorder
+from actr3d.actr.kernel.run_limits import Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.kinds import KINDS, LEVELS
 from actr3d.simulation.commands import Command

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 from zlib import crc32
 
-from actr3d.actr.limits import RunLimits, fresh_seed
+from actr3d.actr.kernel.run_limits import RunLimits, fresh_seed
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.simulation.arguments import check_names, count_of, factor_of, named_minds, seed_of, steps_of, whole_ticks, world_of

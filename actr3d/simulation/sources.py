@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from actr3d.actr.sources import SOURCE
+from actr3d.actr.kernel.source_code import SOURCE
 from actr3d.errors import RecordingError
 from actr3d.recording.form import OWN_FACTS
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from actr3d.actr.answers import plain_answer
-from actr3d.actr.modules.port import Request, place_of_caller
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.searches import Searching, outcome_of
+from actr3d.actr.explain.module_reasons import outcome_of
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.modules.answers import plain_answer
+from actr3d.actr.modules.port import Request, Searching, place_of_caller
 from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from actr3d.actr.chunk import as_text, parse_slots, variable_value
+from actr3d.actr.chunks.chunk import as_text, parse_slots, variable_value
 from actr3d.configuration import hold
 from actr3d.errors import VisionError, did_you_mean
 from actr3d.vision.detectors.registry import Detector

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from actr3d.actr.model import Model
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.camera import CameraParameters, Sight, Stand, View
 from actr3d.vision.feature import Feature
 from actr3d.vision.module import Vision
@@ -61,7 +62,7 @@ class Sighting:
 
 def visions(mind: Model) -> list[Vision]:
     """Returns all vision modules of a mind, or of an agent in it."""
-    return [part for part in mind._tree() if isinstance(part, Vision)]
+    return [part for part in subtree(mind) if isinstance(part, Vision)]
 
 
 def sightings(mind: Model, body: Body) -> list[Sighting]:
@@ -85,7 +86,7 @@ def _of(module: Vision, eyes: list[Sight]) -> Iterator[Sighting]:
             continue  # it was another body's
         for number, feature in enumerate(search.noticed):
             yield Sighting(
-                module=module._path,
+                module=path_of(module),
                 bottom_up=search.bottom_up,
                 time=search.seen / 1e6,
                 chosen=number == search.chosen,

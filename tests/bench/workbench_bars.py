@@ -49,7 +49,7 @@ Agent().run(1)
 HEADLESS = """
 import sys, time
 from pathlib import Path
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.running.building import build
 path = Path(sys.argv[1])
 print = lambda *_: None

@@ -75,6 +75,7 @@ def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before
     before = str(scene.get_attribute("src"))
     in_frame(page, before)
     row(page, name).click()
+    recording = ""
     for _ in range(2):
         page.get_by_role("button", name="Open", exact=True).click()
         expect(banner).to_contain_text(name)

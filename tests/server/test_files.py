@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from actr3d.actr.reading import read_source
+from actr3d.actr.loading.source_text import read_source
 from workbench import outlines
 from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
 from workbench.outlines import Outline, outline_of
@@ -133,7 +133,7 @@ def test_what_is_deleted_is_in_the_trash(folder: ModelFolder) -> None:
 
 def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
     (folder.root / "bytes.py").write_bytes(b"x = '\xff'\n")
-    with pytest.raises(Exception, match="line 1 is no UTF-8"):
+    with pytest.raises(Exception, match="line 1 is not UTF-8"):
         folder.read("bytes.py")
     with pytest.raises(FileError, match="no more than"):
         folder.save("large.py", "x" * (LARGEST + 1), None)

@@ -11,10 +11,11 @@ from typing import Any, cast, get_args
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
-from actr3d.actr.memory import Memory
-from actr3d.actr.picture import picture_of
-from actr3d.actr.shared_random import shared_random
+from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.explain.snapshot import snapshot_of
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.kernel.tree import path_of, subtree
+from actr3d.actr.loading.global_seed import shared_random
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.running.building import build
 from actr3d.simulation import Simulation
@@ -70,7 +71,7 @@ def build() -> Simulation:
 def questions(shown: Shown) -> list[Any]:
     """Returns every question that a page can ask of a moment; a new kind of question is to be added here."""
     minds = shown.simulation.minds.values()
-    memories = [part._path for mind in minds for part in mind._tree() if isinstance(part, Memory)]
+    memories = [path_of(part) for mind in minds for part in subtree(mind) if isinstance(part, Memory)]
     bodies = [*shown.simulation.world.bodies]
     asked: list[Any] = [say.Explain(), *(say.Explain(at=share * shown.simulation.time) for share in (0.3, 0.9)), say.Events(most=20_000)]
     asked += [say.Rows(memory=memory) for memory in memories]
@@ -84,7 +85,7 @@ def told(shown: Shown) -> dict[str, Any]:
     physics, apertures = shown.scene()
     parts: dict[str, Any] = {}
     for mind in shown.simulation.minds.values():
-        parts |= picture_of(mind)
+        parts |= snapshot_of(mind)
     drawn = {kind: _plain(value) for kind, value in shown.drawn(KINDS).items()}
     now: dict[str, Any] = {"physics": physics.hex(), "apertures": apertures, "parts": parts, "result": shown.result()}
     now |= {f"drawn {kind}": value for kind, value in drawn.items()}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.running.building import Blueprint
 from workbench.loader import Change, listing_of
@@ -110,7 +110,7 @@ def test_every_model_is_listed_without_complaint() -> None:
         ("x = 1\ny = (\n", 2, "was never closed"),
         ("print 'so'", 1, "Python 2"),
         ("a\0b", 1, "NUL"),
-        ("x = '\ud800'", None, "no Python source"),
+        ("x = '\ud800'", None, "not Python source"),
         ("\ndef build():\n    return 3\n", 2, "build() does not say what it returns, not a Simulation; it must be `def build("),
         ("async def build() -> Simulation: ...", 1, "build is an async function"),
     ],

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.actr.limits import RunLimits
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.running.building import build
 from actr3d.running.printed import ProgramOutput

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from actr3d.actr.answers import plain_answer
-from actr3d.actr.memory import Memory
-from actr3d.actr.memory_table import memory_rows
-from actr3d.actr.model import Model
-from actr3d.actr.production_system import ProductionSystem
+from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.explain.memory_table import memory_rows
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.tree import children_of, path_of
+from actr3d.actr.modules.answers import plain_answer
+from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import Actr3dError, did_you_mean
 from actr3d.trace import Trace
 from workbench import protocol as say
@@ -41,7 +42,7 @@ def answer(question: Any, trace: Trace | None, tops: Sequence[Top]) -> Any:
 
 
 def _explain(question: say.Explain, tops: Sequence[Top]) -> list[dict[str, Any]]:
-    agents = {top.name(agent._path): (top, agent) for top in tops for agent in _agents(top.model)}
+    agents = {top.name(path_of(agent)): (top, agent) for top in tops for agent in _agents(top.model)}
     if question.agent is not None and question.agent not in agents:
         raise _unknown("agent", question.agent, agents)
     asked = list(agents.values()) if question.agent is None else [agents[question.agent]]
@@ -64,7 +65,7 @@ def _agents(model: Model) -> Iterator[ProductionSystem]:
     if isinstance(model, ProductionSystem):
         yield model
     else:
-        for child in model._members():
+        for child in children_of(model):
             yield from _agents(child)
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from actr3d.actr.helper_texts import HelperTexts
-from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
-from actr3d.actr.picture import picture_of
-from actr3d.actr.shared_random import shared_random
+from actr3d.actr.explain.snapshot import snapshot_of
+from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.loading.global_seed import shared_random
+from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
@@ -315,7 +315,7 @@ class BuiltRun:
         """Returns what all parts of all minds are like."""
         told: dict[str, dict[str, Any]] = {}
         for mind in self._simulation.minds.values():
-            told |= picture_of(mind)
+            told |= snapshot_of(mind)
         return told
 
     def names(self) -> Names:

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from actr3d.actr.limits import EndOfRun
+from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import Actr3dError
 from actr3d.trace import Trace

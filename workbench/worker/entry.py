@@ -14,8 +14,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
-from actr3d.actr.limits import EndOfRun
-from actr3d.actr.reading import compile_source
+from actr3d.actr.kernel.run_limits import EndOfRun
+from actr3d.actr.loading.source_text import compile_source
 from actr3d.running.declared import check_build
 from actr3d.values import to_json
 from workbench.loader import listing_of

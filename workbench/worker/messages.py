@@ -123,7 +123,7 @@ class State(Message, frozen=True, kw_only=True):
     events: int
     """How many events there are up to this moment."""
     parts: bytes
-    """JSON: see `actr3d.actr.picture`."""
+    """JSON: see `actr3d.actr.explain.snapshot`."""
     apertures: dict[str, float]
     """Free widths by name [m]."""
     result: bytes

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from actr3d.actr.buffer import Buffer
-from actr3d.actr.production_system import ProductionSystem
-from actr3d.actr.sources import syntax_tree
+from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import Listing
 from workbench.protocol import Until
@@ -110,7 +110,7 @@ def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notic
 
 
 def _learned(name: str, known: frozenset[str]) -> bool:
-    """Tells whether a production could be called so that is compiled from known ones; see `actr3d.actr.compilation`."""
+    """Tells whether a production could be called so that is compiled from known ones; see `actr3d.actr.procedural.compilation`."""
     first, *more = (part for part in name.split("-") if not part.isdecimal())
     return bool(more) and known.issuperset((first, *more))
 

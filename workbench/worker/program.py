@@ -8,11 +8,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.helper_texts import HelperTexts
-from actr3d.actr.limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.explain.snapshot import snapshot_of
+from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.kernel.tree import children_of
 from actr3d.actr.loading import run_text
-from actr3d.actr.picture import picture_of
-from actr3d.actr.sweep import with_values
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.actr.loading.sweep import with_values
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
@@ -87,7 +88,7 @@ class ProgramRun:
         self._kept: dict[int, Kept] = {}
         """What is kept of the past of simulations, by number; it outlives that the program is run again."""
         self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
-        """The helper modules as they were the first time; see `actr3d.actr.helper_texts`."""
+        """The helper modules as they were the first time; see `actr3d.actr.loading.helper_modules`."""
 
     def play(self) -> None:
         """Runs it, and again where a user goes back, until the worker is to leave."""
@@ -379,7 +380,7 @@ class ProgramRun:
         """Returns what all parts of its latest models are like."""
         told: dict[str, dict[str, Any]] = {}
         for top in self._tops():
-            told |= {top.name(path): part for path, part in picture_of(top.model).items()}
+            told |= {top.name(path): part for path, part in snapshot_of(top.model).items()}
         return told
 
     def names(self) -> Names:
@@ -399,7 +400,7 @@ class ProgramRun:
             if not model.sch.in_lockstep:
                 yield Top(model)
                 continue
-            for agent in model._members():  # the environment of a simulation is its own
+            for agent in children_of(model):  # the environment of a simulation is its own
                 yield Top(agent, top_path(number) if number > 1 else "")
 
     def _hold_models(self) -> None:

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from functools import cached_property
 from typing import Any
 
-from actr3d.actr.answers import plain_answer
+from actr3d.actr.modules.answers import plain_answer
 from actr3d.camera import EXTENT_FIELDS, CameraParameters, Sight, glance
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import Actr3dError, did_you_mean

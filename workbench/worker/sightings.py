@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.actr.model import Model
+from actr3d.actr.kernel.model import Model
 from actr3d.camera import View
 from actr3d.vision import Feature, Obstacle, Opening, Sighting, sightings
 from actr3d.world.body import Body

@@ -11,8 +11,8 @@ from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 
-from actr3d.actr.pattern import parse
-from actr3d.actr.sources import syntax_tree
+from actr3d.actr.chunks.pattern import parse
+from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.errors import Actr3dError, did_you_mean
 
 LIBRARY = "actr3d."

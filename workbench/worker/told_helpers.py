@@ -6,8 +6,8 @@ from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from actr3d.actr.helper_texts import HelperTexts
-from actr3d.actr.sealed import sealed
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.actr.loading.sealed import sealed
 from workbench.worker.link import Link
 from workbench.worker.messages import Loaded, digest_of
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from actr3d.actr.model import Model
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.tree import path_of, subtree
 
 PATHS = frozenset(("agent", "system", "memory", "module"))
 """What answers call the paths of parts."""
@@ -20,8 +21,8 @@ class Top(NamedTuple):
 
     def parts(self) -> Iterator[tuple[str, Any]]:
         """Yields all its parts with their names."""
-        for part in self.model._tree():
-            yield self.name(part._path), part
+        for part in subtree(self.model):
+            yield self.name(path_of(part)), part
 
     def name(self, path: str) -> str:
         """Returns the name of the part at a path."""

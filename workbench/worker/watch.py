@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.search import search_for
-from actr3d.actr.store import ChunkStore
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.declarative.chunk_index import ChunkStore
+from actr3d.actr.declarative.chunk_query import search_for
 from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
 

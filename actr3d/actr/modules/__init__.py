@@ -1,1 +1,1 @@
-"""ACT-R modules besides memory and the production systems, one a file."""
+"""ACT-R modules besides memory and the production systems, one per file."""

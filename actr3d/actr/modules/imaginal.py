@@ -1,22 +1,22 @@
-"""The imaginal module: building and changing a mental picture takes time."""
+"""The imaginal module: builds and changes a mental image, which takes time."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from typing import Any, cast
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class ImaginalModule(WithParameters, Model):
-    """Sets, changes and clears a buffer, each after a delay; while it is busy, further calls are left undone.
+    """Sets, changes and clears a buffer, each after a delay; calls are ignored while it is busy.
 
     Args:
-        buffer: The buffer it works on.
-        delay: How long it takes [s]; a number, or a function without arguments.
-        delay_sd: The standard deviation of that [s]; None for no noise.
+        buffer: The buffer that it changes.
+        delay: The duration of a change [s]; a number, or a function without arguments.
+        delay_sd: The standard deviation of the duration [s]; None for no noise.
 
     Source: 0.2 s, ACT-R's imaginal delay.
     """
@@ -30,12 +30,12 @@ class ImaginalModule(WithParameters, Model):
         self.delay_sd = delay_sd
 
     def delay_time(self) -> float:
-        """Returns how long the next change takes [s]."""
+        """Returns the duration of the next change [s]."""
         time: float = cast("Any", self.delay)() if callable(self.delay) else self.delay
         return time if self.delay_sd is None else max(0.0, self.random.gauss(time, self.delay_sd))
 
     def set(self, chunk: Any) -> Iterator[float]:
-        """Puts a new chunk into the buffer; its variables mean what they are bound to now."""
+        """Puts a new chunk into the buffer; its variables have the values that are bound now."""
         if self.busy:
             return
         new = Chunk(chunk, self.sch.bound)
@@ -54,7 +54,7 @@ class ImaginalModule(WithParameters, Model):
         self._finish(self._buffer.modify, **args)
 
     def clear(self, **args: Any) -> Iterator[float]:
-        """Empties the buffer."""
+        """Clears the buffer."""
         if self.busy:
             return
         self._trace_request("clear")
@@ -63,7 +63,7 @@ class ImaginalModule(WithParameters, Model):
         self._finish(self._buffer.clear)
 
     def _finish(self, change: Callable[..., None], *args: Any, **keys: Any) -> None:
-        """Changes the buffer; whether that can be done or not, the module is free again."""
+        """Changes the buffer; the module is free afterwards, even if that fails."""
         try:
             change(*args, **keys)
         finally:

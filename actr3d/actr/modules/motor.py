@@ -1,12 +1,13 @@
-"""The motor module: pressing a key."""
+"""The motor module: presses keys."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.log import log_line
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class Motor(WithParameters, Model):
@@ -21,29 +22,29 @@ class Motor(WithParameters, Model):
         self.busy = False
 
     def press(self, key: Any) -> Iterator[float]:
-        """Presses a key, unless a press is under way."""
+        """Presses a key, unless another press is in progress."""
         if self.busy:
             return
         self._trace_request("press", key=key)
         self.busy = True
-        self.log._ = "Pressing key preparation"
+        log_line(self.log, "Pressing key preparation")
         yield 0.25
-        self.log._ = "Pressing key preparation complete"
+        log_line(self.log, "Pressing key preparation complete")
         yield 0.05
-        self.log._ = "Pressing key initiation complete"
+        log_line(self.log, "Pressing key initiation complete")
         yield 0.1
-        self.log._ = "Actually pressing the key"
+        log_line(self.log, "Actually pressing the key")
         self._environment().key_pressed(key)
-        self.log._ = "Finishing movement"
+        log_line(self.log, "Finishing movement")
         yield 0.15
-        self.log._ = "Finished movement"
+        log_line(self.log, "Finished movement")
         self.busy = False
 
     def _environment(self) -> Any:
-        """Returns the model the agent is in.
+        """Returns the model that contains the agent.
 
         Raises:
-            AttributeError: If there is none, or it takes no keys.
+            AttributeError: If there is none, or it has no `key_pressed`.
         """
         environment = self.parent and self.parent.parent
         if not hasattr(environment, "key_pressed"):

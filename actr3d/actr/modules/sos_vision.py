@@ -1,26 +1,26 @@
-"""SOSVision: seeing as a search among the objects of the environment."""
+"""SOSVision: vision as a search among the objects of the environment."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.pattern import Pattern
+from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class SOSVision(WithParameters, Model):
-    """Looks for an object that matches a pattern, and brings one of those it notices to a buffer.
+    """Searches for objects that match a pattern, and puts one of those that it notices into a buffer.
 
     Each object of the environment (the agent's parent) that has a `salience` is noticed with that probability; one that
-    has only `visible` always. What has `visible` False or `value` None is not there. Where nothing is found, the buffer
-    is cleared and `error` set.
+    has only `visible` always. Objects with `visible` False or `value` None are not found. If nothing is found, the buffer is
+    cleared and `error` set.
 
     Args:
-        buffer: Where what is seen goes.
-        delay: How long looking takes [s].
-        delay_sd: The standard deviation of that [s]; None for no noise.
+        buffer: The buffer for what is seen.
+        delay: The duration of a search [s].
+        delay_sd: The standard deviation of the duration [s]; None for no noise.
 
     Source: SOS Vision (West & Emond 2002).
     """
@@ -34,7 +34,7 @@ class SOSVision(WithParameters, Model):
         self.busy = False
 
     def request(self, pattern: Any = "") -> Iterator[float]:
-        """Looks for what matches, unless it is looking already; `?name` matches anything, as in python_actr 1.9.5."""
+        """Searches for a match, unless a search is in progress; `?name` matches anything, as in python_actr 1.9.5."""
         if self.busy:
             return
         matcher = Pattern(pattern)

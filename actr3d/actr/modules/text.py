@@ -1,8 +1,9 @@
-"""Text output: a mouth that prints."""
+"""Text output: prints what an agent says."""
 
 from __future__ import annotations
 
-from actr3d.actr.model import Model
+from actr3d.actr.kernel.log import log_line
+from actr3d.actr.kernel.model import Model
 
 
 class TextOutput(Model):
@@ -11,4 +12,4 @@ class TextOutput(Model):
     def write(self, text: object) -> None:
         """Prints and logs a text."""
         print(text)  # noqa: T201 - this is what the module is for
-        self.log._ = text
+        log_line(self.log, text)

@@ -1,12 +1,12 @@
-"""The timer: an inner clock whose pulses get longer and longer."""
+"""The timer: an internal clock whose pulses get longer and longer."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.scheduler import Trigger
+from actr3d.actr.kernel.events import Trigger
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class Timer(WithParameters, Model):
@@ -14,8 +14,8 @@ class Timer(WithParameters, Model):
 
     Args:
         startpulse: t_0 [s].
-        a: How much longer each pulse gets.
-        b: How noisy pulses are.
+        a: The factor by which each pulse is longer than the one before.
+        b: The relative noise of pulses.
 
     Source: Taatgen, van Rijn & Anderson (2007), Psychological Review 114; ACT-R's temporal module.
     """
@@ -32,14 +32,14 @@ class Timer(WithParameters, Model):
         self._restart = Trigger("timer reset")
 
     def reset(self) -> None:
-        """Begins to count from 0."""
+        """Starts counting from 0."""
         self._resets += 1
         self.count = 0
         self.t = self.startpulse
         self.sch.trigger(self._restart)
 
     def start(self) -> Iterator[object]:
-        """Counts for ever."""
+        """Counts pulses without end."""
         while True:
             before = self._resets
             yield self.t, self._restart

@@ -1,21 +1,22 @@
-"""Vision: where and what, with attention drawn to what has just appeared."""
+"""Vision: finds locations and objects; attention is drawn to new objects."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-from actr3d.actr.chunk import Chunk
-from actr3d.actr.finst import Finst
-from actr3d.actr.model import Model
-from actr3d.actr.parameters import WithParameters, named_parameters
-from actr3d.actr.pattern import Pattern
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.declarative.finst import Finst
+from actr3d.actr.kernel.log import log_line
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 
 
 class Vision(WithParameters, Model):
     """Sees the objects of the environment that have `x` and `y`, unless their `visible` is False.
 
-    A new object's place goes to the location buffer by itself while that is empty.
+    A new object's place is put into the location buffer automatically while that is empty.
 
     Args:
         visual: The buffer for what is seen.
@@ -37,11 +38,11 @@ class Vision(WithParameters, Model):
         self.finst = Finst(self)
 
     def start(self) -> None:
-        """Begins to watch the environment."""
+        """Starts watching the environment."""
         self.environmentUpdate()
 
     def isNew(self, obj: Any) -> bool:  # noqa: N802 - Python ACT-R's names, here and below
-        """Tells whether an object appeared within the onset span; notes the time of one not known before."""
+        """Returns whether an object appeared within the onset span; records the time of a new one."""
         if not getattr(obj, "visible", True):
             return False
         appeared = self.timeAppeared.get(obj)
@@ -51,7 +52,7 @@ class Vision(WithParameters, Model):
         return self.now() < appeared + self.visualOnsetSpan
 
     def environmentUpdate(self) -> Iterator[Any]:  # noqa: N802
-        """Puts a new object's place into the empty location buffer, again at every change of the environment."""
+        """Puts a new object's place into the empty location buffer, at every change of the environment."""
         environment = self._environment()
         if environment is None:
             return
@@ -60,7 +61,7 @@ class Vision(WithParameters, Model):
                 new = [obj for obj in environment.get_children() if self._appears(obj)]
                 if new:
                     obj: Any = self.random.choice(new)
-                    self.log._ = f"Vision stuffed obj at ({obj.x:g},{obj.y:g})"
+                    log_line(self.log, f"Vision stuffed obj at ({obj.x:g},{obj.y:g})")
                     self._location.set(f"{obj.x:g} {obj.y:g}")
             for obj in environment.get_children():
                 self.isNew(obj)
@@ -79,11 +80,11 @@ class Vision(WithParameters, Model):
         """Ends the tracking of an object that is gone."""
         if self.tracking is not None:
             self.tracking = None
-            self.log._ = "Object disappeared"
+            log_line(self.log, "Object disappeared")
             self._visual.clear()
 
     def attendToUnattended(self, pattern: Any = "") -> None:  # noqa: N802
-        """Finds the place of an object that was not examined lately."""
+        """Finds the place of an object that was not examined recently."""
         self.attendTo(pattern, unattended=True)
 
     def attendToNew(self, pattern: Any = "") -> None:  # noqa: N802
@@ -91,8 +92,8 @@ class Vision(WithParameters, Model):
         self.attendTo(pattern, new=True)
 
     def attendTo(self, pattern: Any, unattended: bool = False, new: bool = False) -> None:  # noqa: N802
-        """Puts the place of a matching object into the location buffer; where there is none, nothing happens."""
-        # Like all attributes of models, what was asked last is a change that wakes whoever waits for one.
+        """Puts the place of a matching object into the location buffer, if there is one."""
+        # Setting this attribute is a change, like any other, that wakes everything that waits for one.
         matcher = self.lastLocationPattern = self._pattern(pattern)
         self._trace_request("attendTo", pattern=pattern, unattended=unattended, new=new)
         found: list[Any] = []
@@ -105,11 +106,11 @@ class Vision(WithParameters, Model):
                 found.append(obj)
         if found:
             obj = self.random.choice(found)
-            self.log._ = f"Vision found obj at ({obj.x:g},{obj.y:g})"
+            log_line(self.log, f"Vision found obj at ({obj.x:g},{obj.y:g})")
             self._location.set(f"{obj.x:g} {obj.y:g}")
 
     def examine(self, pat: Any) -> Iterator[float]:
-        """Brings the first matching object to the visual buffer, after 0.085 s; `'x y'` names a place."""
+        """Puts the first matching object into the visual buffer, after 0.085 s; `'x y'` names a place."""
         matcher = self.lastExamine = self._pattern(pat)
         self._trace_request("examine", pattern=pat)
         for obj in self._visible():
@@ -120,12 +121,12 @@ class Vision(WithParameters, Model):
             self.busy = False
             if any(child is obj for child in self._children_of_environment()):
                 self.tracking = obj
-                self.log._ = f"Vision sees {Chunk(obj)}"
+                log_line(self.log, f"Vision sees {Chunk(obj)}")
                 self._visual.set(obj)
                 self.finst.add(obj)
             else:
                 self.tracking = None
-                self.log._ = "Vision sees nothing"
+                log_line(self.log, "Vision sees nothing")
                 self._visual.clear()
             break
 

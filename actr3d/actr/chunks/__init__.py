@@ -1,0 +1,1 @@
+"""Chunks, and the pattern language that describes them."""

@@ -1,0 +1,1 @@
+"""What existing Python ACT-R models need besides the core: the old import names, grid worlds, log files."""

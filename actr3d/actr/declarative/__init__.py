@@ -1,0 +1,1 @@
+"""Declarative memory, and the modules that compute the activation of its chunks."""

@@ -1,0 +1,128 @@
+"""Explains an agent: which productions match and why the others do not, and which chunk won a retrieval and why.
+
+An explanation of the current state reads the model; one of a past time reads the trace, and needs nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TypeVar
+
+from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.explain.past_state import Past
+from actr3d.actr.explain.present_state import Present
+from actr3d.actr.explain.state import AgentState
+from actr3d.actr.explain.trial import ProductionTrial
+from actr3d.actr.kernel.model import Model, ensure_converted
+from actr3d.actr.kernel.tree import path_of, places_in, subtree, top_of
+from actr3d.actr.modules.port import Searching
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, rules_of
+from actr3d.actr.reasons import Explanation, ProductionReason
+from actr3d.clock import microseconds, seconds
+from actr3d.errors import ParameterError, SchedulerError
+from actr3d.trace import TraceEvent
+
+Kind = TypeVar("Kind", bound=Model)
+
+
+def why(system: ProductionSystem, production: Production, state: AgentState) -> ProductionReason:
+    """Returns the reason of one production in a state."""
+    trial = ProductionTrial(system, production, state)
+    failed = trial.failure
+    choice = state.choice(system)
+    none_drawn: dict[str, float] = {}
+    drawn = none_drawn if choice is None else choice.parts.get(production.name, none_drawn)
+    parts: dict[str, float | None] = {
+        name: drawn.get(name) if value is None else value for name, value in state.parts(system, production).items()
+    }
+    if "get_activation" not in parts:
+        parts = {"base": production.base_utility, **parts}
+    known = [value for value in parts.values() if value is not None]
+    return ProductionReason(
+        name=production.name,
+        system=state.path(system),
+        parents=production.parents,
+        matches=trial.matches,
+        condition=failed.condition if failed is not None else None,
+        expected=failed.expected if failed is not None else None,
+        found=failed.found if failed is not None else None,
+        seen=trial.seen,
+        bindings=trial.bindings,
+        conditions=trial.conditions,
+        utility=sum(known) if len(known) == len(parts) else None,
+        parts=parts,
+        selected=choice is not None and choice.chosen == production.name,
+        verdict=None if choice is None else choice.verdict(production.name),
+    )
+
+
+def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
+    """Explains an agent, the parallel systems inside it, and the memories it has or sees; see `ProductionSystem.explain`."""
+    ensure_converted(agent)
+    systems = list(_systems(agent))
+    for system in systems:
+        prepare_context(system)
+    memories, eyes = _seen(Memory, agent, systems), _seen(Searching, agent, systems)
+    state = Present(agent) if at is None else _past(agent, at, systems, [*memories, *eyes])
+    productions = [
+        why(system, p, state)
+        for system in systems
+        if state.exists(system)
+        for p in rules_of(system).productions
+        if state.learned(system, p)
+    ]
+    retrievals = [state.retrieval(memory) for memory in memories if state.exists(memory)]
+    searches = [reason for eye in eyes if state.exists(eye) for reason in state.searches(eye)]
+    return Explanation(
+        time=state.time,
+        agent=state.path(agent),
+        begun=rules_of(agent).matcher is not None,
+        productions=tuple(productions),
+        retrievals=tuple(reason for reason in retrievals if reason is not None),
+        searches=tuple(searches),
+    )
+
+
+def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], modules: list[Model]) -> Past:
+    """Returns the state at a past time.
+
+    Raises:
+        ParameterError: If it is not known, or the agent did not exist then.
+    """
+    try:
+        time = microseconds(at, "explain(at)")
+    except SchedulerError as error:
+        raise ParameterError(str(error)) from None
+    trace = agent.sch.trace
+    if trace is None or not trace.all or not trace.keep:
+        raise ParameterError("explain(at): only a run traced from before that time contains its past; call traced() before the run")
+    if time > agent.sch.now_us:
+        raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
+    top = top_of(agent)
+    run = TraceEvent(0, path_of(top), "", {}).run
+    begin = next((event.time for event in trace if event.run == run), agent.now())
+    if time < microseconds(begin):
+        raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
+    seen = [target for system in systems for target in rules_of(system).context.values() if isinstance(target, Model)]
+    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *modules, *seen)}.values()))
+    if not state.exists(agent):
+        came = next(place.time for place in places_in(agent, trace) if place.path is not None)
+        raise ParameterError(f"explain(at): '{path_of(agent)}' did not exist at {at:g} s; it was added at {seconds(came):g} s")
+    return state
+
+
+def _systems(agent: ProductionSystem) -> Iterator[ProductionSystem]:
+    for part in subtree(agent):
+        if isinstance(part, ProductionSystem):
+            yield part
+
+
+def _seen(kind: type[Kind], agent: Model, systems: list[ProductionSystem]) -> list[Kind]:
+    """Returns an agent's modules of a kind, and those of its ancestors that its productions see by name."""
+    found = [part for part in subtree(agent) if isinstance(part, kind)]
+    for system in systems:
+        for target in rules_of(system).context.values():
+            if isinstance(target, kind) and not any(target is known for known in found):
+                found.append(target)
+    return found

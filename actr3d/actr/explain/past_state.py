@@ -1,0 +1,223 @@
+"""A past state of an agent, reconstructed from the trace."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, NamedTuple, cast
+
+from actr3d.actr.chunks.chunk import LASTING_TYPES, Slot, as_text
+from actr3d.actr.chunks.pattern import MISSING
+from actr3d.actr.explain.module_reasons import outcome_of, past_retrieval, past_search
+from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
+from actr3d.actr.kernel.buffer import Buffer, reads_chunk
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.tree import path_of, places_in
+from actr3d.actr.procedural.conflict_set import ConflictSet
+from actr3d.actr.procedural.observed_values import answer_label, records_changes
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, utility_part_names
+from actr3d.actr.procedural.safe_reading import plain_empty
+from actr3d.actr.reasons import RetrievalReason, SearchReason
+from actr3d.clock import seconds
+from actr3d.trace import Trace, TraceEvent
+
+
+class Record(NamedTuple):
+    """A value recorded by an event."""
+
+    value: Any
+    event: int
+    """The number of the event in the trace."""
+    time: int
+    """The time of the event [us]."""
+
+
+class _Part:
+    """What a trace contains about one part of the tree up to a time."""
+
+    def __init__(self) -> None:
+        self.attributes: dict[str, Record] = {}
+        self.seen: dict[str, Record] = {}
+        self.parts: dict[str, dict[str, float | None]] = {}
+        self.conflict: dict[str, Any] | None = None
+        self.chosen: str | None = None
+        self.matched: Collection[str] = ()
+        self.latest_match = -1
+        """The number of the event of the latest match; changes of observed values are recorded before it."""
+        self.unborn: set[str] = set()
+        self.request: TraceEvent | None = None
+        self.outcome = "pending"
+        self.searches: dict[bool, tuple[TraceEvent, str]] = {}
+        """The latest search and its outcome, by whether it was bottom-up."""
+
+    def take(self, number: int, event: TraceEvent) -> None:
+        """Processes an event of this part."""
+        kind, data = event.kind, event.data
+        if kind in ("state", "buffer"):
+            self._note(self.attributes, number, event)
+        elif kind == "observe":
+            self._note(self.seen, number, event)
+        elif kind == "conflict":
+            self.conflict, self.chosen = data, None
+            self.matched, self.latest_match = data["utilities"], number
+        elif kind == "productions":
+            self.matched, self.chosen = data["matched"], data["chosen"]
+            self.conflict = data if "utilities" in data else None
+        elif kind == "utility":
+            self.parts.setdefault(data["production"], {})[data["part"]] = data["value"]
+        elif kind == "select":
+            self.chosen = data["production"]
+        elif kind in ("fire", "changed"):
+            self.conflict = self.chosen = None
+        elif kind == "request" and "candidates" in data:
+            self.request, self.outcome = event, data.get("outcome", "pending")
+        elif kind == "retrieval":
+            self.outcome = "failed" if data["failed"] else "retrieved"
+        elif kind == "search":
+            self.searches[data["bottom_up"]] = (event, "pending")
+        elif kind == "sight":
+            event, _ = self.searches[data["bottom_up"]]
+            self.searches[data["bottom_up"]] = (event, outcome_of(data))
+
+    def _note(self, records: dict[str, Record], number: int, event: TraceEvent) -> None:
+        records.update({key: Record(value, number, event.time_us) for key, value in event.data.items()})
+
+
+class Past:
+    """The state of everything at a time, after all events of that time; see `AgentState` for the methods.
+
+    Args:
+        trace: The run's trace.
+        time: The time [us].
+        parts: The parts to reconstruct.
+    """
+
+    def __init__(self, trace: Trace, time: int, parts: Collection[Model]) -> None:
+        self.time = seconds(time)
+        self._parts: dict[int, _Part] = {}
+        self._paths: dict[int, str | None] = {}
+        self._named: dict[int, list[tuple[Model, str]]] = {}
+        places: dict[str, list[tuple[int, int, _Part]]] = {}
+        for part in parts:
+            known = self._parts[id(part)] = _Part()
+            for place in places_in(part, trace):
+                if place.time <= time:
+                    self._paths[id(part)] = place.path
+                if place.path is not None:
+                    places.setdefault(place.path, []).append((place.begin, place.end, known))
+        for part in parts:
+            for name, target in (rules_of(part).context if isinstance(part, ProductionSystem) else {}).items():
+                self._named.setdefault(id(target), []).append((part, name))
+        for number, event in enumerate(trace):
+            for begin, end, known in places.get(event.source, ()):
+                if not begin <= number < end:
+                    continue
+                if event.time_us <= time:
+                    known.take(number, event)
+                elif event.kind == "compile":
+                    known.unborn.add(event.data["production"])
+
+    def path(self, part: Model) -> str:
+        return self._paths.get(id(part)) or path_of(part)
+
+    def exists(self, part: Model) -> bool:
+        return self._paths.get(id(part)) is not None
+
+    def learned(self, system: ProductionSystem, production: Production) -> bool:
+        return production.name not in self._of(system).unborn
+
+    def _of(self, part: Model) -> _Part:
+        return self._parts[id(part)]
+
+    def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
+        target = rules_of(system).context[name]
+        if reads_chunk(target, key):
+            return self._slot_of_chunk(target, key)
+        seen = self._seen(target, key)
+        recorded = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and records_changes(target, key) else None
+        certain = recorded is not None and type(recorded.value) in LASTING_TYPES
+        latest = max((record.event if certain else held for record, held in seen), default=-1)
+        if seen and (recorded is None or recorded.event < latest):
+            record, _ = max(seen, key=lambda pair: pair[0].event)
+            return Fact(MISSING if record.value is None else record.value, _since(record))
+        return Fact(as_text(recorded.value)) if recorded is not None and certain else NOT_KNOWN
+
+    def _seen(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
+        """Returns what production systems read of an object, under any name, and the event until which it was valid for each."""
+        found: list[tuple[Record, int]] = []
+        for system, name in self._named.get(id(target), ()):
+            known = self._of(system)
+            record = known.seen.get(f"{name}.{key}")
+            if record is not None:
+                found.append((record, max(record.event, known.latest_match)))
+        return found
+
+    def _slot_of_chunk(self, buffer: Buffer, key: Slot) -> Fact:
+        recorded = self._of(buffer).attributes.get("chunk")
+        if recorded is None:
+            return NOT_KNOWN
+        chunk: dict[str, Any] = recorded.value or {}
+        value = chunk.get(str(key), MISSING)
+        if value is MISSING or type(value) in LASTING_TYPES:
+            return Fact(value if value is MISSING else as_text(value))
+        texts = self._of(buffer).attributes.get("texts")
+        if texts is None or texts.event != recorded.event or str(key) not in texts.value:
+            return OPAQUE
+        return Fact(texts.value[str(key)], _since(recorded))
+
+    def empty(self, system: ProductionSystem, name: str) -> Fact:
+        target = rules_of(system).context[name]
+        if isinstance(target, Buffer):
+            recorded = self._of(target).attributes.get("chunk")
+            return NOT_KNOWN if recorded is None else Fact(not recorded.value)
+        seen = self._seen(target, None)
+        if seen:
+            record, _ = max(seen, key=lambda pair: pair[0].event)
+            return Fact(record.value, _since(record))
+        empty = plain_empty(target)
+        return NOT_KNOWN if is_unknown(empty) or hasattr(cast("Any", type(target)), "__len__") else Fact(empty)
+
+    def slots(self, system: ProductionSystem, name: str) -> list[str]:
+        target = rules_of(system).context[name]
+        if isinstance(target, Buffer):
+            recorded = self._of(target).attributes.get("chunk")
+            return list(recorded.value or ()) if recorded is not None else []
+        return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
+
+    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
+        seen = self._of(system).seen.get(answer_label(production.name, number))
+        if seen is None:
+            return None
+        given, agrees, bound = seen.value
+        return FunctionResult(given, agrees, bound, _since(seen))
+
+    def matched(self, system: ProductionSystem, production: Production) -> bool:
+        return production.name in self._of(system).matched
+
+    def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
+        known = self._of(system).parts.get(production.name, {})
+        return {name: known.get(name) for name in utility_part_names(system)}
+
+    def choice(self, system: ProductionSystem) -> ConflictSet | None:
+        known = self._of(system)
+        data = known.conflict or {}
+        choice = ConflictSet(
+            utilities=data.get("utilities", {}),
+            parts=data.get("parts", {}),
+            threshold=data.get("threshold"),
+            weighed=rules_of(system).by_utility,
+            chosen=known.chosen,
+        )
+        return choice if choice.chosen is not None or choice.held_back else None
+
+    def retrieval(self, memory: Model) -> RetrievalReason | None:
+        known = self._of(memory)
+        return None if known.request is None else past_retrieval(self.path(memory), known.request, known.outcome)
+
+    def searches(self, module: Model) -> list[SearchReason]:
+        known = sorted(self._of(module).searches.items())
+        return [past_search(self.path(module), event, outcome) for _, (event, outcome) in known]
+
+
+def _since(record: Record) -> str:
+    return f"as seen since {seconds(record.time):.3f} s"

@@ -1,0 +1,97 @@
+"""The interface through which explanations read the state of an agent, current or past: facts, and how they are known."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+from actr3d.actr.chunks.chunk import Slot
+from actr3d.actr.chunks.pattern import Bindings, Missing
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.procedural.conflict_set import ConflictSet
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import ProductionSystem
+from actr3d.actr.procedural.safe_reading import UNKNOWN
+from actr3d.actr.reasons import RetrievalReason, SearchReason
+
+
+class Fact(NamedTuple):
+    """A slot's value, or whether an object is empty."""
+
+    value: Any
+    """Text, MISSING for no such slot, True or False for emptiness; UNKNOWN if it is not known."""
+    seen: str | None = None
+    """How it is known, such as «as seen since 0.050 s», or why it is not; None if it is certain at that time."""
+
+
+class FunctionResult(NamedTuple):
+    """The result of a modeller's function among the patterns."""
+
+    given: Bindings
+    """The variables before the call."""
+    agrees: bool
+    bound: Bindings
+    """The variables after the call."""
+    seen: str
+
+
+NOT_KNOWN = Fact(UNKNOWN, "no production has looked at it")
+OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can tell")
+
+
+class AgentState(Protocol):
+    """A current or past state."""
+
+    time: float
+
+    def path(self, part: Model) -> str:
+        """Returns a part's place in the tree."""
+        ...
+
+    def exists(self, part: Model) -> bool:
+        """Returns whether a part was in the tree."""
+        ...
+
+    def learned(self, system: ProductionSystem, production: Production) -> bool:
+        """Returns whether a production existed; a compiled one does from when it is learned."""
+        ...
+
+    def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
+        """Returns a slot's value as text."""
+        ...
+
+    def empty(self, system: ProductionSystem, name: str) -> Fact:
+        """Returns whether a buffer or object is empty."""
+        ...
+
+    def slots(self, system: ProductionSystem, name: str) -> list[str]:
+        """Returns the existing slots, for messages."""
+        ...
+
+    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
+        """Returns the last result of the function in a condition; it is not called again."""
+        ...
+
+    def matched(self, system: ProductionSystem, production: Production) -> bool:
+        """Returns whether a production was among those that matched at the latest match."""
+        ...
+
+    def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
+        """Returns the parts of a production's utility."""
+        ...
+
+    def choice(self, system: ProductionSystem) -> ConflictSet | None:
+        """Returns the latest conflict set, until the production fires or another choice is made."""
+        ...
+
+    def retrieval(self, memory: Any) -> RetrievalReason | None:
+        """Returns the reason of a memory's latest request."""
+        ...
+
+    def searches(self, module: Any) -> list[SearchReason]:
+        """Returns the reasons of the latest searches of a vision module."""
+        ...
+
+
+def is_unknown(value: object) -> bool:
+    """Returns whether a fact's value is not known."""
+    return isinstance(value, Missing) and value is UNKNOWN

@@ -1,0 +1,176 @@
+"""Tests the conditions of a production against a current or past state, and finds the first that fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from actr3d.actr.chunks.chunk import as_text
+from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
+from actr3d.actr.explain.state import AgentState, Fact, is_unknown
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import ProductionSystem
+from actr3d.actr.reasons import ConditionReason
+from actr3d.errors import did_you_mean
+
+AT_THE_LAST_MATCH = "as at the latest match"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Failure:
+    """A condition that does not hold, or for which this is not known."""
+
+    condition: str
+    expected: str
+    found: str
+    unknown: bool = False
+
+
+class ProductionTrial:
+    """The test of one production; `failure` is the first condition that fails, None if all hold.
+
+    The later conditions do not affect the result; `conditions` contains what is known about them.
+
+    Args:
+        system: The production system.
+        production: Its production.
+        state: The state in which it is tested.
+    """
+
+    def __init__(self, system: ProductionSystem, production: Production, state: AgentState) -> None:
+        self._system = system
+        self._production = production
+        self._state = state
+        self._bound: Bindings = {}
+        self._open: set[str] = set()
+        """The variables that are bound to an unknown value."""
+        self._fact: str | None = None
+        """What the current condition has found, and how that is known."""
+        self._how: str | None = None
+        self.seen: str | None = None
+        """How the facts that it depends on are known; None if all are certain."""
+        self.bindings: dict[str, str] = {}
+        """The variables bound by the conditions before the failing one, as text."""
+        self.failure: Failure | None = None
+        self.conditions = tuple(self._try(number, condition) for number, condition in enumerate(production.conditions))
+
+    @property
+    def matches(self) -> bool | None:
+        """Whether all conditions hold; None if that is not known."""
+        return self.failure is None or (None if self.failure.unknown else False)
+
+    def _try(self, number: int, condition: Condition) -> ConditionReason:
+        """Tests one condition; the first that fails decides the result."""
+        settled = self.failure is not None
+        self._fact = self._how = None
+        failure = self._failure(number, condition)
+        if not settled:
+            self.failure = failure
+            self.seen = self._how or self.seen
+            self.bindings = {name: as_text(value) for name, value in self._bound.items()}
+        if failure is None:
+            found = self._fact or "what is not known"
+            return ConditionReason(condition=_text(condition), holds=True, expected=self._expected(condition), found=found, seen=self._how)
+        holds = None if failure.unknown else False
+        return ConditionReason(condition=failure.condition, holds=holds, expected=failure.expected, found=failure.found, seen=self._how)
+
+    def _expected(self, condition: Condition) -> str:
+        if condition.op in ("empty", "call"):
+            return "nothing in it" if condition.op == "empty" else "anything but False"
+        return _expected(condition, self._bound.get(condition.value) if condition.op in ("same", "differs") else condition.value)
+
+    def _failure(self, number: int, condition: Condition) -> Failure | None:
+        op, name, key, value = condition
+        name = name or "self"
+        system = self._system
+        if op == "call":
+            return self._failure_of_function(number, condition)
+        if op == "empty":
+            fact = self._known(self._state.empty(system, name))
+            if is_unknown(fact.value):
+                return self._unknown(_text(condition), "nothing in it", fact.seen)
+            self._fact = "nothing in it" if fact.value else "something"
+            return None if fact.value else Failure(condition=_text(condition), expected="nothing in it", found="something")
+        if isinstance(key, str) and key[:1] == "?":
+            if key[1:] in self._open:
+                return self._unknown(_text(condition), f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
+            if key[1:] not in self._bound:
+                return self._not_bound(condition, f"a slot that ?{key[1:]} names", key[1:])
+            key = slot_named(self._bound[key[1:]])
+        fact = self._known(self._state.slot(system, name, key))
+        wanted = self._bound.get(value) if op in ("same", "differs") else value
+        expected = _expected(condition, wanted)
+        if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
+            if op == "bind":
+                self._open.add(value)
+            return self._unknown(_text(condition), expected, fact.seen)
+        if isinstance(fact.value, Missing):
+            return Failure(condition=_text(condition), expected=expected, found=self._nothing(name, key))
+        if op in ("same", "differs") and value not in self._bound:
+            return self._not_bound(condition, f"{'anything but ' if op == 'differs' else ''}?{value}", value)
+        self._fact = f"'{fact.value}'"
+        if op == "bind":
+            self._bound[value] = fact.value
+        elif (fact.value == wanted) != (op in ("is", "same")):
+            return Failure(condition=_text(condition), expected=expected, found=self._fact)
+        return None
+
+    def _known(self, fact: Fact) -> Fact:
+        if not is_unknown(fact.value):
+            self._how = fact.seen
+        return fact
+
+    def _nothing(self, name: str, key: Any) -> str:
+        known = self._state.slots(self._system, name)
+        return f"no slot '{key}'{did_you_mean(str(key), known)}" if known else f"{name} is empty"
+
+    def _not_bound(self, condition: Condition, expected: str, variable: str) -> Failure:
+        """Returns the failure of an unbound variable; it is not certain if an earlier condition, which may bind it, has failed."""
+        settled = self.failure is not None
+        return Failure(condition=_text(condition), expected=expected, found=f"?{variable} is not bound", unknown=settled)
+
+    def _failure_of_function(self, number: int, condition: Condition) -> Failure | None:
+        answer = self._state.answer(self._system, self._production, number)
+        text, expected = _text(condition), "anything but False"
+        if self.failure is not None:
+            return _not_known(text, expected, "it is asked only where all before it holds")
+        if answer is None:
+            return self._unknown(text, expected, "it has not been asked")
+        self._how = answer.seen
+        if self._open or _texts(answer.given) != _texts(self._bound):
+            with_what = " ".join(f"?{name}={as_text(value)}" for name, value in answer.given.items())
+            return _not_known(text, expected, f"it was last asked with {with_what or 'no variables'}")
+        if not answer.agrees:
+            return Failure(condition=text, expected=expected, found="False, or an error for want of a slot")
+        self._bound.update(answer.bound)
+        self._fact = "it agreed"
+        return None
+
+    def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
+        """Returns None, for a condition that holds, if the production matched last; otherwise an unknown failure."""
+        if self.failure is None and self._state.matched(self._system, self._production):
+            self._how = AT_THE_LAST_MATCH
+            return None
+        return _not_known(text, expected, why or "it depends on what is not known")
+
+
+def _text(condition: Condition) -> str:
+    """Returns a condition as text, with the name of the object that it tests."""
+    return f"{condition.name or 'self'}: {'None' if condition.op == 'empty' else condition}"
+
+
+def _not_known(text: str, expected: str, why: str) -> Failure:
+    return Failure(condition=text, expected=expected, found=f"what is not known ({why})", unknown=True)
+
+
+def _texts(bound: Bindings) -> dict[str, str]:
+    return {name: as_text(value) for name, value in bound.items()}
+
+
+def _expected(condition: Condition, wanted: Any) -> str:
+    """Returns what a condition on a slot expects."""
+    op, value = condition.op, condition.value
+    if op == "bind":
+        return f"some value for ?{value}"
+    named = f" (?{value})" if op in ("same", "differs") else ""
+    return f"{'anything but ' if op in ('not', 'differs') else ''}'{wanted}'{named}"

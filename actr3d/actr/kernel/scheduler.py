@@ -1,0 +1,506 @@
+"""The clock and the event queue of a run: makes plain calls and lets generators go on when their time comes."""
+
+from __future__ import annotations
+
+import copy
+from collections import deque
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
+from heapq import heapify, heappop
+from numbers import Real
+from typing import Any, Literal, cast
+
+from actr3d.actr.kernel.events import AGAIN, NOTHING_LEFT, Call, Event, Trigger, makes_generator
+from actr3d.actr.kernel.log import LOG
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
+from actr3d.errors import SchedulerError, did_you_mean
+from actr3d.saying import warn_at_frame, warn_modeller
+from actr3d.trace import Trace
+
+NEVER = 1 << 62
+"""A time that does not come [us]."""
+STANDSTILL = 200_000
+"""So many events without any time passing are an endless loop, not a model."""
+END = -9999999
+"""The priority of a run's end: everything else of that moment comes before it."""
+FAR = 1e12
+"""Delays up to here [s] need no further look."""
+NO_PART = 1e-9
+"""A smaller part of a microsecond is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
+MOST_LEFT = 32
+"""Of so many different delays an event carries what rounding has left over; a model has fewer that come again and again. One sum of
+all that is left over would do for any number, but moves the times of random delays by a microsecond: printed with few digits, some
+then differ from python_actr's."""
+
+Ending = Literal["limit", "until", "stop", "done"]
+"""What ended a run: its own limit, the limits of the program, `stop`, or that nothing was left to do."""
+
+
+class Scheduler:
+    """The clock and the event queue of one run; all models below one top model share it.
+
+    Args:
+        first_come: Whether simultaneous events of one priority happen in the order they were scheduled. Otherwise they
+            happen in the order that python_actr 1.9.5 has, which depends on all events that are queued; so there must
+            be the same ones, also those that do nothing.
+    """
+
+    def __init__(self, first_come: bool = True) -> None:
+        self.queue: EventQueue[Call] = EventQueue(first_come)
+        self.now_us = 0
+        """The present, in whole microseconds."""
+        self.left: Mapping[float, float] = NOTHING_LEFT
+        """What rounding to whole microseconds has left over of the delays that led to the present event, by delay [us]. The next
+        equal delay that follows from it takes that in, so that a series of equal delays does not drift: 60 times 1/60 s is 1 s.
+        The times of retrievals, which come from activations, are rounded each by itself."""
+        self.ended_by: Ending = "done"
+        """What ended the latest run."""
+        self.bound: dict[str, Any] | None = None
+        """What the production that fired last had bound; `?name` in a chunk's text means these."""
+        self.fired: Any = None
+        """The production that fired last; errors name it."""
+        self.firing: Any = None
+        """The production whose body is being carried out; errors in what it sets going name it."""
+        self.trace: Trace | None = None
+        self.seed: int | str | None = None
+        """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
+        self.stop_flag = False
+        self._run_number = 0
+        self.step = 0
+        """How many events have happened."""
+        self.harvests = False
+        """Whether there is a memory that collects what leaves buffers, as in ACT-R 7."""
+        self.round_ms = False
+        """Whether there are models that go by ACT-R 7's numbers, whose events happen at whole milliseconds."""
+        self.limits: RunLimits | None = RunLimits.current()
+        self.in_lockstep = False
+        """Whether a simulation lets its time pass, tick by tick, and asks the limits for it."""
+        if self.limits is not None:
+            self.limits.clock = lambda: self.now_us
+        self._ends = Ends()
+        self._running = False
+        self._named: dict[str, Trigger] = {}
+        self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
+
+    @property
+    def time(self) -> float:
+        """The present [s]."""
+        return seconds(self.now_us)
+
+    def add(
+        self,
+        func: Callable[..., Any],
+        delay: float = 0,
+        args: Sequence[Any] = (),
+        keys: Mapping[str, Any] | None = None,
+        priority: float = 0,
+        thread_safe: bool = False,
+    ) -> Event | None:
+        """Schedules a call, or starts a generator, `delay` seconds from now.
+
+        Args:
+            func: What to call; a generator function is run until it ends, waiting for what it yields.
+            delay: When [s from now].
+            args: Its arguments.
+            keys: Its keyword arguments.
+            priority: Among simultaneous events the higher comes first.
+            thread_safe: Whether the caller is another thread; the call then waits until the running event is over.
+
+        Raises:
+            SchedulerError: If the delay is negative or not a number.
+        """
+        if thread_safe:
+            self._incoming.append((func, delay, args, keys, priority))
+            return None
+        generator = func(*args, **(keys or {})) if makes_generator(func) else None
+        event = Event(func, args, keys, priority, generator)
+        self.put(event, delay, priority)
+        return event
+
+    def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
+        """Schedules a plain call of the library's own, which returns None; its delay is rounded by itself."""
+        event = Call(call, args)
+        kept, self.left = self.left, NOTHING_LEFT
+        self.put(event, delay)
+        self.left = kept
+        return event
+
+    def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
+        """Schedules such a call at a time [us] that `after` gave."""
+        event = Call(call, args)
+        if time == self.now_us:
+            event.left = self.left
+        self.queue.push(time, event, 0, (time - self.now_us) / MICROSECONDS)
+        return event
+
+    def drop(self, events: Collection[Call]) -> None:
+        """Takes events out of the queue that have no effect any more, so that no run waits for them."""
+        heap = self.queue.heap
+        left = [entry for entry in heap if not any(entry[3] is event for event in events)]
+        if len(left) < len(heap):
+            heap[:] = left
+            heapify(heap)
+
+    def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
+        """Lets a generator, which `call` has made, run from now on."""
+        event = Event(call, generator=generator)
+        self.put_now(event)
+        return event
+
+    def put(self, event: Call, delay: float, priority: float = 0) -> None:
+        """Puts an event into the queue, `delay` seconds from now.
+
+        What rounding leaves over of the delay, the next equal delay takes in; see `left`. Models whose events happen at whole
+        milliseconds have them there, and nothing is taken in, as in ACT-R 7.
+
+        Raises:
+            SchedulerError: If the delay is negative or not a finite number.
+        """
+        kind = type(delay)
+        if not ((kind is float or kind is int) and 0 <= delay < FAR):
+            self._checked(delay, f"{event.describe()}: a delay")
+            delay = float(delay)
+        exact = delay * MICROSECONDS
+        later = round(exact)
+        part = exact - later
+        left = event.left = self.left
+        if self.round_ms and later > 0 and event.profile.whole_milliseconds:
+            time = max(self.now_us, round((self.now_us + later) / 1000) * 1000)
+        elif -NO_PART < part < NO_PART:
+            time = self.now_us + later
+        else:
+            part += left.get(delay, 0.0)
+            more = round(part)
+            time = self.now_us + later + more
+            kept = {known: of for known, of in left.items() if known != delay} if len(left) > 1 or delay not in left else {}
+            if len(kept) >= MOST_LEFT:
+                del kept[next(iter(kept))]
+            kept[delay] = part - more
+            event.left = kept
+        self.queue.push(time, event, priority, delay)
+
+    def forget_left(self) -> None:
+        """Makes the delays that follow from the present event rounded by themselves, whatever was left over before."""
+        self.left = NOTHING_LEFT
+
+    def put_now(self, event: Event) -> None:
+        """Puts an event into the queue at this very moment, with its own priority."""
+        event.left = self.left
+        self.queue.push(self.now_us, event, event.priority)
+
+    def after(self, delay: float) -> int:
+        """Returns the time `delay` seconds from now [us].
+
+        Raises:
+            SchedulerError: If the delay is negative or not a finite number.
+        """
+        return self.now_us + self._checked(delay, "a delay")
+
+    @staticmethod
+    def _checked(delay: float, what: str) -> int:
+        later = microseconds(delay, what)
+        if later < 0:
+            raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
+        return later
+
+    def trigger(self, key: Trigger | str, priority: float | None = None) -> None:
+        """Wakes everything that waits for a trigger or for a name."""
+        self.wake(self.named(key) if isinstance(key, str) else key, priority)
+
+    def wake(self, trigger: Trigger, priority: float | None) -> None:
+        """Lets what waits for a trigger go on at this moment, with this priority from now on unless it is None."""
+        waiting, trigger.waiting = trigger.waiting, []
+        for event in waiting:
+            if priority is not None:
+                event.priority = priority
+            self.put_now(event)
+
+    def named(self, name: str) -> Trigger:
+        """Returns the trigger of a name."""
+        return self._named.setdefault(name, Trigger(name))
+
+    def take_over(self, other: Scheduler) -> None:
+        """Takes everything over from another scheduler: its events, who waits there for a name, what other threads have added."""
+        while other.queue.heap:
+            time, priority, event = other.queue.take()
+            if time < self.now_us:
+                time = self.now_us
+            self.queue.push(time, event, priority, seconds(time - self.now_us))
+        for name, trigger in other._named.items():
+            self.named(name).waiting += trigger.waiting
+        self._incoming += other._incoming
+        other._named.clear()
+        other._incoming.clear()
+        self.round_ms = self.round_ms or other.round_ms
+        self.harvests = self.harvests or other.harvests
+
+    def stop(self) -> None:
+        """Ends the run once the present event is over."""
+        self.stop_flag = True
+
+    def run(self, duration: float | None = None) -> None:
+        """Runs until nothing is left to do, `stop` is called, or `duration` seconds have passed.
+
+        Events at exactly the end belong to this run. After a run that was not stopped the clock stands at its end. The
+        limits of the program cut a run that needs more time than they give; they change nothing else.
+
+        Raises:
+            SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
+            EndOfRun: If the limits of the program leave no time, and the run needs some; or if they cut an earlier run.
+        """
+        end = None if duration is None else self._ends.after(self.now_us, duration)
+        length = float(duration or 0)
+        limits = self.limits
+        if limits is None:
+            self._run_until(end, None, length)
+            return
+        last = limits.clip()
+        none_left = last is not None and last <= self.now_us
+        self._run_until(end, self.now_us if none_left else last, length)
+        if self.ended_by == "until":
+            wanted = self.now_us + 1
+            if none_left:
+                limits.refuse(wanted)
+            limits.cut(wanted)
+
+    def _run_until(self, end: int | None, last: int | None, length: float) -> None:
+        """Runs to a time [us], if any, that is `length` [s] from now, but not beyond the last moment [us] that limits allow, if any."""
+        total = self.queue.sum + length
+        self.stop_flag = False
+        heap = self.queue.heap
+        until = end if last is None or (end is not None and end <= last) else last
+        idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
+        if end is not None and not self.queue.first_come and not (idle and until != end):
+            self._run_number += 1
+            self.queue.push(end, Call(self._end, (self._run_number,)), END, length)
+            if idle:
+                self.queue.pop()
+        if not idle:
+            self._run_on(until)
+        if end is not None and (self.now_us >= end or (until == end and not self.stop_flag)):
+            self.ended_by = "limit"
+            if end > self.now_us:
+                self._advance(end, total)
+        elif self.stop_flag:
+            self.ended_by = "stop"
+        elif end is None and not heap and not self._incoming:
+            self.ended_by = "done"
+        else:
+            self.ended_by = "until"
+            assert until is not None
+            if until > self.now_us:
+                self._advance(until, seconds(until))
+
+    def _run_on(self, until: int | None) -> None:
+        """Lets what is queued happen, up to a time [us], if any; warns where a run is under way already."""
+        if self._running:
+            warn_modeller(
+                f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
+                "to let time pass, yield a number of seconds"
+            )
+        before, self._running = self._running, True
+        try:
+            self._run_events(until)
+        finally:
+            self._running = before
+
+    def _end(self, run_number: int) -> None:
+        """Ends the run that asked for it; one that was stopped before leaves this without effect."""
+        if run_number == self._run_number:
+            self.stop_flag = True
+
+    def _run_events(self, until: int | None) -> None:
+        """Lets what is queued happen, until nothing is left up to then, or the run is stopped."""
+        queue = self.queue
+        heap = queue.heap
+        end = NEVER if until is None else until
+        passing = None if self.limits is None or self.in_lockstep else self.limits.passing
+        still = 0
+        while not self.stop_flag:
+            if self._incoming:
+                self._take_incoming()
+            if not heap or (time := heap[0][0]) > end:
+                break
+            if time > self.now_us:
+                if passing is not None:
+                    passing(self.now_us, time)
+                self.now_us = LOG.time_us = time
+                still = 0
+            else:
+                still += 1
+                if still > STANDSTILL:
+                    raise self._standstill(heap[0][3])
+            self.step += 1
+            _, queue.sum, _, event = heappop(heap)
+            self.left = event.left
+            if isinstance(event, Event):
+                self._happen(event)
+            else:
+                event.call(*event.args)
+
+    def _happen(self, event: Event) -> None:
+        """Makes an event's call, or lets its generator go on to what it waits for next."""
+        if event.group:
+            if event.cancelled:
+                return
+            others = event.cancel_others()
+            if self.round_ms and not event.profile.awaits_expiry:
+                self.drop(others)
+        generator = event.generator
+        if generator is None:
+            result = event.call(*event.args, **event.keys)
+            if result is None:
+                self.finish(event)
+            else:
+                wait(self, event, result)
+            return
+        try:
+            result = next(generator)
+        except StopIteration:
+            self.finish(event)
+            return
+        if type(result) is float:
+            self.put(event, result, event.priority)
+        elif type(result) is Trigger:
+            result.waiting.append(event)
+        elif result is AGAIN:
+            self.put_now(event)
+        else:
+            if result is None:
+                warn_of_none(event)
+            wait(self, event, result)
+
+    def _standstill(self, event: Call) -> SchedulerError:
+        """Makes the error that tells of an endless loop in which no time passes, and what was in it."""
+        last = self.fired
+        whose = getattr(getattr(event.call, "__self__", None), "_path", None)
+        return SchedulerError(
+            f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            + (f" of '{whose}'" if whose else "")
+            + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
+        )
+
+    def _take_incoming(self) -> None:
+        """Schedules what other threads have asked for."""
+        while self._incoming:
+            func, delay, args, keys, priority = self._incoming.popleft()
+            self.add(func, delay, args, keys, priority)
+
+    def idle_now(self) -> bool:
+        """Returns whether nothing else is to happen before time passes, so that what comes last may come at once."""
+        heap = self.queue.heap
+        if not self.queue.first_come:
+            return False
+        return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self._incoming
+
+    def _advance(self, time: int, total: float) -> None:
+        """Lets time pass without events, until then [us], which is also a sum of delays [s]."""
+        if self.limits is not None and self.limits.passing is not None and not self.in_lockstep and time > self.now_us:
+            self.limits.passing(self.now_us, time)
+        self.now_us = time
+        self.left = NOTHING_LEFT
+        self.queue.sum = total
+        LOG.time_us = time
+
+    def finish(self, event: Event) -> None:
+        """Notes that an event is over, and wakes those that waited for it."""
+        event.done = event.origin.done = True
+        for parent in event.parents:
+            self.put_now(parent)
+        event.parents = []
+
+
+# -- what a generator may wait for
+
+
+def wait(sch: Scheduler, event: Event, result: Any) -> None:
+    """Schedules an event according to what its generator has yielded: a delay, a trigger, another event, or the first of several.
+
+    Args:
+        sch: The scheduler of the event.
+        event: The event that waits.
+        result: The value that was yielded.
+
+    Raises:
+        SchedulerError: If nothing can wait for it: it has another type, is empty, or its delay is not a time.
+    """
+    if isinstance(result, (int, float)):
+        sch.put(event, result, event.priority)
+    elif isinstance(result, dict):
+        _wait_as(sch, event, cast("dict[str, Any]", result))
+    elif isinstance(result, (Trigger, str)):
+        trigger = sch.named(result) if isinstance(result, str) else result
+        if event.group:
+            trigger.add_one_of_several(event)
+        else:
+            trigger.waiting.append(event)
+    elif isinstance(result, (list, tuple)):
+        _wait_for_first(sch, event, cast("Sequence[Any]", result))
+    elif result is None:
+        sch.finish(event)
+    elif isinstance(result, Event):
+        if result.done:
+            sch.put_now(event)
+        else:
+            result.parents.append(event)
+    elif hasattr(result, "default_trigger"):
+        wait(sch, event, result.default_trigger)
+    elif isinstance(result, Real):  # a number of another kind, such as numpy's
+        sch.put(event, float(result), event.priority)
+    else:
+        raise SchedulerError(
+            f"{event.describe()}: cannot wait for {result!r}; yield a number of seconds, a trigger or its name, a method, "
+            "the event of a called generator method, or a tuple of these"
+        )
+
+
+def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> None:
+    """Schedules one alternative of an event for each of several things; the first that happens cancels the others."""
+    choices = list(_each(several))
+    if any(choice is None for choice in choices):
+        warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
+    if not choices:
+        raise SchedulerError(f"{event.describe()}: cannot wait for {several!r}; nothing is in it")
+    events = [copy.copy(event) for _ in choices]
+    for alternative in events:
+        alternative.group = events
+    for choice, alternative in zip(choices, events, strict=True):
+        wait(sch, alternative, choice)
+
+
+def _wait_as(sch: Scheduler, event: Event, how: dict[str, Any]) -> None:
+    """Schedules an event after a dict's `delay`, with its `priority` from now on."""
+    for word in how:
+        if word not in ("delay", "priority"):
+            near = did_you_mean(str(word), ("delay", "priority"))
+            raise SchedulerError(f"{event.describe()}: cannot wait for {how!r}: no '{word}'{near or '; use delay and priority'}")
+    priority = how.get("priority", event.priority)
+    if not isinstance(priority, (int, float)):
+        raise SchedulerError(f"{event.describe()}: a priority must be a number (got {priority!r})")
+    event.priority = priority
+    sch.put(event, how.get("delay", 0), priority)
+
+
+def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:
+    """Warns about a generator that yielded None, at the line of the `yield`.
+
+    Args:
+        event: The generator's event.
+        what: The value that was yielded, and its effect.
+    """
+    generator = event.innermost
+    frame = generator.gi_frame if generator is not None else None
+    if frame is not None:
+        warn_at_frame(
+            f"{frame.f_code.co_qualname} yields {what}: what it calls may not be a generator, or a number of seconds is missing",
+            frame,
+        )
+
+
+def _each(choices: Sequence[Any]) -> Iterator[Any]:
+    """Yields the alternatives, also those in nested sequences."""
+    for choice in choices:
+        if isinstance(choice, (list, tuple)):
+            yield from _each(cast("Sequence[Any]", choice))
+        else:
+            yield choice

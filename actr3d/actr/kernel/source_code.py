@@ -1,0 +1,113 @@
+"""Finds the source of a modeller's functions, so that their bodies can be read and run as productions."""
+
+from __future__ import annotations
+
+import ast
+import dis
+import linecache
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.kernel.log import LOG
+
+SOURCE = "__actr3d_source__"
+"""The global in which a module loaded from text keeps that text; another text may get the same name later."""
+
+
+class FileName(str):
+    """The name of one loaded text: it compares with other strings by its characters, but no two `FileName`s are equal.
+
+    Tracebacks look up lines by a file's name, and two texts may have the same name; this keeps their lines apart.
+    """
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        return self is other if isinstance(other, FileName) else str.__eq__(self, other)
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    __hash__ = str.__hash__
+
+
+def keep_lines(source: str, filename: FileName) -> None:
+    """Provides a text's lines to tracebacks, until `drop_lines`."""
+    linecache.cache.pop(filename, None)  # the lines of a file on disk with this name, which would be used for every text
+    linecache.cache[filename] = (len(source), None, [f"{line}\n" for line in source.split("\n")], str(filename))
+
+
+def drop_lines(filenames: Iterable[FileName]) -> None:
+    """Removes the lines of texts."""
+    for filename in filenames:
+        linecache.cache.pop(filename, None)
+
+
+@lru_cache(maxsize=64)
+def syntax_tree(text: str) -> ast.Module:
+    """Parses a file's text; returns an empty tree if it is no longer Python (the file has changed since it was loaded)."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the compiler has issued all warnings about the file
+            return ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ast.Module([], [])
+
+
+@lru_cache(maxsize=64)
+def _functions(text: str) -> dict[tuple[str, int], ast.FunctionDef]:
+    """Returns every function of a file by its name and first line (that of its first decorator)."""
+    found: dict[tuple[str, int], ast.FunctionDef] = {}
+    for node in ast.walk(syntax_tree(text)):
+        if isinstance(node, ast.FunctionDef):
+            line = min([node.lineno, *(d.lineno for d in node.decorator_list)])
+            found[node.name, line] = node
+    return found
+
+
+def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
+    """Returns the syntax tree of a function's definition, or None if its source is not available."""
+    code = func.__code__
+    return _functions(source_of(func)).get((code.co_name, code.co_firstlineno))
+
+
+def source_of(func: Callable[..., Any]) -> str:
+    """Returns the text of a function's file: the loaded text if this library loaded it, otherwise the current one."""
+    names = func.__globals__
+    filename = func.__code__.co_filename
+    if SOURCE in names and names.get("__file__") == filename:
+        return names[SOURCE]
+    return "".join(linecache.getlines(filename, names))
+
+
+def has_file(func: Callable[..., Any]) -> bool:
+    """Returns whether the file of a function exists."""
+    return Path(func.__code__.co_filename).is_file()
+
+
+def place(func: Callable[..., Any]) -> str:
+    """Returns `file:line` of a function's definition."""
+    return f"{func.__code__.co_filename}:{func.__code__.co_firstlineno}"
+
+
+def assigned_globals(func: Callable[..., Any]) -> set[str]:
+    """Returns the names that a function declares global and assigns."""
+    code = func.__code__
+    if not _STORE_GLOBAL & set(code.co_code[::2]):
+        return set()
+    return {step.argval for step in dis.get_instructions(code) if step.opname == "STORE_GLOBAL"}
+
+
+_STORE_GLOBAL = {dis.opmap["STORE_GLOBAL"]}
+
+
+WRITTEN_FOR_PYTHON_ACTR = "__written_for_python_actr__"
+"""The global that marks the module of a loaded model as importing python_actr or ccm by name."""
+
+
+def for_python_actr(file: Mapping[str, Any]) -> bool:
+    """Returns whether a file, given its globals, is part of a program that imports python_actr or ccm by name."""
+    return LOG.announce or bool(file.get(WRITTEN_FOR_PYTHON_ACTR))

@@ -1,0 +1,63 @@
+"""Runs all checks of a model, once for each class, when an agent begins.
+
+A check only warns (`ModelWarning`, at the modeller's own file and line); it never changes what the model does, and
+reads nothing whose reading could.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from weakref import WeakSet
+
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.tree import subtree, top_of
+from actr3d.actr.lint.classes import check_names_of_methods, check_parameters, is_modellers
+from actr3d.actr.lint.contradictions import check_contradictions
+from actr3d.actr.lint.method_calls import check_actions, check_modeller_method
+from actr3d.actr.lint.patterns import check_patterns, check_slots, check_variables
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+
+_CHECKED: WeakSet[type] = WeakSet()
+_CHECKED_CLASSES: WeakSet[type] = WeakSet()
+
+
+def check_agent(system: ProductionSystem) -> Callable[[], None] | None:
+    """Checks an agent's class before its first cycle, once per class.
+
+    Returns:
+        The check of names and values in patterns, for when the methods without parameters have run; None if the class has been
+        checked before.
+    """
+    if type(system) in _CHECKED:
+        return None
+    _CHECKED.add(type(system))
+    rules = rules_of(system)
+    for production in rules.productions:
+        check_contradictions(production)
+        check_variables(production)
+        check_patterns(production)
+    for production in (*rules.initializers, *rules.productions):
+        check_actions(production, rules.productions)
+    check_classes(top_of(system))
+    check_parameters(system)
+
+    def check_names() -> None:
+        for production in rules.productions:
+            check_slots(production)
+
+    return check_names
+
+
+def check_classes(top: Model) -> None:
+    """Checks the methods that modellers have written in the classes of a tree's parts."""
+    for part in subtree(top):
+        for klass in type(part).__mro__:
+            if not is_modellers(klass) or klass in _CHECKED_CLASSES:
+                continue
+            _CHECKED_CLASSES.add(klass)
+            functions = [member for member in vars(klass).values() if inspect.isfunction(member)]
+            if functions:
+                check_names_of_methods(klass, functions[0])
+                for func in functions:
+                    check_modeller_method(func, part)

@@ -1,0 +1,169 @@
+"""Checks the code of modellers' methods: forgotten calls, and unknown names."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from actr3d.actr.chunks.chunk import parse_slots
+from actr3d.actr.chunks.pattern import parse
+from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.declarative.partial_matching import Partial
+from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.class_members import MethodWrapper
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.source_code import function_node, source_of
+from actr3d.actr.lint.patterns import SURE, slots_held
+from actr3d.actr.lint.slot_names import GIVERS, READERS, slip_of, slots_in, text_of, vocabulary
+from actr3d.actr.modules.imaginal import ImaginalModule
+from actr3d.actr.procedural.production import Production
+from actr3d.errors import PatternException, did_you_mean
+from actr3d.saying import warn_at
+
+_VARIABLE = re.compile(r"(?<!\w)\?(\w+)")
+
+
+def check_actions(production: Production, productions: Sequence[Production]) -> None:
+    """Warns about likely mistakes in a production's body, or in a method without parameters."""
+    node = function_node(production.original_func)
+    if node is None:
+        return
+    func, context = production.original_func, production.context
+    where = f"production '{production.name}': "
+    _check_brackets(node, func, context)
+    known = {*production.variables, *production.assigned}
+    for call, owner, method in _calls(node, context):
+        _check_slots(call, owner, method, func, where, context)
+        if method == "modify":
+            _check_values(call, production, productions)
+        elif not production.more_bound:  # a function among the patterns may bind any variable
+            check = _check_variables if method in GIVERS else _check_wildcards if method in READERS else None
+            if check is not None:
+                check(call, func, where, known)
+
+
+def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
+    """Warns about likely mistakes in a part's method that is no production."""
+    node = function_node(func)
+    if node is None or not node.args.args or len(node.args.args) == len(node.args.defaults):
+        return
+    names = {node.args.args[0].arg: part}
+    _check_brackets(node, func, names)
+    for call, owner, method in _calls(node, names):
+        _check_slots(call, owner, method, func, f"{func.__qualname__}: ", names)
+
+
+def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapping[str, Any]) -> None:
+    """Finds statements that name a method without calling it."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute) and _is_method(part.value, names):
+            text = ast.unparse(part.value)
+            warn_at(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
+
+
+def _is_method(node: ast.Attribute, names: Mapping[str, Any]) -> bool:
+    """Returns whether a dotted path leads to a method of a part of the model."""
+    owner = _resolve(node.value, names)
+    if not isinstance(owner, (Model, Partial)):
+        return False
+    if node.attr in vars(owner):
+        return isinstance(vars(owner)[node.attr], MethodWrapper)
+    return inspect.isfunction(inspect.getattr_static(type(owner), node.attr, None))
+
+
+def _resolve(node: ast.expr, names: Mapping[str, Any]) -> Any:
+    """Returns the object that a name or a dotted path of models' attributes refers to; None if it is not known."""
+    if isinstance(node, ast.Name):
+        return names.get(node.id)
+    if isinstance(node, ast.Attribute):
+        owner = _resolve(node.value, names)
+        return vars(owner).get(node.attr) if isinstance(owner, Model) else None
+    return None
+
+
+def _calls(node: ast.FunctionDef, names: Mapping[str, Any]) -> Iterator[tuple[ast.Call, object, str]]:
+    """Yields the calls of methods that make, change or search for chunks, with the owners and names of the methods."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
+            owner = _resolve(part.func.value, names)
+            if isinstance(owner, (Buffer, Memory, ImaginalModule, Partial)):
+                yield part, owner, part.func.attr
+
+
+def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[..., Any], where: str, names: Mapping[str, Any]) -> None:
+    """Finds slots that are requested or changed but never set, or set but never read, if there is a similar one."""
+    words = vocabulary(func)
+    text = (text_of(call.args[0]) or "") if call.args else ""
+    if method in READERS and isinstance(owner, (Memory, Partial)):
+        slots = [slot for slot in slots_in(text) if slot not in words.giving]
+        found = [(slot, f"no chunk is ever given a slot '{slot}'", did_you_mean(slot, words.given, SURE)) for slot in slots]
+    elif method == "modify":
+        changed = [keyword.arg for keyword in call.keywords if keyword.arg and keyword.arg[0] != "_"]
+        slots = [slot for slot in changed if slot not in words.given | words.mentioned | words.matched | words.asked]
+        found = [(slot, f"no chunk is ever given a slot '{slot}'", did_you_mean(slot, words.given, SURE)) for slot in slots]
+    elif method in GIVERS:
+        read = words.matched | words.asked
+        slots = [slot for slot in slots_in(text) if slot not in read | words.mentioned | words.modified]
+        read &= words.giving  # slots that are read but never set are reported where they are read
+        near = [(slot, slip_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
+        found = [(slot, f"nothing ever looks at a slot '{slot}'", f"; did you mean '{meant}'?") for slot, meant in near if meant]
+    else:
+        return
+    for slot, what, hint in found:
+        if hint and (method in GIVERS or slot not in slots_held(names.values())):
+            warn_at(f"{where}{what}{hint}", func, call.lineno)
+
+
+def _check_variables(call: ast.Call, func: Callable[..., Any], where: str, known: set[str]) -> None:
+    """Finds variables in a chunk's text that nothing binds."""
+    if call.args and isinstance(call.args[0], ast.Constant) and isinstance(call.args[0].value, str):
+        text = call.args[0].value
+        for _, value in parse_slots(text):
+            if value[:1] == "?" and value[1:] not in known:
+                hint = did_you_mean(value[1:], known)
+                warn_at(f"{where}nothing binds '{value}' in '{text}'{hint}", func, call.lineno)
+
+
+def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known: set[str]) -> None:
+    """Finds variables in a request that match anything, but whose names are similar to a bound one and occur nowhere else."""
+    if not (call.args and isinstance(call.args[0], ast.Constant) and isinstance(call.args[0].value, str)):
+        return
+    text = call.args[0].value
+    try:
+        names = {word for _, sign, word in parse(text) if sign in ("?", "!?")} - known
+    except PatternException:
+        return  # the request itself will raise this
+    everywhere = _VARIABLE.findall(source_of(func))
+    for name in sorted(names):
+        meant = slip_of(name, known)
+        if meant and everywhere.count(name) == 1:
+            warn_at(f"{where}'?{name}' in '{text}' matches anything; did you mean '?{meant}'?", func, call.lineno)
+
+
+def _check_values(call: ast.Call, production: Production, productions: Sequence[Production]) -> None:
+    """Finds values that contain a variable's name, or a space although patterns compare the slot with a word."""
+    for keyword in call.keywords:
+        value = keyword.value.value if isinstance(keyword.value, ast.Constant) else None
+        if not isinstance(value, str):
+            continue
+        variables = _VARIABLE.findall(value)
+        if variables and value == f"?{variables[0]}":
+            hint = f"; the variable's value is {keyword.arg}={variables[0]}"
+        elif variables:
+            meant = _VARIABLE.sub("{\\1}", value)
+            hint = f"; with the variable's value it is {keyword.arg}=f'{meant}'"
+        elif len(value.split()) > 1 and _is_compared(keyword.arg, productions):
+            hint = ", which no pattern can name, for there is a space in it; write one word"
+        else:
+            continue
+        message = f"production '{production.name}': {keyword.arg}={value!r} stores this text literally{hint}"
+        warn_at(message, production.original_func, call.lineno)
+
+
+def _is_compared(slot: str | None, productions: Sequence[Production]) -> bool:
+    """Returns whether patterns of the agent compare a slot with a word."""
+    conditions = [condition for production in productions for condition in production.conditions]
+    return any(c.op in ("is", "not") and c.key == slot for c in conditions)

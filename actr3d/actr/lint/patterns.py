@@ -1,0 +1,130 @@
+"""Checks the patterns of productions: their types, variables, slots and values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from typing import Any, cast
+
+from actr3d.actr.chunks.pattern import MISSING, Condition
+from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.lint.slot_inference import all_slots
+from actr3d.actr.lint.slot_names import vocabulary
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.safe_reading import UNKNOWN, plain_value
+from actr3d.errors import did_you_mean
+from actr3d.saying import warn_at
+
+SURE = 0.74
+"""The similarity to another name (0 to 1) from which a name counts as misspelt."""
+
+
+def check_patterns(production: Production) -> None:
+    """Warns about objects that are no patterns, and therefore match anything."""
+    for name, pattern in production.pattern_specs.items():
+        parts = cast("list[Any]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
+        for part in parts:
+            if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
+                _say(production, f"{name}={part!r} is no pattern and matches anything; write text, such as {name}='{part}'")
+
+
+def check_variables(production: Production) -> None:
+    """Warns about variables that are compared, or name a slot, before they are bound."""
+    bound: set[str] = set()
+    if production.more_bound:
+        return  # a function may bind any
+    for condition in production.conditions:
+        key = condition.key
+        needed = [key[1:]] if isinstance(key, str) and key[:1] == "?" else []
+        needed += [condition.value] if condition.op in ("same", "differs") else []
+        for name in needed:
+            if name not in bound:
+                hint = did_you_mean(name, production.variables)
+                _never(production, f"nothing binds '?{name}' before {condition.name}'s '{condition}' needs it{hint}")
+                return
+        if condition.op == "bind":
+            bound.add(condition.value)
+
+
+def check_slots(production: Production) -> None:
+    """Warns about slots that are never set, about missing attributes of objects, and about states that never occur."""
+    for condition in production.conditions:
+        key = condition.key
+        if condition.op in ("empty", "call") or (isinstance(key, str) and key[:1] == "?"):
+            continue
+        target = production.context[condition.name or "self"]
+        if isinstance(target, Buffer):
+            _check_slot(production, key)
+        elif isinstance(key, str):
+            missing, hint = _missing_attribute(target, key)
+            if hint:
+                _say(production, f"'{condition.name}' has no attribute '{missing}'{hint}")
+            _check_state(production, condition, target)
+
+
+def _check_slot(production: Production, key: int | str) -> None:
+    words = vocabulary(production.original_func)
+    if isinstance(key, str) and ("." in key or key in words.giving | words.asked):
+        return
+    hint = did_you_mean(key, words.given | words.asked, SURE) if isinstance(key, str) else ""
+    known = None if hint else all_slots(production)
+    if (hint or (known is not None and key not in known)) and key not in slots_held(production.context.values()):
+        what = f"no chunk is ever given a slot '{key}'"
+        if hint:
+            _say(production, f"{what}{hint}")
+        else:
+            _never(production, what)
+
+
+def slots_held(parts: Iterable[object]) -> set[Any]:
+    """Returns the slots of the chunks that are in buffers and memories now, and those that a library sets in buffers."""
+    found: set[Any] = set()
+    for part in parts:
+        if isinstance(part, Buffer):
+            found.update(part.chunk or (), part._slots)
+        elif isinstance(part, Memory):
+            for chunk in part.dm:
+                found.update(chunk)
+    return found
+
+
+def _missing_attribute(target: Any, path: str) -> tuple[str, str]:
+    """Returns the first part of a dotted path that does not exist, with a hint; empty texts if the path exists.
+
+    None of the modeller's code is run.
+    """
+    walked: list[str] = []
+    for name in path.split("."):
+        walked.append(name)
+        found = plain_value(target, name)
+        if found is MISSING:
+            known = [k for k in (*getattr(target, "__dict__", ()), *dir(cast("object", type(target)))) if k[0] != "_"]
+            return ".".join(walked), did_you_mean(name, known, SURE)
+        if found is UNKNOWN:
+            break
+        target = found
+    return "", ""
+
+
+def _check_state(production: Production, condition: Condition, target: object) -> None:
+    """Warns if a state that is True or False is compared with a word that is similar to one of these."""
+    wanted = condition.value
+    if condition.op not in ("is", "not"):
+        return
+    meant = get_close_matches(str(wanted).capitalize(), ("True", "False"), n=1, cutoff=SURE)
+    if not meant or wanted in meant or wanted in vocabulary(production.original_func).mentioned:
+        return
+    if isinstance(plain_value(target, condition.key), bool):
+        sign = "!" if condition.op == "not" else ""
+        what = f"'{condition.name}' has True or False in '{condition.key}', with capital letters, and never '{wanted}'"
+        say = _say if sign else _never
+        say(production, f"{what}; did you mean '{condition.key}:{sign}{meant[0]}'?")
+
+
+def _never(production: Production, why: str) -> None:
+    warn_at(f"production '{production.name}' can never match: {why}", production.original_func)
+
+
+def _say(production: Production, what: str) -> None:
+    warn_at(f"production '{production.name}': {what}", production.original_func)

@@ -1,0 +1,83 @@
+"""Reads a model file's text and compiles it; reports in one sentence why a file is not Python 3."""
+
+from __future__ import annotations
+
+import io
+import re
+import tokenize
+from pathlib import Path
+from types import CodeType
+
+from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.loading.python2 import print_to, python_2_reason
+from actr3d.errors import ModelFileError, did_you_mean
+
+LONGEST = 200
+"""The maximum length of a quoted line [characters]."""
+
+
+def read_source(path: Path) -> str:
+    """Reads a model file in the encoding that it declares, and returns its text.
+
+    Raises:
+        ModelFileError: If the file does not exist or is not text.
+    """
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        near = [p.name for p in path.parent.glob("*.py")] if path.parent.is_dir() else []
+        raise ModelFileError(f"no model file '{path}'{did_you_mean(path.name, near)}") from None
+    except IsADirectoryError:
+        raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
+    except OSError as error:
+        raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        return data.decode(encoding)
+    except (SyntaxError, UnicodeDecodeError, LookupError) as error:
+        raise ModelFileError(f"'{path}' is not Python source: {_why_no_text(data, error)}") from None
+
+
+def _why_no_text(data: bytes, error: Exception) -> str:
+    """Returns what is wrong with a file's encoding; if it declares none, the line that is not UTF-8."""
+    if "encoding declaration" in str(error) or getattr(error, "encoding", None) == "utf-8":
+        try:
+            data.decode("utf-8")
+        except UnicodeDecodeError as wrong:
+            line = data.count(b"\n", 0, wrong.start) + 1
+            return f"line {line} is not UTF-8; save it as UTF-8, or name its encoding in the first line (# -*- coding: latin-1 -*-)"
+    return str(error)
+
+
+def compile_source(source: str, filename: str) -> CodeType:
+    """Compiles a model's text.
+
+    Raises:
+        ModelFileError: If it is not Python 3; the message names the line, and Python 2 if that is the reason.
+    """
+    if "\0" in source:
+        line = source.count("\n", 0, source.index("\0")) + 1
+        raise ModelFileError(f"{filename}:{line}: there is a NUL character; this is not Python source")
+    reason: tuple[int, str] | None = None
+    try:
+        code = compile(source, filename, "exec", dont_inherit=True)
+        if not re.search(r"\bprint\s*>>", source) or (number := print_to(syntax_tree(source))) is None:
+            return code
+        reason = number, "a print statement"
+    except SyntaxError as error:
+        reason = python_2_reason(source, error)
+        if reason is None:
+            text = (error.text or "").strip()[:LONGEST]
+            raise ModelFileError(f"{filename}:{error.lineno or 0}: {error.msg}" + (f": {text}" if text else "")) from None
+    except (RecursionError, MemoryError):
+        line = _longest_line(source)
+        raise ModelFileError(f"{filename}:{line}: something here (the longest line of the file) is nested too deeply for Python") from None
+    except ValueError as error:  # a text that no encoding can hold
+        raise ModelFileError(f"'{filename}' is not Python source: {error}") from None
+    raise ModelFileError(f"{filename}:{reason[0]}: this file is written for Python 2 ({reason[1]}); convert it to Python 3")
+
+
+def _longest_line(source: str) -> int:
+    lengths = [len(line) for line in source.split("\n")]
+    return lengths.index(max(lengths)) + 1

@@ -1,0 +1,143 @@
+"""Parameter sweeps: run a model file many times, with different values for the variables that its first lines set."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator, Mapping
+from itertools import product
+from pathlib import Path
+from typing import Any, cast
+
+from actr3d.actr.kernel import log as logs
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.loading.model_file import run_text
+from actr3d.actr.loading.source_text import compile_source, read_source
+from actr3d.errors import ParameterError, did_you_mean
+
+
+def parameters(source: str) -> dict[str, ast.Assign]:
+    """Returns the parameters of a model: the assignments `name = value` before any other code.
+
+    A docstring, comments and imports from `__future__` may come before them.
+
+    Raises:
+        SyntaxError: If the text is not Python.
+    """
+    found: dict[str, ast.Assign] = {}
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
+            found[node.targets[0].id] = node
+        elif not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)) and not (
+            isinstance(node, ast.ImportFrom) and node.module == "__future__"
+        ):
+            break
+    return found
+
+
+def settings(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yields every combination of the values; a list is a set of alternatives, anything else one value."""
+    choices = [cast("list[Any]", value) if type(value) is list else [value] for value in values.values()]
+    for chosen in product(*choices):
+        yield dict(zip(values, chosen, strict=True))
+
+
+def with_values(source: str, chosen: Mapping[str, Any]) -> str:
+    """Returns a model's text with new values for its parameters, on the same lines.
+
+    Raises:
+        ParameterError: If the model has no such parameter.
+    """
+    known = parameters(source)
+    text = source.encode()  # Python counts columns in bytes
+    starts = [0]
+    for line in text.split(b"\n"):
+        starts.append(starts[-1] + len(line) + 1)
+    values: list[tuple[int, int, str]] = []
+    for name, value in chosen.items():
+        if name not in known:
+            raise ParameterError(
+                f"the model has no parameter '{name}'{did_you_mean(name, known)}; its first lines set: {', '.join(known) or 'nothing'}"
+            )
+        old = known[name].value
+        last = old.end_lineno or old.lineno
+        start, end = starts[old.lineno - 1] + old.col_offset, starts[last - 1] + (old.end_col_offset or 0)
+        values.append((start, end, f"({value!r}{chr(10) * (last - old.lineno)})" if last > old.lineno else repr(value)))
+    for start, end, new in sorted(values, reverse=True):
+        text = text[:start] + new.encode() + text[end:]
+    return text.decode()
+
+
+def label(source: str, chosen: Mapping[str, Any]) -> str:
+    """Returns the name of a setting, used for the folder of its data: `a(3) b(x)`, or `default`."""
+    known = parameters(source)
+    words = [f"{name}({value})" for name, value in chosen.items() if ast.unparse(known[name].value) != repr(value)]
+    return " ".join(words) or "default"
+
+
+def run(_filename: str, _iterations: int = 1, **settings_of: Any) -> None:
+    """Runs a model file for every combination of the given values, and writes the log of each run to a data file.
+
+    The data are written to `model/a(3) b(x)/<time>.data`, and a copy of the model's text to `model/code.py`.
+
+    Args:
+        _filename: The model file, with or without `.py`; in the current folder, or beside the calling program.
+        _iterations: The number of runs of each combination.
+        settings_of: For each parameter one value, or a list of values to try.
+
+    Raises:
+        ModelFileError: If the file does not exist, or is not Python 3.
+        ParameterError: If the model has no such parameter.
+    """
+    path = Path(_filename if _filename.endswith(".py") else f"{_filename}.py")
+    program = getattr(sys.modules.get("__main__"), "__file__", None)
+    if not path.exists() and program is not None and (beside := Path(program).parent / path).exists():
+        path = beside
+    source = read_source(path)
+    compile_source(source, str(path))
+    _keep_copy(path, source)
+    for iteration in range(_iterations):
+        for chosen in settings(settings_of):
+            text = with_values(source, chosen)
+            name = label(source, chosen)
+            print(path, f"{iteration}/{_iterations}", name)  # noqa: T201 - as the old one did
+            outer = RunLimits.current()
+            seed = None if outer is None else outer.next_seed()
+            limits = RunLimits(seed=seed, until=None if outer is None else outer.until)
+            restore = logs.begin()
+            logs.log(data=True, screen=False, directory=str(path.with_suffix("") / _safe(name)))
+            logs.LOG.locked = True
+            try:
+                run_text(text, str(path), limits=limits, folder=path.parent)
+            finally:
+                restore()
+
+
+def _safe(name: str) -> str:
+    """Returns a setting's name with the characters replaced that a folder's name must not contain."""
+    return "".join("_" if c in '/\\:*?"<>|\0\n' else c for c in name)[:200]
+
+
+def _keep_copy(path: Path, source: str) -> None:
+    """Writes the model's text beside its data; an older, different copy is renamed."""
+    folder = path.with_suffix("")
+    folder.mkdir(parents=True, exist_ok=True)
+    copy = folder / "code.py"
+    if copy.exists() and copy.read_text(encoding="utf-8") != source:
+        number = 1
+        while (older := folder / f"code-{number}.py").exists():
+            number += 1
+        copy.rename(older)
+    copy.write_text(source, encoding="utf-8")
+
+
+def run_with(script: str) -> None:
+    """Raises an error: in python_actr this named another program to run models with; here they run in this one.
+
+    Raises:
+        ParameterError: Always.
+    """
+    raise ParameterError(f"run_with({script!r}): models run inside this program; remove the call")
+
+
+__all__ = ["run", "run_with"]

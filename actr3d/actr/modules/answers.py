@@ -1,0 +1,52 @@
+"""Converts the answers of a body to the forms that agents, traces and recordings need."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from functools import cache
+from typing import Any, cast
+
+from actr3d.actr.chunks.chunk import PLAIN_TYPES
+
+
+@cache
+def _told_fields(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind) if "untold" not in field.metadata)
+
+
+def plain_answer(answer: Any) -> Any:
+    """Returns an answer as plain values, lists and dicts.
+
+    A frozen dataclass becomes a dict of its fields except those marked `UNTOLD`; an object with a `summary()`, such as a view,
+    becomes that.
+    """
+    kind = cast("type[Any]", type(answer))
+    if answer is None or kind in PLAIN_TYPES:
+        return answer
+    if hasattr(answer, "summary"):
+        return plain_answer(answer.summary())
+    if is_dataclass(answer):
+        return {name: plain_answer(getattr(answer, name)) for name in _told_fields(kind)}
+    if isinstance(answer, Mapping):
+        items = cast("Mapping[Any, Any]", answer).items()
+        return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}
+    if isinstance(answer, (list, tuple)):
+        return [plain_answer(value) for value in cast("Sequence[Any]", answer)]
+    return answer.tolist() if hasattr(answer, "tolist") else repr(answer)
+
+
+def answer_slots(word: str, answer: Any) -> dict[str | int, Any]:
+    """Returns the slots of a chunk made from an answer: the word first, then the sensed values, by name or in order."""
+    slots: dict[str | int, Any] = {0: word}
+    if hasattr(answer, "summary"):  # such an object is too large for slots
+        slots["seen"] = answer
+    elif is_dataclass(answer):
+        slots.update({field.name: getattr(answer, field.name) for field in fields(answer)})
+    elif isinstance(answer, Mapping):
+        slots.update(cast("Mapping[str, Any]", answer))
+    elif isinstance(answer, (list, tuple)):
+        slots.update(enumerate(cast("Sequence[Any]", answer), start=1))
+    else:
+        slots[1] = answer
+    return slots

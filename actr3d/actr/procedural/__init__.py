@@ -1,0 +1,1 @@
+"""Productions: how they are matched, chosen, fired, learned and compiled."""

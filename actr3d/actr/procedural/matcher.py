@@ -1,0 +1,290 @@
+"""Finds the productions that match: productions that test for a certain value are indexed by it, so that the others cost nothing.
+
+Each production is compiled into straight-line code that reads each slot at most once, and only if all tests before it hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from actr3d.actr.chunks.chunk import as_text
+from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, calls, get_attribute, is_empty, look_up, slot_named
+from actr3d.actr.kernel.buffer import Buffer, reads_chunk
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.procedural.observed_values import Asked, Observed, is_recorded
+from actr3d.actr.procedural.production import Production
+
+Reading = tuple[str, Any]
+"""What is read: the name of an object, and a slot; a slot of None asks whether the object is empty."""
+
+
+class Matcher:
+    """The productions of one system, compiled against the objects they look at.
+
+    Args:
+        context: The objects by name.
+    """
+
+    def __init__(self, context: Mapping[str, Any]) -> None:
+        self._context = context
+        self._attempts: dict[Production, Callable[[], Bindings | None]] = {}
+        self._order: dict[Production, int] = {}
+        self._always: list[Production] = []
+        self._by_value: list[tuple[Callable[[], Any], dict[Any, list[Production]]]] = []
+        self.observed = Observed()
+        """What productions read that is not recorded as a change of a model."""
+        self.last: list[Production] = []
+        """The productions that matched when they were last tried."""
+
+    def build(self, productions: Sequence[Production]) -> None:
+        """Compiles and indexes all productions of the system, in their order."""
+        for production in productions:
+            if production not in self._attempts:
+                self._attempts[production] = attempt_for(self._remembering(production), self._context, self._reader)
+        self._order = {production: number for number, production in enumerate(productions)}
+        wanted = {
+            p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions
+        }
+        spread: dict[Reading, set[str]] = {}
+        for of in wanted.values():
+            for reading, value in of:
+                spread.setdefault(reading, set()).add(value)
+        self._always = []
+        indexes: dict[Reading, dict[Any, list[Production]]] = {}
+        for production, of in wanted.items():
+            # A value that all these productions test for is useless as an index.
+            best = max(of, key=lambda pair: len(spread[pair[0]]), default=None)
+            if best is not None and len(spread[best[0]]) > 1:
+                indexes.setdefault(best[0], {}).setdefault(best[1], []).append(production)
+            else:
+                self._always.append(production)
+        self._by_value = [(self._reader(name, key), index) for (name, key), index in indexes.items()]
+
+    def _reader(self, name: str, key: Any) -> Callable[[], Any]:
+        """Returns a function that reads a slot, and stores the value if the trace would not record it otherwise.
+
+        The trace must not read it again, because a property may return another value, or change something, at each call.
+        """
+        target = self._context[name]
+        read = reader_of(target, key)
+        label = self.observed.watch(name, key, target)
+        if is_recorded(target, key):
+            return read
+        looked = self.observed.looked
+
+        def remember() -> Any:
+            value = read()
+            looked[label] = None if value is MISSING else value
+            return value
+
+        return remember
+
+    def _remembering(self, production: Production) -> list[Condition]:
+        """Returns a production's conditions with the modeller's functions wrapped, so that their results are stored."""
+        found: list[Condition] = []
+        for number, condition in enumerate(production.conditions):
+            if condition.op == "call":
+                condition = condition._replace(value=self._asking(production, number, condition.value))
+            elif condition.op == "empty":
+                name = condition.name or "self"
+                self.observed.watch(name, None, self._context[name])
+            found.append(condition)
+        return found
+
+    def _asking(self, production: Production, number: int, function: Callable[[Any, Bindings], Any]) -> Callable[[Any, Bindings], Any]:
+        self.observed.used = True
+        asked, label, sch = self.observed.asked, (production.name, number), production.system.sch
+
+        def ask(target: Any, bound: Bindings) -> Any:
+            given = dict(bound)
+            asked[label] = Asked(given, False, bound, sch.now_us)
+            agrees = function(target, bound) != False  # noqa: E712 - None means yes
+            asked[label] = Asked(given, bool(agrees), bound, sch.now_us)
+            return agrees
+
+        return ask
+
+    def matching(self) -> list[Production]:
+        """Returns the productions that match now, in order; each keeps what it bound."""
+        candidates = self._always
+        if self._by_value:
+            found: list[Production] = []
+            for reader, index in self._by_value:
+                value = reader()
+                if value in index:
+                    found += index[value]
+            if not found:
+                found = candidates
+            elif candidates or len(self._by_value) > 1:
+                found = sorted(candidates + found, key=self._order.__getitem__)
+            candidates = found
+        result: list[Production] = []
+        attempts = self._attempts
+        for production in candidates:
+            try:
+                bound = attempts[production]()
+            except Exception as error:
+                production.note(error)
+                raise
+            if bound is not None:
+                production.bound = bound
+                result.append(production)
+        self.last = result
+        return result
+
+    def matches(self, production: Production) -> bool:
+        """Returns whether one production matches now; if so, it keeps what it bound."""
+        try:
+            bound = self._attempts[production]()
+        except Exception as error:
+            production.note(error)
+            raise
+        if bound is None:
+            return False
+        production.bound = bound
+        return True
+
+
+def _by_variable(key: Any) -> bool:
+    return isinstance(key, str) and key[:1] == "?"
+
+
+# -- the code that tries one production
+
+Shape = tuple[str, str, int, Any, Any]
+"""A test in the generated code: (operation, where, number, slot, value); «where» is a buffer, a reader or an extra test."""
+Attempt = Callable[[], Bindings | None]
+"""Tries a production."""
+Maker = Callable[[Sequence[Buffer], Sequence[Callable[[], Any]], Sequence[tuple[Condition, Any]]], Attempt]
+"""Makes an attempt from a production's buffers, its readers of anything else, and the tests that need a function call."""
+
+
+def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
+    """Returns a function that reads a slot of an object as text, in the fastest way for that kind of object."""
+    if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
+
+        def read_attribute() -> str | Missing:
+            value = get_attribute(target, key)
+            return value if type(value) is str or value is MISSING else as_text(value)
+
+        return read_attribute
+
+    def read_anything() -> str | Missing:
+        value = look_up(target, key)
+        return value if type(value) is str or value is MISSING else as_text(value)
+
+    return read_anything
+
+
+def attempt_for(conditions: Sequence[Condition], context: Mapping[str, Any], reader: Callable[[str, Any], Callable[[], Any]]) -> Attempt:
+    """Returns a function that tries a production: it returns what the patterns bind, or None if they do not match.
+
+    Args:
+        conditions: The production's conditions.
+        context: The objects that they test, by name.
+        reader: Makes a function that reads a slot, given a name and a key, of anything but a buffer's chunk.
+    """
+    buffers: list[Buffer] = []
+    readers: list[Callable[[], Any]] = []
+    extra: list[tuple[Condition, Any]] = []
+    places: dict[tuple[str, Any], int] = {}
+    shapes: list[Shape] = []
+    for condition in conditions:
+        op, name, key, value = condition
+        name = name or "self"
+        target = context[name]
+        if op in ("call", "empty") or (isinstance(key, str) and key[:1] == "?"):
+            shapes.append((op, "extra", len(extra), None, None))
+            extra.append((condition, target))
+        elif reads_chunk(target, key):
+            number = places.setdefault((name, None), len(buffers))
+            if number == len(buffers):
+                buffers.append(target)
+            shapes.append((op, "buffer", number, key, value))
+        else:
+            number = places.setdefault((name, key), len(readers))
+            if number == len(readers):
+                readers.append(reader(name, key))
+            shapes.append((op, "reader", number, None, value))
+    return _compile(tuple(shapes))(buffers, readers, extra)
+
+
+@lru_cache(maxsize=4096)
+def _compile(tests: tuple[Shape, ...]) -> Maker:
+    """Generates and compiles the code for tests of one shape; productions of equal shape share it."""
+    lines: list[str] = []
+    last: list[str] = []
+    bound: dict[str, str] = {}
+    names: dict[tuple[str, int, Any], str] = {}
+    seen: set[str] = set()
+    extra = any(where == "extra" for _, where, _, _, _ in tests)
+    for op, where, number, key, value in tests:
+        if where == "extra":
+            (lines if op == "empty" else last).append(f"if not holds(extra{number}, {'None' if op == 'empty' else 'b'}): return None")
+            continue
+        if where == "buffer" and f"c{number}" not in seen:
+            seen.add(f"c{number}")
+            lines += [f"c{number} = buffer{number}.chunk", f"if c{number} is None: return None"]
+        text = names.get((where, number, key))
+        if text is None:
+            text = names[where, number, key] = f"t{len(names)}"
+            lines.append(f"{text} = " + (f"c{number}.get({key!r}, MISSING)" if where == "buffer" else f"reader{number}()"))
+        if op == "is":
+            plain = text in seen or where == "reader"
+            other = "" if plain else f" and (type({text}) is str or {text} is MISSING or as_text({text}) != {value!r})"
+            lines.append(f"if {text} != {value!r}{other}: return None")
+            continue
+        if text not in seen:
+            seen.add(text)
+            lines += [f"if type({text}) is not str:", f"    if {text} is MISSING: return None", f"    {text} = as_text({text})"]
+        if op == "bind":
+            bound[value] = text
+        elif op == "not":
+            lines.append(f"if {text} == {value!r}: return None")
+        elif value in bound and not extra:
+            lines.append(f"if {text} {'!=' if op == 'same' else '=='} {bound[value]}: return None")
+        else:  # a modeller's function may have bound the variable, or changed it
+            last.append(f"if {value!r} not in b or {text} {'!=' if op == 'same' else '=='} b[{value!r}]: return None")
+    lines.append("b = {" + ", ".join(f"{name!r}: {text}" for name, text in bound.items()) + "}")
+    return _assemble([*lines, *last, "return b"], tests)
+
+
+def _assemble(lines: Sequence[str], tests: Sequence[Shape]) -> Maker:
+    """Compiles a function of these lines inside one that provides the objects it tests by name."""
+    given = {f"{where}{number}": f"{_GIVEN[where]}[{number}]" for _, where, number, _, _ in tests}
+    outer = [f"{name} = {place}" for name, place in given.items()]
+    code = ["def make(buffers, readers, extras, MISSING, as_text, holds):", *(f"    {line}" for line in outer), "    def attempt():"]
+    space: dict[str, Any] = {}
+    text = "\n".join([*code, *(f"        {line}" for line in lines), "    return attempt"])
+    exec(compile(text, _PLACE, "exec"), space)
+    make = space["make"]
+    return lambda buffers, readers, extras: make(buffers, readers, extras, MISSING, as_text, _holds)
+
+
+_PLACE = str(Path(__file__).with_name("<attempt>"))
+"""The file name of generated code in tracebacks: a place in the library, so that it does not look like the modeller's code."""
+_GIVEN = {"buffer": "buffers", "reader": "readers", "extra": "extras"}
+
+
+def _holds(extra: tuple[Condition, Any], bound: Bindings) -> bool:
+    """Tests what needs a function call: emptiness, a modeller's function, a slot named by a variable (`?s:1`)."""
+    condition, target = extra
+    if condition.op == "empty":
+        return is_empty(target)
+    if condition.op == "call":
+        return calls(condition.value, target, bound)
+    key = bound.get(str(condition.key)[1:], MISSING)
+    found = MISSING if key is MISSING else look_up(target, slot_named(key))
+    if found is MISSING:
+        return False
+    text = as_text(found)
+    if condition.op == "bind":
+        bound[condition.value] = text
+        return True
+    wanted = bound.get(condition.value, MISSING) if condition.op in ("same", "differs") else condition.value
+    if wanted is MISSING:
+        return False
+    return (text == wanted) == (condition.op in ("is", "same"))

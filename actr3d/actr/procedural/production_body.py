@@ -1,0 +1,212 @@
+"""Converts the body of a production to a function of the bound variables.
+
+A body sees, nearest first: its bound variables and the names that it assigns; the attributes of its agent and of the agent's
+ancestors; the variables of a function around the agent's class; the globals of its own file. `?name` in the texts that it
+passes on sees what it assigns. Line numbers are kept, so that a traceback shows the modeller's own file.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import copy
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
+from types import CellType, CodeType, FunctionType
+from typing import Any
+
+from actr3d.actr.kernel.source_code import for_python_actr
+from actr3d.actr.procedural.rebinding import BOUND, Names, Rebinder, stored_names, used_names
+from actr3d.errors import ProductionException
+
+Body = Callable[[dict[str, Any]], None]
+BUILTINS = vars(builtins)
+_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
+
+
+class Scope(dict[str, Any]):
+    """The variables that a body has bound; other names are looked up further out.
+
+    Args:
+        bound: The variables that the patterns bound.
+        context: The attributes of the agent and its ancestors, by name.
+        func: The modeller's function, for the variables around it and the globals of its file.
+    """
+
+    def __init__(self, bound: Mapping[str, Any], context: Mapping[str, Any], func: Callable[..., Any]) -> None:
+        super().__init__(bound)
+        self.__dict__["outer"] = context, func
+
+    def __missing__(self, key: str) -> Any:
+        context, func = self.__dict__["outer"]
+        if key in context:
+            return context[key]
+        cell = cells(func).get(key)
+        if cell is not None:
+            return cell.cell_contents
+        layers = (BUILTINS, func.__globals__) if for_python_actr(func.__globals__) else (func.__globals__, BUILTINS)
+        for names in layers:
+            if key in names:
+                return names[key]
+        raise NameError(f"name '{key}' is not defined", name=key)
+
+    def __delitem__(self, key: str) -> None:
+        if key not in self:
+            raise NameError(f"name '{key}' is not defined", name=key)
+        super().__delitem__(key)
+
+    def bind(self, key: str, value: Any) -> Any:
+        """Binds a name, and returns its value."""
+        self[key] = value
+        return value
+
+    def bind_all(self, names: Mapping[str, Any]) -> bool:
+        """Binds several names, and returns True."""
+        self.update(names)
+        return True
+
+
+def cells(func: Callable[..., Any]) -> dict[str, CellType]:
+    """Returns the variables of the functions around `func` that it uses, by name."""
+    return dict(zip(func.__code__.co_freevars, func.__closure__ or (), strict=True))
+
+
+def compile_body(
+    statements: Sequence[ast.stmt],
+    *,
+    func: Callable[..., Any],
+    name: str,
+    bound: Iterable[str],
+    context: Mapping[str, Any],
+    more_bound: bool = False,
+) -> Body:
+    """Compiles a body's statements to a function.
+
+    Args:
+        statements: The body, or some of its statements, as parsed; they are not changed.
+        func: The modeller's function that they come from; its file's globals and the variables around it stay live.
+        name: The production's name, which tracebacks show.
+        bound: The variables that the patterns bind.
+        context: The attributes of the agent and its ancestors by name; fixed from now on.
+        more_bound: Whether a function among the patterns may bind more variables, so that any name may be one.
+
+    Returns:
+        A function that takes the bound variables. If the body assigns names, or with `more_bound`, they must be a `Scope`.
+
+    Raises:
+        ProductionException: If the body contains `yield`, or cannot be compiled.
+    """
+    names = _names_of(tuple(statements))
+    around = cells(func)
+    if for_python_actr(func.__globals__):
+        # There, a body does not see its file's globals: a builtin's name means the builtin, whatever the file assigns to it.
+        context = {**{n: BUILTINS[n] for n in names if n in BUILTINS}, **context}
+    seen = frozenset(n for n in names if n in context or n in around)
+    code, given = _code_of(statements, func, name, tuple(bound), seen, more_bound)
+    space: dict[str, Any] = {}
+    exec(code, func.__globals__, space)
+    body: FunctionType = space["__make__"](*(context.get(n) for n in given))
+    inner = body.__code__.replace(co_name=name, co_qualname=name)
+    here = dict(zip(inner.co_freevars, body.__closure__ or (), strict=True))
+    closure = tuple(cell if n in context else around.get(n, cell) for n, cell in here.items())
+    return FunctionType(inner, func.__globals__, name, None, closure)
+
+
+_CODES: dict[Any, tuple[CodeType, Sequence[str]]] = {}
+MOST_CODES = 10_000
+"""The number of bodies whose code is kept."""
+
+
+@lru_cache(maxsize=MOST_CODES)
+def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
+    return used_names(statements)
+
+
+def _code_of(
+    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: tuple[str, ...], seen: frozenset[str], more_bound: bool
+) -> tuple[CodeType, Sequence[str]]:
+    """Returns the result of `_compile`, once for all agents of a class: their names have different values, but their code is equal."""
+    places = tuple((statement.lineno, statement.col_offset) for statement in statements)
+    key = (func.__code__, func.__code__.co_filename, func.__qualname__, name, places, bound, seen, more_bound)
+    made = _CODES.get(key)
+    if made is None:
+        _refuse_waiting(statements, name, func.__code__.co_filename)
+        if len(_CODES) >= MOST_CODES:
+            _CODES.clear()
+        made = _CODES[key] = _compile(statements, func, name, bound, seen, more_bound)
+    return made
+
+
+def _compile(
+    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: Iterable[str], more_bound: bool
+) -> tuple[CodeType, Sequence[str]]:
+    """Compiles a function that takes objects by name and returns the body as a function; returns its code, and these names."""
+    filename = func.__code__.co_filename
+    stored = stored_names(statements)
+    used = used_names(statements)
+    mangler = _Mangler(func)
+    body = [mangler.visit(copy.deepcopy(node)) for node in statements]
+    if more_bound:
+        stored |= used - Names(statements).declared_global
+    if stored:
+        body = Rebinder(stored).body(body)
+    taken = [n for n in bound if n in used and n not in stored]
+    given = sorted(n for n in seen if n not in stored and n not in taken)
+    first = statements[0]
+    items = {n: ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(n), ast.Load()) for n in taken}
+    prologue = [ast.Assign([ast.Name(n, ast.Store())], item) for n, item in items.items()]
+    inner = _function("__production__", [BOUND], [*prologue, *body], first)
+    outer = _function("__make__", given, [inner, ast.Return(ast.Name("__production__", ast.Load()))], first)
+    module = ast.fix_missing_locations(ast.Module([outer], []))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the compiler has issued all warnings about the file
+            return compile(module, filename, "exec", dont_inherit=True), given
+    except SyntaxError as error:
+        raise ProductionException(f"{filename}:{error.lineno or first.lineno}: production '{name}': {error.msg}") from error
+
+
+def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) -> None:
+    """Raises an error if a body contains `yield`."""
+    for node in statements:
+        for part in _own_nodes(node):
+            if isinstance(part, (ast.Yield, ast.YieldFrom, ast.Await)):
+                word = "awaits" if isinstance(part, ast.Await) else "yields"
+                raise ProductionException(
+                    f"{filename}:{part.lineno}: production '{name}' {word}; a production acts at once: "
+                    "let it call a generator method, which may wait"
+                )
+
+
+class _Mangler(ast.NodeTransformer):
+    """Renames private attributes (`self.__x`) as Python does in the methods of the same class."""
+
+    def __init__(self, func: Callable[..., Any]) -> None:
+        path = func.__qualname__.split(".")
+        self.owner = path[-2].lstrip("_") if len(path) > 1 and path[-2] != "<locals>" else ""
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        self.generic_visit(node)
+        if self.owner and node.attr.startswith("__") and not node.attr.endswith("__"):
+            node.attr = f"_{self.owner}{node.attr}"
+        return node
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
+        return node  # an inner class mangles with its own name
+
+
+def _own_nodes(node: ast.AST) -> Iterable[ast.AST]:
+    """Yields a node and those below it that belong to the same function."""
+    yield node
+    if not isinstance(node, _SCOPES):
+        for child in ast.iter_child_nodes(node):
+            yield from _own_nodes(child)
+
+
+def _function(name: str, parameters: Sequence[str], body: list[Any], at: ast.AST) -> ast.FunctionDef:
+    """Returns a plain function definition at the position of `at`."""
+    args = ast.arguments(posonlyargs=[], args=[ast.arg(p) for p in parameters], kwonlyargs=[], kw_defaults=[], defaults=[])
+    node: Any = ast.FunctionDef(name=name, args=args, body=body or [ast.Pass()], decorator_list=[])
+    node.type_params = []  # required from Python 3.12 on
+    return ast.copy_location(node, at)

@@ -1,0 +1,292 @@
+"""The plain production system: matches, chooses at random, waits and fires."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from actr3d.actr.kernel.class_members import Method, MethodWrapper
+from actr3d.actr.kernel.log import dummy
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.noise import pick
+from actr3d.actr.kernel.parameters import WithParameters
+from actr3d.actr.kernel.profile import find_profile
+from actr3d.actr.kernel.tracing import traceable
+from actr3d.actr.kernel.tree import lineage
+from actr3d.actr.procedural.conflict_set import ConflictSet
+from actr3d.actr.procedural.matcher import Matcher
+from actr3d.actr.procedural.production import Production, defaults_of
+from actr3d.actr.reasons import Explanation
+from actr3d.errors import ProductionException, did_you_mean
+from actr3d.trace import Trace
+
+FUNCTION_PARAMETERS = frozenset({"production_time", "production_threshold"})
+"""Parameters that may be functions without arguments; these are not productions then."""
+
+BEFORE_FIRST_CYCLE: list[Callable[[ProductionSystem], Callable[[], object] | None]] = []
+"""Called with a system that is about to begin, before its methods without parameters; what they return is called after these.
+`actr3d.actr` adds the checks of models here."""
+EXPLAINERS: list[Callable[[ProductionSystem, float | None], Explanation]] = []
+"""Explains a system at a time; `actr3d.actr` sets the one that `ProductionSystem.explain` uses."""
+
+
+@dataclass(eq=False)
+class Rules:
+    """The productions of a system, and the state of its cycle.
+
+    They are kept apart from the system because productions see every public attribute of a model.
+    """
+
+    productions: list[Production] = field(default_factory=list[Production])
+    initializers: list[Production] = field(default_factory=list[Production])
+    """The methods without parameters, which run once at the start."""
+    context: dict[str, Any] = field(default_factory=dict[str, Any])
+    """What productions see by name: the attributes of the agent and of its ancestors."""
+    matcher: Matcher | None = None
+    """Finds the productions that match; None before the first cycle."""
+    chosen: Production | None = None
+    """The production that is about to fire."""
+    by_utility: bool = False
+    """Whether utilities decide among those that match, and so are part of the conflict set."""
+
+
+class ProductionSystem(WithParameters, Model):
+    """A model whose methods with patterns are productions; it chooses at random among those that match.
+
+    It can be an agent, or a parallel system inside an agent with its own cycle time; it sees the buffers and modules of its
+    ancestors by name.
+    """
+
+    production_time: float | Callable[[], float] = 0.05
+    """How long a production takes to fire [s]; a number, or a function without arguments."""
+    production_match_delay: float = 0
+    """How long matching takes, as a part of that [s]."""
+    _auto_run_start = False
+    _by_utility = False
+
+    _rules: Rules
+    # Parts of the rules under the names that python_actr has, for existing models.
+    _productions: list[Production]
+    _initializers: list[Production]
+    _context: dict[str, Any]
+    _top: Model
+
+    def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
+        own = self.__dict__
+        wanted = own.get("profile") or objects.get("profile")
+        if wanted is not None:
+            objects["profile"] = wanted
+            own["_profile"] = find_profile(wanted, f"{type(self).__name__}.profile")
+            self.sch.round_ms = self.sch.round_ms or own["_profile"].whole_milliseconds
+        rules = own["_rules"] = Rules(by_utility=self._by_utility)
+        own["_productions"], own["_initializers"] = rules.productions, rules.initializers
+        for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
+            if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
+                objects[name] = methods.pop(name)
+        for name, func in methods.items():
+            patterns = defaults_of(func)
+            if patterns is not None:
+                (rules.productions if patterns else rules.initializers).append(Production(self, name, func))
+        own["_process"] = self.sch.add(self._process_productions)
+
+    def _settable(self) -> set[str]:
+        """Returns the parameters of an agent; all other attributes of agents belong to the modeller."""
+        library = [vars(klass) for klass in type(self).__mro__ if klass.__module__.startswith("actr3d.")]
+        return {name for names in library for name in names if name.startswith("production_")} | {"profile"}
+
+    # -- the cycle
+
+    def _process_productions(self) -> Iterator[Any]:
+        """Matches, chooses at random, waits, fires."""
+        self._begin()
+        while True:
+            if self.production_match_delay > 0:
+                yield self.production_match_delay
+            matching = self._match()
+            if not matching:
+                yield self._top.changes
+                continue
+            choice = pick(self.random, matching)
+            self._select(choice)
+            yield self._duration()
+            self._fire(choice)
+
+    def _begin(self) -> None:
+        """Determines what productions see by name, runs the methods without parameters, and builds the matcher."""
+        self._calc_context()
+        rules = self._rules
+        afterwards = [check(self) for check in BEFORE_FIRST_CYCLE]
+        for production in rules.initializers:
+            production.bound = {}
+            trace = self.sch.trace
+            if trace is not None and trace.all:
+                trace.emit(self.sch.now_us, self._path, "initialize", {"method": production.name})
+            production.fire()
+            if self.sch.bound:  # every production sees what an initializer assigns
+                rules.context.update(self.sch.bound)
+        for production in rules.productions:
+            production.share_globals()
+        for check in afterwards:
+            if check is not None:
+                check()
+        matcher = rules.matcher = Matcher(rules.context)
+        matcher.build(rules.productions)
+
+    def _calc_context(self) -> None:
+        context: dict[str, Any] = {}
+        top: Model = self
+        for above in lineage(self):
+            for name, value in above.__dict__.items():
+                if name[0] != "_" and name != "parent" and name not in context and not isinstance(value, MethodWrapper):
+                    context[name] = value
+            top = above
+        context["self"] = self
+        context["top"] = top
+        self.__dict__["_top"] = top
+        self.__dict__["_context"] = self._rules.context = context
+        for production in (*self._rules.initializers, *self._rules.productions):
+            production.context = context
+            for name in production.keys:
+                if name not in context:
+                    raise ProductionException(
+                        f"production '{production.name}' ({production.place}) matches on '{name}', which neither the agent "
+                        f"nor its ancestors have{did_you_mean(name, [*context, 'utility'])}"
+                    )
+
+    def _match(self) -> list[Production]:
+        """Returns the productions that match now; records in the trace what they read beyond buffers and modules."""
+        matcher = self._rules.matcher
+        assert matcher is not None
+        matching = matcher.matching()
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            if matcher.observed.used:
+                self._observe(trace)
+            if not matching or not self._by_utility:
+                utilities = {production.name: production.base_utility for production in matching}
+                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
+        return matching
+
+    def _observe(self, trace: Trace) -> None:
+        """Records in the run's trace what has changed of what productions see, beyond what the trace records by itself."""
+        matcher = self._rules.matcher
+        seen = matcher.observed.news(trace) if matcher is not None else {}
+        if seen:
+            trace.emit(self.sch.now_us, self._path, "observe", seen)
+
+    def _trace_state(self, trace: Trace) -> None:
+        super()._trace_state(trace)
+        if trace.all:
+            rules = self._rules
+            matcher, chosen = rules.matcher, rules.chosen
+            data = {
+                "productions": [production.name for production in rules.productions],
+                "initializers": [production.name for production in rules.initializers],
+                "chosen": None if chosen is None else chosen.name,
+                "matched": [] if matcher is None else [production.name for production in matcher.last],
+                "drawn": self._drawn_names(),
+            }
+            choice = standing_choice(self)
+            if choice is not None:
+                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold}
+            trace.emit(self.sch.now_us, self._path, "productions", data)
+            if trace is self.sch.trace:
+                self._observe(trace)
+            elif matcher is not None and (seen := matcher.observed.everything()):
+                # A trace that only listens receives everything, and leaves the news to the run's own trace.
+                trace.emit(self.sch.now_us, self._path, "observe", seen)
+
+    def _drawn_names(self) -> list[str]:
+        """Returns the names of the utility modules whose part is known only when a choice is made."""
+        return []
+
+    def _part_names(self) -> list[str]:
+        """Returns the names of what utilities consist of, besides the productions' own."""
+        return []
+
+    def _utility_parts(self, production: Production) -> dict[str, float | None]:
+        """Returns what each of these adds now; None for what is known only when a choice is made."""
+        return {}
+
+    def _latest_choice(self) -> ConflictSet | None:
+        """Returns the conflict set of the latest match; None before the first."""
+        rules = self._rules
+        if rules.matcher is None:
+            return None
+        utilities = {production.name: production.base_utility for production in rules.matcher.last}
+        chosen = rules.chosen.name if rules.chosen is not None else None
+        return ConflictSet(utilities=utilities, parts={}, threshold=None, weighed=self._by_utility, chosen=chosen)
+
+    def _select(self, choice: Production) -> None:
+        """Records which production will fire."""
+        self._rules.chosen = choice
+        trace = self.sch.trace
+        if trace is not None and trace.production:
+            trace.emit(self.sch.now_us, self._path, "select", {"production": choice.name})
+        if self.log is not dummy:
+            self.log.production = choice.name
+
+    def _duration(self) -> float:
+        time = self.production_time
+        return (time() if callable(time) else time) - self.production_match_delay
+
+    def _fire(self, choice: Production) -> None:
+        self._rules.chosen = None
+        trace = self.sch.trace
+        if trace is not None and trace.production:
+            bound = traceable(choice.bound) if choice.more_bound else dict(choice.bound or {})
+            trace.emit(self.sch.now_us, self._path, "fire", {"production": choice.name, "bound": bound})
+        if self.log is not dummy:
+            self.log.production = None
+        choice.fire()
+
+    def _add_production(self, production: Production) -> None:
+        """Adds a production during the run (compilation)."""
+        rules = self._rules
+        production.context = rules.context
+        rules.productions.append(production)
+        if rules.matcher is not None:
+            rules.matcher.build(rules.productions)
+
+    def explain(self, at: float | None = None) -> Explanation:
+        """Explains, for each production, whether it matches or what fails first, its utility, and why it was chosen or lost;
+        for each memory, its last request. Runs no code of the model and draws no random number.
+
+        Args:
+            at: A past time of a traced run [s]; None for now.
+
+        Raises:
+            ParameterError: If `at` is no time or in the future, or the run was not traced (level «all») or had no such agent then.
+        """
+        return EXPLAINERS[-1](self, at)
+
+
+# What the rest of the library asks of a production system; as methods, productions would see these names.
+
+
+def rules_of(system: ProductionSystem) -> Rules:
+    """Returns the productions of a system and the state of its cycle; empty before the system is converted."""
+    return system.__dict__.get("_rules") or Rules()
+
+
+def prepare_context(system: ProductionSystem) -> None:
+    """Determines what the productions of a system see by name, if it has not begun to run."""
+    if rules_of(system).matcher is None:
+        system._calc_context()
+
+
+def standing_choice(system: ProductionSystem) -> ConflictSet | None:
+    """Returns the latest conflict set until the chosen production fires; one in which none was chosen, until the next."""
+    choice = system._latest_choice()
+    return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
+
+
+def utility_parts(system: ProductionSystem, production: Production) -> dict[str, float | None]:
+    """Returns what each utility module adds to a production's utility now; None for what is known only when a choice is made."""
+    return system._utility_parts(production)
+
+
+def utility_part_names(system: ProductionSystem) -> list[str]:
+    """Returns the names of the utility modules of a system."""
+    return system._part_names()

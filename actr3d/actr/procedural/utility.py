@@ -1,0 +1,294 @@
+"""Utility modules: compute the utilities of productions, and learn them.
+
+Each is an attribute of an agent: `pm = PMNew(alpha=0.1)`. A production's utility is the sum of the parts of all modules.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, cast
+
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.noise import logistic_noise
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.tree import path_of
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.trace import Trace
+
+
+class ProceduralSubModule(WithParameters, Model):
+    """The base of all utility modules; each method may be overridden."""
+
+    def start(self) -> None:
+        """Registers the module with the agent."""
+        self.parent.add_adaptor(self)  # type: ignore[union-attr]
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        """Is called for each new production; `parents` are the two that a compiled one was made from."""
+
+    def selecting(self, prod: Any) -> None:
+        """Is called when a production has been chosen."""
+
+    def firing(self, prod: Any) -> None:
+        """Is called when a production fires."""
+
+    def reward(self, value: float) -> None:
+        """Is called with each reward."""
+
+    def utility(self, prod: Any) -> float:
+        """Returns this module's part of a production's utility."""
+        return 0
+
+    def _standing(self, prod: Any) -> float | None:
+        """Returns its part without drawing a random number; None if it is known only when a choice is made.
+
+        A modeller's own module is called only when a choice is made.
+        """
+        if type(self).utility.__module__ != __name__:
+            return None
+        try:
+            return self.utility(prod)
+        except ZeroDivisionError:  # a history without tries has no utility yet
+            return None
+
+    def below_threshold(self) -> None:
+        """Is called when no production's utility has reached the threshold."""
+
+    _decisive: ClassVar[frozenset[str]] = frozenset()
+    """The attributes of the module that the utilities of all productions depend on."""
+
+    def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
+        super()._trace_change(trace, key, value)
+        if key in self._decisive and trace.all and self.parent is not None:
+            for production in rules_of(cast("ProductionSystem", self.parent)).productions:
+                self._trace_part(trace, production, self._standing(production))
+
+    def _learned(self, prod: Any) -> None:
+        """Records a production's utility after learning."""
+        trace = self.sch.trace
+        if trace is not None and trace.all and self.parent is not None:
+            part = self._standing(prod)
+            if part is not None:
+                self._trace_part(trace, prod, part)
+
+    def _trace_part(self, trace: Trace, prod: Any, part: float | None) -> None:
+        data = {"production": prod.name, "part": self.name, "value": part}
+        trace.emit(self.sch.now_us, path_of(cast("Model", self.parent)), "utility", data)
+
+
+def utility_modules(agent: Model | None) -> list[ProceduralSubModule]:
+    """Returns the utility modules of an agent."""
+    return [] if agent is None else agent.__dict__.get("_adaptors", [])
+
+
+class PMNoise(ProceduralSubModule):
+    """Adds logistic noise to utilities.
+
+    Args:
+        noise: s of the noise drawn at each choice.
+        baseNoise: s of the noise drawn once for each production.
+    """
+
+    _decisive = frozenset({"noise"})
+
+    @named_parameters
+    def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
+        self.noise = noise
+        self.baseNoise = baseNoise
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.baseNoise = self.logisticNoise(self.baseNoise)
+
+    def utility(self, prod: Any) -> float:
+        return prod.baseNoise + self.logisticNoise(self.noise)
+
+    def _standing(self, prod: Any) -> float | None:
+        own = type(self).utility is not PMNoise.utility
+        return None if own or self.noise != 0 else prod.baseNoise
+
+    def logisticNoise(self, s: float) -> float:  # noqa: N802 - Python ACT-R's name
+        """Draws logistic noise of scale `s`."""
+        return logistic_noise(self.random, s)
+
+
+class PMPGC(ProceduralSubModule):
+    """Utility as expected gain, U = P G - C, learned from successes, failures and the time that was spent.
+
+    Args:
+        goal: G, the value of reaching the goal [s].
+
+    Source: Anderson & Lebiere (1998), chapter 3.
+    """
+
+    _decisive = frozenset({"goal"})
+
+    @named_parameters
+    def __init__(self, goal: float = 20) -> None:
+        self.history: list[tuple[Any, float]] = []
+        self.goal = goal
+        self._rewarded = False
+
+    def selecting(self, prod: Any) -> None:
+        """Records a production with the time of its choice [s]; after a reward, clears the earlier ones first."""
+        if self._rewarded:
+            self.history.clear()
+            self._rewarded = False
+        self.history.append((prod, self.now()))
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.successes = 1
+        prod.failures = 0
+        time = cast("Any", self.parent).production_time
+        prod.time = time() if callable(time) else time
+        prod.lock_pgc = False
+
+    def reward(self, value: float) -> None:
+        """Counts a success for a reward of 0 or more, a failure for one below, weighted by its size."""
+        now = self.now()
+        for prod, chosen in self.history:
+            if not prod.lock_pgc:
+                prod.time += now - chosen
+                if value >= 0:
+                    prod.successes += value
+                else:
+                    prod.failures -= value
+                self._learned(prod)
+        self._rewarded = True
+
+    def _learned(self, prod: Any) -> None:
+        # All such modules of one agent share a production's history.
+        for module in utility_modules(self.parent):
+            if isinstance(module, PMPGC):
+                ProceduralSubModule._learned(module, prod)
+
+    def utility(self, prod: Any) -> float:
+        tries = prod.successes + prod.failures
+        return prod.successes / tries * self.goal - prod.time / tries
+
+    def set(
+        self,
+        prod: Any,
+        successes: float | None = None,
+        failures: float | None = None,
+        time: float | None = None,
+        lock: bool | None = None,
+    ) -> None:
+        """Sets a production's history; `lock` keeps rewards from changing it.
+
+        Raises:
+            KeyError: If the agent has no production of that name.
+        """
+        if isinstance(prod, str):
+            prod = {p.name: p for p in rules_of(cast("ProductionSystem", self.parent)).productions}[prod]
+        if successes is not None:
+            prod.successes = successes
+        if failures is not None:
+            prod.failures = failures
+        if time is not None:
+            prod.time = time
+        if lock is not None:
+            prod.lock_pgc = lock
+        self._learned(prod)
+
+
+class PMPGCSuccessWeighted(PMPGC):
+    """PMPGC with P = 1 and the cost counted for each success."""
+
+    def utility(self, prod: Any) -> float:
+        return 1.0 * self.goal - prod.time / prod.successes
+
+
+class PMPGCMixedWeighted(PMPGC):
+    """PMPGC with the cost counted for each success."""
+
+    def utility(self, prod: Any) -> float:
+        return prod.successes / (prod.successes + prod.failures) * self.goal - prod.time / prod.successes
+
+
+class PMNew(ProceduralSubModule):
+    """Utility learning U += alpha (R - dt - U), where dt is the time from the choice to the reward [s].
+
+    Args:
+        alpha: The learning rate.
+
+    Source: Anderson (2007), equation for utility learning; ACT-R 6 and 7.
+    """
+
+    @named_parameters
+    def __init__(self, alpha: float = 0.2) -> None:
+        self.history: list[tuple[Any, float]] = []
+        self.alpha = alpha
+        self.clearFlag = False
+        """Whether a reward has come since the latest choice; public, so that Python ACT-R's logs show it."""
+
+    def selecting(self, prod: Any) -> None:
+        """Records a production with the time of its choice [s]; after a reward, clears the earlier ones first."""
+        if self.clearFlag:
+            self.history.clear()
+            self.clearFlag = False
+        self.history.append((prod, self.now()))
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.util = 0
+
+    def reward(self, value: float) -> None:
+        """Moves the utility of each production since the latest reward towards the reward minus the time since its choice."""
+        now = self.now()
+        whole = self._profile is not None and self._profile.total_utility
+        for prod, chosen in self.history:
+            present = prod.util + prod.base_utility if whole else prod.util
+            prod.util += self.alpha * (value - (now - chosen) - present)
+            self._learned(prod)
+        self.clearFlag = True
+
+    def utility(self, prod: Any) -> float:
+        """Returns a production's learned utility; 0 before its first reward."""
+        return prod.util
+
+    def recreated(self, prod: Any, first: Any) -> None:
+        """Moves a compiled rule's utility to its first parent's, U += alpha (U_parent - U) (ACT-R 7)."""
+        whole = prod.base_utility + prod.util
+        prod.util += self.alpha * (first.base_utility + first.util - whole)
+        self._learned(prod)
+
+
+class PMTD(ProceduralSubModule):
+    """Temporal-difference learning: a production's utility is its reward plus the utility of the next one, discounted by time.
+
+    Args:
+        alpha: The learning rate.
+        discount: k in the hyperbolic discount 1 / (1 + k t) [1/s].
+        cost: The cost of firing.
+
+    Source: Fu & Anderson (2004), Proceedings of the Cognitive Science Society.
+    """
+
+    @named_parameters
+    def __init__(self, alpha: float = 0.1, discount: float = 1, cost: float = 0.05) -> None:
+        self.alpha = alpha
+        self.discount = discount
+        self.last_prod: Any = None
+        self.last_time: float | None = None
+        self.this_reward: float = 0
+        self.cost = cost
+
+    def create(self, prod: Any, parents: list[Production] | None = None) -> None:
+        prod.td_u = 0
+        prod.cost = self.cost
+
+    def firing(self, prod: Any) -> None:
+        last = self.last_prod
+        if last is not None and self.last_time is not None:
+            passed = self.now() - self.last_time
+            worth = self.this_reward - last.cost + prod.td_u / (1 + self.discount * passed)
+            last.td_u += self.alpha * (worth - last.td_u)
+            self._learned(last)
+        self.last_prod = prod
+        self.last_time = self.now()
+        self.this_reward = 0
+
+    def reward(self, value: float) -> None:
+        self.this_reward += value
+
+    def utility(self, prod: Any) -> float:
+        return prod.td_u
