@@ -52,8 +52,14 @@ def _registered(make: Callable[[], str]) -> Callable[[], str]:
 
 def _rows(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Returns a Markdown table."""
-    lines = [header, ["---"] * len(header), *([cell.replace("|", "\\|").replace("[", "\\[") if not cell.startswith("`") else cell for cell in row] for row in rows)]
+    lines = [header, ["---"] * len(header), *([_cell(text) for text in row] for row in rows)]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _cell(text: str) -> str:
+    """Returns a text for a cell of a table: bars do not end it, and units in brackets are no links."""
+    text = text.replace("|", "\\|")
+    return text if text.startswith("`") else text.replace("[", "\\[")
 
 
 def _code(text: str) -> str:
