@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from manual import PAGES, ROOT, check, compare, has_code
+from moving import moving, until
 
 from actr3d.vision import DETECTORS
 
@@ -23,7 +24,7 @@ def own_detectors() -> Iterator[None]:
 
 @pytest.mark.usefixtures("own_detectors")
 @pytest.mark.filterwarnings("default::actr3d.errors.ModelWarning")
-@pytest.mark.parametrize("page", filter(has_code, PAGES), ids=lambda page: page.relative_to(ROOT).as_posix())
+@pytest.mark.parametrize("page", [page for page in PAGES if has_code(page)], ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_the_code_of_a_page_prints_what_the_page_shows(page: Path, tmp_path: Path) -> None:
     check(page, tmp_path)
 
@@ -45,3 +46,29 @@ def test_the_files_and_links_that_a_text_names_are_there(name: str) -> None:
     named = re.findall(r"`((?:actr3d|workbench|static|models|tests|docs)/[\w/.-]*)`", text)
     linked = re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", text)
     assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []
+
+
+# -- facts of pages that no code block shows
+
+
+def page(name: str) -> str:
+    """Returns the text of a page of the manual."""
+    return (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+
+
+def test_productions_can_match_what_the_page_on_motor_control_says() -> None:
+    _, motor = moving()
+    table = page("concepts/motor").split("## What productions can match")[1].split("\n\n")[1]
+    named = {word.replace("<group>", "torso").replace("<joint>", "torso_yaw") for word in re.findall(r"`(\w+|<\w+>_\w+)`", table)}
+    values = {"done", "stopped", "limit", "blocked", "none"}
+    assert {word for word in named if not hasattr(motor, word)} == values
+
+
+def test_a_posture_is_stored_as_the_page_on_motor_control_shows() -> None:
+    simulation, motor = moving()
+    motor.rotate_torso(60)
+    motor.extend_shoulder("right")
+    until(simulation, lambda: not motor.busy)
+    chunk = motor.parent.posture.chunk
+    (shown,) = re.findall(r"`(posture:rotate_torso .*?)`", page("concepts/motor"))
+    assert {f"{slot}:{value}" for slot, value in chunk.items()} >= set(shown.split()) - {"..."}

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import docstrings
-import models
+import model_pages
 import packages
 import tables
 from mkdocs.config.defaults import MkDocsConfig
@@ -29,7 +29,7 @@ def on_config(config: MkDocsConfig) -> None:
     """Adds the page of each model to the navigation, and checks the docstrings of everything public."""
     nav: Any = config.nav
     section = next(entry["Models"] for entry in nav if "Models" in entry)
-    section[1:] = [page.address for page in models.pages()]
+    section[1:] = [page.address for page in model_pages.pages()]
     config.extra["inline_scripts"] = {}
     for problem in docstrings.missing():
         LOG.warning(problem)
@@ -37,9 +37,9 @@ def on_config(config: MkDocsConfig) -> None:
 
 def on_files(files: Files, config: MkDocsConfig) -> None:
     """Adds the generated pages."""
-    for page in models.pages():
+    for page in model_pages.pages():
         files.append(File.generated(config, page.address, content=page.markdown()))
-    files.append(File.generated(config, "models/index.md", content=models.index()))
+    files.append(File.generated(config, "models/index.md", content=model_pages.index()))
     files.append(File.generated(config, "changelog.md", content=(ROOT / "CHANGELOG.md").read_text(encoding="utf-8")))
 
 
@@ -61,7 +61,7 @@ def _diagram(name: str) -> str:
     """Returns a drawing of `docs/images`, or the diagram of the packages, as part of the page: it follows the theme."""
     if name == "packages":
         return packages.diagram()
-    return f'<figure>{(ROOT / "docs" / "images" / f"{name}.svg").read_text(encoding="utf-8").strip()}</figure>'
+    return f"<figure>{(ROOT / 'docs' / 'images' / f'{name}.svg').read_text(encoding='utf-8').strip()}</figure>"
 
 
 def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:

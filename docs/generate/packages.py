@@ -73,7 +73,7 @@ def diagram() -> str:
             x += width + GAP
     lines = [_line(places[part], places[other]) for part, other in sorted(_direct(graph))]
     boxes = [
-        f'<g><title>{escape(part)} imports {escape(", ".join(sorted(graph[part])) or "nothing of the project")}</title>'
+        f"<g><title>{escape(part)} imports {escape(', '.join(sorted(graph[part])) or 'nothing of the project')}</title>"
         f'<rect x="{x:.0f}" y="{y:.0f}" width="{width:.0f}" height="{BOX}" rx="6"/>'
         f'<text x="{x + width / 2:.0f}" y="{y + BOX / 2:.0f}">{escape(part)}</text></g>'
         for part, (x, y, width) in places.items()

@@ -119,7 +119,9 @@ def _fitting(text: str, width: float) -> str:
 
 def _draw_row(row: _Row, y: float, scale: float, number: int) -> list[str]:
     name = row.name if len(row.name) <= 26 else f"{row.name[:25]}…"
-    parts = [f'<g class="{row.kind}"><text class="name" x="{LEFT - 8}" y="{y + ROW / 2:.0f}"><title>{escape(row.name)}</title>{escape(name)}</text>']
+    parts = [
+        f'<g class="{row.kind}"><text class="name" x="{LEFT - 8}" y="{y + ROW / 2:.0f}"><title>{escape(row.name)}</title>{escape(name)}</text>'
+    ]
     for begin, end, text in row.bars:
         x, width = LEFT + begin * scale, max((end - begin) * scale - 1, 1.5)
         moment = f"{begin:.3f} to {end:.3f} s: {text}"

@@ -54,7 +54,9 @@ class ModelPage:
         parts = [f"---\ntitle: {self.name}\n---\n\n# {self.title}", f"`{path}`", described, "## A run"]
         if self.name in SCREENSHOTS:
             parts.append(f"![The run in the workbench](../images/{SCREENSHOTS[self.name]})")
-        parts += [f"The beginning of a run with seed 1. Hold the pointer over a bar to see what it stands for.\n\n{run_picture.draw(trace)}"]
+        parts += [
+            f"The beginning of a run with seed 1. Hold the pointer over a bar to see what it stands for.\n\n{run_picture.draw(trace)}"
+        ]
         printed = run_picture.printed(trace)
         if printed:
             more = ["..."] if len(printed) > LONGEST_OUTPUT else []
@@ -75,5 +77,3 @@ def index() -> str:
     text = (MODELS / "README.md").read_text(encoding="utf-8")
     names = {page.file.relative_to(MODELS).as_posix(): f"{page.name}.md" for page in pages()}
     return re.sub(r"\]\(([\w/]+\.py)\)", lambda found: f"]({names[found[1]]})", text)
-
-
