@@ -391,7 +391,6 @@ def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
     assert (scene.result().outcome, scene.result().contacts) == ("passed", 0)
 
 
-
 # -- a speed that changes
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from manual import PAGES, ROOT, check, compare, has_code
+from manual import FENCE, PAGES, ROOT, check, compare, has_code
 from moving import moving, until
 
 from actr3d.vision import DETECTORS
@@ -42,7 +42,7 @@ def test_the_readme_is_short() -> None:
 
 @pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "SECURITY.md"])
 def test_the_files_and_links_that_a_text_names_are_there(name: str) -> None:
-    text = (ROOT / name).read_text(encoding="utf-8")
+    text = FENCE.sub("", (ROOT / name).read_text(encoding="utf-8"))
     named = re.findall(r"`((?:actr3d|workbench|static|models|tests|docs)/[\w/.-]*)`", text)
     linked = re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", text)
     assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []

@@ -237,7 +237,6 @@ class Agent(Base):
     assert "sgoms_ask_again" in [name for _, name in fired(module)]
 
 
-
 @pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])
 def test_models_with_buffers_of_their_own_run_without_a_word(name: str, tmp_path: Path) -> None:
     copy = shutil.copy(ROOT / "tests" / "models" / f"{name}.py", tmp_path)

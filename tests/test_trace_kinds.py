@@ -126,7 +126,6 @@ def test_a_level_holds_the_kinds_of_the_table(level: str) -> None:
     assert found[level] == [(source, kind) for source, kind in found["all"] if LEVELS.index(KINDS[kind].level) <= rank]
 
 
-
 # -- memory
 
 

@@ -57,7 +57,7 @@ def draw(events: Sequence[Event]) -> str:
     scale = (WIDTH - LEFT - RIGHT) / (end or 1)
     parts = [_axis(end, scale, height)]
     for number, row in enumerate(rows):
-        parts += _draw_row(row, TOP + ROW * number, scale, number)
+        parts += _draw_row(row, TOP + ROW * number, scale)
     if marks:
         parts += _draw_output(marks, TOP + ROW * len(rows), scale)
     about = f"The first {end:.4g} s of the run" if end < events[-1]["time"] else f"The whole run of {end:.4g} s"
@@ -117,11 +117,10 @@ def _fitting(text: str, width: float) -> str:
     return text if len(text) <= room else f"{text[: room - 1]}…" if room > 3 else ""
 
 
-def _draw_row(row: _Row, y: float, scale: float, number: int) -> list[str]:
+def _draw_row(row: _Row, y: float, scale: float) -> list[str]:
     name = row.name if len(row.name) <= 26 else f"{row.name[:25]}…"
-    parts = [
-        f'<g class="{row.kind}"><text class="name" x="{LEFT - 8}" y="{y + ROW / 2:.0f}"><title>{escape(row.name)}</title>{escape(name)}</text>'
-    ]
+    shown = f"<title>{escape(row.name)}</title>{escape(name)}"
+    parts = [f'<g class="{row.kind}"><text class="name" x="{LEFT - 8}" y="{y + ROW / 2:.0f}">{shown}</text>']
     for begin, end, text in row.bars:
         x, width = LEFT + begin * scale, max((end - begin) * scale - 1, 1.5)
         moment = f"{begin:.3f} to {end:.3f} s: {text}"
