@@ -47,7 +47,7 @@ class Shot:
 
 
 SHOTS = (
-    Shot(name="workbench.png", model="aperture_passage.py", settings={"aperture": 0.45}, time=10.6, tab="productions"),
+    Shot(name="workbench.png", model="aperture_passage.py", settings={"aperture": 0.45}, time=10.2, tab="productions"),
     Shot(name="doorway.png", model="doorway.py", settings={"width": 0.5}, time=5.6, tab="buffers"),
 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import builtins
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import griffe
 
@@ -16,7 +17,7 @@ PACKAGES = ("actr", "camera", "motor", "recording", "sgoms", "simulation", "visi
 
 def missing() -> Iterator[str]:
     """Yields a sentence for each public class, function, method, property or field without a docstring of its own or inherited."""
-    library = griffe.load("actr3d", search_paths=[ROOT], resolve_aliases=True)
+    library: Any = griffe.load("actr3d", search_paths=[ROOT], resolve_aliases=True)
     for package in PACKAGES:
         for name in library[package].exports or ():
             thing = library[package].members[str(name)]
@@ -24,7 +25,7 @@ def missing() -> Iterator[str]:
             yield from (f"{one.path} has no docstring" for one in found if _needs_one(one) and not _inherits(one))
 
 
-def _needs_one(member: griffe.Object | griffe.Alias) -> bool:
+def _needs_one(member: Any) -> bool:
     """Returns whether a member has no docstring and should have one.
 
     Of attributes, these are properties, and fields of dataclasses that the docstring of the class does not describe as arguments.
@@ -37,7 +38,7 @@ def _needs_one(member: griffe.Object | griffe.Alias) -> bool:
     return owner.docstring is None or f"{member.name}: " not in owner.docstring.value
 
 
-def _inherits(member: griffe.Object | griffe.Alias) -> bool:
+def _inherits(member: Any) -> bool:
     """Returns whether a class above the member's own, a built-in one too, describes it."""
     owner = member.parent
     if owner is None or not owner.is_class:

@@ -25,10 +25,9 @@ INLINE_SCRIPT = re.compile(r"<script>(.*?)</script>", re.DOTALL)
 GENERATED = re.compile(r"^<!-- (table|help|diagram): ([\w -]+) -->$", re.MULTILINE)
 
 
-def on_config(config: MkDocsConfig) -> None:
+def on_config(config: Any) -> None:
     """Adds the page of each model to the navigation, and checks the docstrings of everything public."""
-    nav: Any = config.nav
-    section = next(entry["Models"] for entry in nav if "Models" in entry)
+    section = next(entry["Models"] for entry in config.nav if "Models" in entry)
     section[1:] = [page.address for page in model_pages.pages()]
     config.extra["inline_scripts"] = {}
     for problem in docstrings.missing():
@@ -64,7 +63,7 @@ def _diagram(name: str) -> str:
     return f"<figure>{(ROOT / 'docs' / 'images' / f'{name}.svg').read_text(encoding='utf-8').strip()}</figure>"
 
 
-def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
+def on_post_page(output: str, page: Page, config: Any) -> str:
     """Moves each inline script of a page into a file, named after what it holds."""
 
     def moved(found: re.Match[str]) -> str:
@@ -77,7 +76,7 @@ def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
     return INLINE_SCRIPT.sub(moved, output)
 
 
-def on_post_build(config: MkDocsConfig) -> None:
+def on_post_build(config: Any) -> None:
     """Writes the scripts, and drops the page of errors and the site map, which need to know the address of the site."""
     site = Path(config.site_dir)
     for name, text in config.extra["inline_scripts"].items():

@@ -51,7 +51,7 @@ class ModelPage:
         path = self.file.relative_to(ROOT).as_posix()
         trace = run_picture.read(GOLDEN / self.file.relative_to(MODELS).with_suffix(".jsonl"))
         described = re.sub(r"^(.+)\n-{3,}$", r"## \1", self._text.partition("\n")[2].strip(), flags=re.MULTILINE)
-        parts = [f"---\ntitle: {self.name}\n---\n\n# {self.title}", f"`{path}`", described, "## A run"]
+        parts = [f"---\ntitle: {self.name.replace('-', '/')}\n---\n\n# {self.title}", f"`{path}`", described, "## A run"]
         if self.name in SCREENSHOTS:
             parts.append(f"![The run in the workbench](../images/{SCREENSHOTS[self.name]})")
         parts += [

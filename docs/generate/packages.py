@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from graphlib import TopologicalSorter
 from html import escape
+from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-WIDTH, ROW, BOX, GAP = 900, 84, 34, 18
+ROW, BOX, GAP = 84, 34, 18
+ROUNDS = 8
+"""How often the order of the boxes is improved."""
+
+Node = str | tuple[str, str, int]
+"""A part, or the place where a line passes a floor."""
 
 
 @cache
@@ -62,31 +68,59 @@ def _direct(graph: Mapping[str, frozenset[str]]) -> Iterator[tuple[str, str]]:
 def diagram() -> str:
     """Returns the diagram of the packages as a figure with an SVG."""
     graph = imports()
-    floors = _floors(graph)
-    height = ROW * len(floors) - ROW + BOX + 2 * GAP
-    places: dict[str, tuple[float, float, float]] = {}
-    for number, floor in enumerate(floors):
-        widths = [24 + 8.4 * len(part) for part in floor]
-        x = (WIDTH - sum(widths) - GAP * (len(floor) - 1)) / 2
-        for part, width in zip(floor, widths, strict=True):
-            places[part] = (x, height - GAP - BOX - ROW * number, width)
-            x += width + GAP
-    lines = [_line(places[part], places[other]) for part, other in sorted(_direct(graph))]
+    floors, lines = _layout(graph)
+    widths = {node: 24 + 8.4 * len(node) if isinstance(node, str) else 10 for floor in floors for node in floor}
+    rows = [sum(widths[node] + GAP for node in floor) - GAP for floor in floors]
+    width, height = max(rows) + 2 * GAP, ROW * len(floors) - ROW + BOX + 2 * GAP
+    places: dict[Node, tuple[float, float]] = {}
+    for number, (floor, row) in enumerate(zip(floors, rows, strict=True)):
+        x = (width - row) / 2
+        for node in floor:
+            places[node] = (x + widths[node] / 2, height - GAP - BOX - ROW * number)
+            x += widths[node] + GAP
+    paths = [_curve([places[node] for node in line]) for line in lines]
     boxes = [
         f"<g><title>{escape(part)} imports {escape(', '.join(sorted(graph[part])) or 'nothing of the project')}</title>"
-        f'<rect x="{x:.0f}" y="{y:.0f}" width="{width:.0f}" height="{BOX}" rx="6"/>'
-        f'<text x="{x + width / 2:.0f}" y="{y + BOX / 2:.0f}">{escape(part)}</text></g>'
-        for part, (x, y, width) in places.items()
+        f'<rect x="{x - widths[part] / 2:.0f}" y="{y:.0f}" width="{widths[part]:.0f}" height="{BOX}" rx="6"/>'
+        f'<text x="{x:.0f}" y="{y + BOX / 2:.0f}">{escape(part)}</text></g>'
+        for part in graph
+        for x, y in [places[part]]
     ]
     return (
-        f'<figure><svg class="packages" viewBox="0 0 {WIDTH} {height}" role="img" aria-label="Which package imports which">'
-        f"{''.join(lines)}{''.join(boxes)}</svg><figcaption>Each package imports only packages below it. Lines that follow from other "
+        f'<figure><svg class="packages" viewBox="0 0 {width:.0f} {height}" role="img" aria-label="Which package imports which">'
+        f"{''.join(paths)}{''.join(boxes)}</svg><figcaption>Each package imports only packages below it. Lines that follow from other "
         "lines are left out.</figcaption></figure>"
     )
 
 
-def _line(upper: tuple[float, float, float], lower: tuple[float, float, float]) -> str:
-    """Returns a curve from the bottom of a box to the top of another."""
-    x1, y1, x2, y2 = upper[0] + upper[2] / 2, upper[1] + BOX, lower[0] + lower[2] / 2, lower[1]
-    bend = min(ROW, y2 - y1) / 2
-    return f'<path d="M{x1:.0f} {y1:.0f}C{x1:.0f} {y1 + bend:.0f} {x2:.0f} {y2 - bend:.0f} {x2:.0f} {y2:.0f}"/>'
+def _layout(graph: Mapping[str, frozenset[str]]) -> tuple[list[list[Node]], list[list[Node]]]:
+    """Returns the nodes floor by floor, from the ground up, in an order with few crossings, and the nodes that each line goes through.
+
+    A line that passes a floor has a node of its own there, so that it goes between the boxes.
+    """
+    floors: list[list[Node]] = [list(floor) for floor in _floors(graph)]
+    level = {node: number for number, floor in enumerate(floors) for node in floor}
+    lines: list[list[Node]] = []
+    for upper, lower in sorted(_direct(graph)):
+        between = [(upper, lower, number) for number in range(level[upper] - 1, level[lower], -1)]
+        for node in between:
+            floors[node[2]].append(node)
+        lines.append([upper, *between, lower])
+    joined = [pair for line in lines for pair in pairwise(line)]
+    for _ in range(ROUNDS):
+        for number in [*range(1, len(floors)), *range(len(floors) - 2, -1, -1)]:
+            place = {node: (n + 0.5) / len(floor) for floor in floors for n, node in enumerate(floor)}
+            near = {node: [place[b if a == node else a] for a, b in joined if node in (a, b)] for node in floors[number]}
+            floors[number].sort(key=lambda node: sum(near[node]) / len(near[node]) if near[node] else place[node])
+    return floors, lines
+
+
+def _curve(points: Sequence[tuple[float, float]]) -> str:
+    """Returns a smooth line from the bottom of the first box, past those between, to the top of the last one."""
+    text = f"M{points[0][0]:.0f} {points[0][1] + BOX:.0f}"
+    for (x1, y1), (x2, y2) in pairwise(points):
+        bend = (y2 - y1 - BOX) / 2
+        text += (
+            f"C{x1:.0f} {y1 + BOX + bend:.0f} {x2:.0f} {y2 - bend:.0f} {x2:.0f} {y2:.0f}V{y2 + BOX if (x2, y2) != points[-1] else y2:.0f}"
+        )
+    return f'<path d="{text}"/>'

@@ -23,7 +23,7 @@ CHARACTER = 6.4
 class _Row:
     name: str
     kind: str
-    bars: list[tuple[float, float, str]] = field(default_factory=list)
+    bars: list[tuple[float, float, str]] = field(default_factory=list[tuple[float, float, str]])
     open: tuple[float, str] | None = None
 
     def begin(self, time: float, text: str) -> None:
