@@ -3,7 +3,7 @@
 The blocks of a page follow one another, as a reader would copy them:
 
 - A `python` block continues the program of the block before; one with `title="name.py"` begins a new file.
-- An `output` block holds what the block before it printed. A line `...` stands for any lines.
+- An `output` block holds what the block before it printed. A line `...` matches any lines.
 - A `console` block holds commands, each after `$ `, and what they print. They run in a folder with the page's files and `models`.
 - Blocks of other languages are not run: `sh` for commands of the system, `text` for what is only shown.
 """
@@ -91,7 +91,7 @@ def check(page: Path, folder: Path) -> None:
 
 
 def compare(expected: str, found: str) -> None:
-    """Compares what a page shows with what was printed; a line `...` of the page stands for any lines.
+    """Compares what a page shows with what was printed; a line `...` of the page matches any lines.
 
     Raises:
         AssertionError: If they differ.

@@ -55,7 +55,7 @@ class ModelPage:
         if self.name in SCREENSHOTS:
             parts.append(f"![The run in the workbench](../images/{SCREENSHOTS[self.name]})")
         parts += [
-            f"The beginning of a run with seed 1. Hold the pointer over a bar to see what it stands for.\n\n{run_picture.draw(trace)}"
+            f"The beginning of a run with seed 1. Hold the pointer over a bar to see its time and content.\n\n{run_picture.draw(trace)}"
         ]
         printed = run_picture.printed(trace)
         if printed:

@@ -17,6 +17,7 @@ from starlette.applications import Starlette
 from starlette.routing import Mount
 from starlette.staticfiles import StaticFiles
 
+from tests.browser.looking import open_tab
 from workbench.auth import Gate, Guard, Token
 from workbench.cli import _listen as listen  # pyright: ignore[reportPrivateUsage] # the socket that the command opens
 from workbench.shipped import static
@@ -89,3 +90,13 @@ def test_the_manual_can_be_read_and_searched_offline(opened: Callable[..., tuple
     page.goto(f"{manual}/models/counting/")
     expect(page.locator("svg.run")).to_be_visible()
     assert complaints == []
+
+
+def test_each_panel_links_to_its_page_of_the_manual(page: Page) -> None:
+    for tab in ("About", "Productions", "Messages"):
+        open_tab(page, tab)
+        link = page.get_by_role("link", name=f"Manual: {tab}")
+        expect(link).to_have_attribute("href", f"/manual/workbench/{tab.lower()}/")
+    expect(page.get_by_role("link", name="Manual: Timeline")).to_be_visible()
+    page.get_by_role("button", name="Help", exact=True).click()
+    expect(page.get_by_role("dialog").get_by_role("link", name="Manual of ACT-R 3D")).to_have_attribute("href", "/manual/")
