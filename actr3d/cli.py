@@ -132,7 +132,8 @@ def replay_command(options: argparse.Namespace) -> int:
 
     verdict = verdict_of(options.file, trust=options.trust, any_version=options.any_version)
     out = sys.stderr if verdict.code == UNKNOWN else sys.stdout
-    out.write(verdict.text.encode(out.encoding, "backslashreplace").decode(out.encoding))
+    encoding = out.encoding or "utf-8"  # a stream in memory has none
+    out.write(verdict.text.encode(encoding, "backslashreplace").decode(encoding))
     return verdict.code
 
 

@@ -17,7 +17,7 @@ import { openTab, TABS } from "./tabs.js";
 const LEAST_SCENE = 320; // [px]
 const ROWS = 336; // so high are the usual rows of a model with a body [px]
 // At first, wide windows give the panels more room, too.
-const side = remembered("side width", Math.max(600, Math.round(0.38 * innerWidth)));
+const side = remembered("side width", Math.max(632, Math.round(0.38 * innerWidth)));
 /** Whether there is a 3D view; else the panels have all the room. */
 const hasWorld = remembered("has world", true); // while a model loads, that of the one before
 effect(() => {

@@ -391,13 +391,6 @@ def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
     assert (scene.result().outcome, scene.result().contacts) == ("passed", 0)
 
 
-def test_the_readme_shows_what_is_printed(capsys: Any) -> None:
-    readme = (FILE.parent.parent / "README.md").read_text(encoding="utf-8").split("## The aperture\n")[1]
-    command = readme.split("uv run actr3d ")[1].splitlines()[0].split()
-    assert main([str(FILE) if word == "models/aperture_passage.py" else word for word in command]) == 0
-    assert capsys.readouterr().out == readme.split("```\n")[1]
-
-
 # -- a speed that changes
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -329,18 +327,3 @@ class Agent(ACTR):
     agent.run(0)
     (told,) = agent.explain().retrievals
     assert told.candidates[0].parts == {"get_activation": 2.5}
-
-
-def test_the_readme_shows_what_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    root = Path(__file__).parent.parent
-    section = (root / "README.md").read_text(encoding="utf-8").split("## Asking why")[1]
-    program = section.split("```python\n")[1].split("```")[0]
-    shown = section.split("```\n")[2]
-    before = sys.path.copy()
-    try:
-        exec(program.replace('"models"', repr(str(root / "models"))), {})
-    finally:
-        sys.path[:] = before
-    counted, printed = capsys.readouterr().out.split("top at", 1)
-    assert counted.split() == ["2", "3", "4", "5"]
-    assert f"top at{printed}" == shown

@@ -15,7 +15,7 @@ import pytest
 from living import near
 from planning import HEAD, cooking, fired, told
 
-from actr3d.actr.loading import load_text, run_text
+from actr3d.actr.loading import load_text
 
 ROOT = Path(__file__).parent.parent
 TIDY = """
@@ -235,12 +235,6 @@ class Agent(Base):
         seconds=0.45,
     )
     assert "sgoms_ask_again" in [name for _, name in fired(module)]
-
-
-def test_the_readme_example_prints_what_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    section = (ROOT / "README.md").read_text(encoding="utf-8").split("## Planning units\n")[1].split("\n## ")[0]
-    run_text(section.split("```python\n")[1].split("```")[0], "readme.py")
-    assert capsys.readouterr().out == section.split("```\n")[2]
 
 
 @pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])

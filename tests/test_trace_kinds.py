@@ -126,14 +126,6 @@ def test_a_level_holds_the_kinds_of_the_table(level: str) -> None:
     assert found[level] == [(source, kind) for source, kind in found["all"] if LEVELS.index(KINDS[kind].level) <= rank]
 
 
-def test_the_readme_has_the_table() -> None:
-    rows = [line for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines() if line.startswith("| `")]
-    for name, kind in KINDS.items():
-        assert f"| `{name}` | {kind.level} | {kind.source} | {kind.data} | {kind.meaning} |" in rows
-    levels = {kind.level for kind in KINDS.values()}
-    assert sum(line.split(" | ")[1] in levels for line in rows) == len(KINDS)
-
-
 # -- memory
 
 

@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
+SITE = ROOT / "build" / "site"
+"""The built manual."""
 PATIENCE = 300.0
 """So long the workbench may take to start, and a model to end [s]: the camera is compiled there for the first time."""
 
@@ -26,6 +28,7 @@ def main() -> int:
     begin = time.monotonic()
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
+        _run(sys.executable, "-m", "mkdocs", "build", "--quiet", "--config-file", str(ROOT / "mkdocs.yml"))
         _run("uv", "build", "--quiet", "--wheel", "--out-dir", str(folder / "dist"), str(ROOT))
         (wheel,) = (folder / "dist").glob("*.whl")
         _complete(wheel)
@@ -49,6 +52,9 @@ def _complete(wheel: Path) -> None:
         for here, there in places.items():
             if name.startswith(here) and not (name.endswith(".gitignore") or there + name.removeprefix(here) in inside):
                 raise SystemExit(f"the wheel lacks {name}")
+    for file in SITE.rglob("*"):
+        if file.is_file() and f"workbench/manual/{file.relative_to(SITE).as_posix()}" not in inside:
+            raise SystemExit(f"the wheel lacks the page {file} of the manual")
 
 
 def _constraints(folder: Path) -> str:
@@ -96,6 +102,8 @@ def _use(address: str, home: Path) -> None:
     for file in (ROOT / "static").rglob("*"):
         if file.is_file() and ask(f"/static/{file.relative_to(ROOT / 'static').as_posix()}") != file.read_bytes():
             raise SystemExit(f"the page's {file.name} is another")
+    if ask("/manual/workbench/buffers/") != (SITE / "workbench" / "buffers" / "index.html").read_bytes():
+        raise SystemExit("the manual is another")
     listed = json.loads(ask("/api/models"))
     names = {model["path"] for model in listed["models"]}
     if not {"aperture_passage.py", "doorway.py"} <= names or not Path(listed["folder"]).is_relative_to(home.resolve()):

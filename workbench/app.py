@@ -11,9 +11,10 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, PlainTextResponse
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
 from workbench import page, recording_routes, routes
@@ -24,7 +25,7 @@ from workbench.keeping import Keeping
 from workbench.loader import sendable
 from workbench.recordings import Recordings
 from workbench.sessions import Sessions
-from workbench.shipped import static
+from workbench.shipped import manual, static
 from workbench.viser_bridge import Bridge
 from workbench.worker.spawn import MEMORY, Zygote
 from workbench.worker.workers import Workers
@@ -71,6 +72,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.include_router(recording_routes.router)
     app.include_router(page.router)
     app.mount("/static", StaticFiles(directory=static()), name="static")
+    app.mount("/manual", _manual(), name="manual")
     app.add_exception_handler(Actr3dError, _refused)
     app.add_exception_handler(OSError, _refused)
     app.add_exception_handler(RequestValidationError, _misunderstood)
@@ -78,6 +80,14 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.add_exception_handler(Exception, _unexpected)
     app.add_middleware(Guard, gate=gate)
     return app
+
+
+def _manual() -> ASGIApp:
+    """Returns what serves the manual; without a built one, an answer that says how to build it."""
+    folder = manual()
+    if folder is None:
+        return PlainTextResponse("The manual has not been built. In a copy of the repository: uv run mkdocs build", status_code=404)
+    return StaticFiles(directory=folder, html=True)
 
 
 def _told(problem: str, status: int, headers: Mapping[str, str] | None = None) -> JSONResponse:

@@ -43,6 +43,12 @@ def models_folder(named: Path | None, present: Path, home: Path) -> Path:
     return folder
 
 
+def manual() -> Path | None:
+    """Returns the folder of the built manual, inside the package or in a copy of the repository; None if it has not been built."""
+    package = Path(__file__).parent
+    return next((folder for folder in (package / "manual", package.parent / "build" / "site") if folder.is_dir()), None)
+
+
 def static() -> Path:
     """Returns the folder of the page: inside the package where it is installed, beside it in a copy of the repository."""
     package = Path(__file__).parent

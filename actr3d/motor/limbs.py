@@ -42,8 +42,11 @@ class BodyPart:
     """A part of the body with the joints by which it hangs on another, and with the parts that it carries."""
 
     name: str
+    """The name of the part: `torso`."""
     joints: tuple[Freedom, ...]
+    """The joints between it and the part that carries it."""
     parts: tuple[BodyPart, ...]
+    """The parts that it carries."""
 
     def part(self, name: str) -> BodyPart:
         """Returns this part, or one that it carries, by name.

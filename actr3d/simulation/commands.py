@@ -24,7 +24,9 @@ class Command:
     word: str
     """What: see `ON_WORLD`, `ON_MINDS`; any other word is one for a body."""
     values: tuple[Any, ...]
+    """Its positional arguments."""
     named: Mapping[str, Any]
+    """Its keyword arguments."""
     body: str | None = None
     """To which body the word is said."""
 

@@ -24,11 +24,13 @@ class Sighting:
     module: str
     """The path of the vision module."""
     bottom_up: bool
+    """Whether the search was bottom-up."""
     time: float
     """When it was seen [s]."""
     chosen: bool
     """Whether it is what the search brings to the buffer."""
     feature: Feature
+    """The feature itself."""
     view: View
     """What it was found in, as that was misjudged."""
     stood: Stand

@@ -177,7 +177,7 @@ class World:
             self._solved = True
 
     def accelerations(self) -> NDArray[np.float64]:
-        """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2] [rad/s^2].
+        """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2, rad/s^2].
 
         MuJoCo's `qacc` leaves out that the integrator is implicit: with stiff servos it is not what happens.
         """

@@ -6,7 +6,7 @@ import { Icon } from "../parts/icon.js";
 import { chosen, nextTheme } from "../theme.js";
 import { Aperture } from "./aperture.js";
 import { Clock } from "./clock.js";
-import { showKeys } from "./help.js";
+import { showHelp } from "./help.js";
 import { ModelChoice } from "./models.js";
 import { Transport } from "./transport.js";
 
@@ -21,6 +21,6 @@ export function Bar() {
     <${Aperture} />
     <span class="stretch"></span>
     <button class="bare" title="Theme: ${chosen} (T)" aria-label="Theme: ${chosen}" onClick=${nextTheme}><${Icon} name="theme" /></button>
-    <button class="bare" title="Keys (?)" aria-label="Keys" onClick=${showKeys}><${Icon} name="help" /></button>
+    <button class="bare" title="Help: the manual and the keys (?)" aria-label="Help" onClick=${showHelp}><${Icon} name="help" /></button>
   </header>`;
 }

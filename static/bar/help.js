@@ -1,17 +1,18 @@
-// The keys, shown by `?`.
+// The help, shown by `?`: the way to the manual, and the keys.
 
 import { html } from "../vendor/preact.js";
 import { bindKey, KEY_GROUPS, keysOf, keyText } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 
-export function showKeys() {
+export function showHelp() {
   const groups = KEY_GROUPS.map(
     (group) => html`<section key=${group}>
       <h3 id="keys-${group}">${group}</h3>
       <table aria-labelledby="keys-${group}"><tbody>${keysOf(group).map(({ key, text }) => html`<tr key=${text}><td><kbd>${keyText(key)}</kbd></td><td>${text}</td></tr>`)}</tbody></table>
     </section>`,
   );
-  dialog({ title: "Keys", body: html`<div class="keys">${groups}</div>` });
+  const manual = html`<p><a href="/manual/" target="_blank" rel="noopener">Manual of ACT-R 3D</a> (<a href="/manual/workbench/" target="_blank" rel="noopener">the workbench</a>)</p>`;
+  dialog({ title: "Help", body: html`${manual}<div class="keys">${groups}</div>` });
 }
 
-bindKey("?", "Show the keys", showKeys, "Panels");
+bindKey("?", "Help: the manual and the keys", showHelp, "Panels");

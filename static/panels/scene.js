@@ -4,6 +4,7 @@ import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js"
 import { RetinaInset } from "../eye/inset.js";
 import { bindKey, hearKeys, noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
+import { ManualLink } from "../parts/manual.js";
 import { settable } from "../parts/settable.js";
 import { remembered } from "../remembered.js";
 import { rest } from "../rest.js";
@@ -39,6 +40,7 @@ function ViewBar() {
       </select>
       <button aria-label="Reset view" title="Reset view (Shift V)" onClick=${resetView}><${Icon} name="restart" /></button>
       <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
+      <${ManualLink} page="scene" title="3D view" />
     </div>
     ${open.value &&
     html`<div class="overlay-list" role="group" aria-label="Overlays">

@@ -1,6 +1,7 @@
-// Tabs: one panel shown of several, chosen by pointer or by arrow keys.
+// Tabs: one panel shown of several, chosen by pointer or by arrow keys, with a link to its page of the manual.
 
 import { html } from "../vendor/preact.js";
+import { ManualLink } from "./manual.js";
 
 /**
  * @param label What the tabs are.
@@ -20,7 +21,7 @@ export function Tabs({ label, tabs, shown }) {
   }
 
   return html`
-    <div class="tabs" role="tablist" aria-label=${label} onKeyDown=${press}>
+    <div class="tab-row"><div class="tabs" role="tablist" aria-label=${label} onKeyDown=${press}>
       ${tabs.map(({ id, title, badge }) => {
         const more = badge?.();
         return html`<button
@@ -35,7 +36,7 @@ export function Tabs({ label, tabs, shown }) {
           <span class="tab-title" data-text=${title}>${title}</span>${more ? html`<span class="badge ${more.level ?? ""} ${more.text ? "" : "dot"}" title=${more.title}>${more.text}</span>` : null}
         </button>`;
       })}
-    </div>
+    </div><${ManualLink} page=${open.id} title=${open.title} /></div>
     <div class="tab-panel" role="tabpanel" id="panel-${open.id}" aria-labelledby="tab-${open.id}" key=${open.id}>
       <${open.View} />
     </div>

@@ -4,6 +4,7 @@ import { html } from "../vendor/preact.js";
 import { bindKey, noteKey } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
+import { ManualLink } from "../parts/manual.js";
 import { order } from "../server.js";
 import { alive, running, session } from "../store.js";
 import { CurveChoice } from "./choice.js";
@@ -70,5 +71,6 @@ export function Tools() {
       <button class="bare" aria-pressed=${mode.value === "fit"} title="Show all of the run (F)" onClick=${fit}>Fit</button>
     </div>
     <button class="bare" disabled=${!session.value} title="Keep the timeline or a plot as a picture" aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
+    <${ManualLink} page="timeline" title="Timeline" />
   </div>`;
 }

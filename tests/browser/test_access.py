@@ -49,7 +49,7 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: An
             expect(page.get_by_role("toolbar", name="The chosen run")).to_be_visible()
         look(title)
     page.keyboard.press("Escape")
-    for button in ("Keys", "Curves …"):
+    for button in ("Help", "Curves …"):
         page.get_by_role("button", name=button, exact=True).click()
         expect(page.get_by_role("dialog")).to_be_visible()
         look(button)

@@ -26,9 +26,11 @@ class Detector:
     finds: type[Feature]
     """The kind of features."""
     detect: Detect
+    """The function that finds them."""
     parameters: tuple[str, ...]
     """What it takes besides the view."""
     builtin: bool = False
+    """Whether the library defines it, and not a model file."""
 
     @property
     def name(self) -> str:

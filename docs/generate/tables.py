@@ -1,0 +1,123 @@
+"""Makes the tables and the command-line help of the manual from the registries and parsers of the code."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import io
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from unittest import mock
+
+import actr3d.cli
+import workbench.cli
+from actr3d.kinds import KINDS
+from actr3d.motor import Motor
+from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
+from actr3d.vision import DETECTORS
+from actr3d.vision.feature import slot_names
+from actr3d.world import Car, ImportedBody, Mannequin, Scene, World
+from actr3d.world.actuators import ACTUATORS
+from actr3d.world.sensors import SENSORS
+from actr3d.world.words import Word
+
+ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
+  <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
+COMMANDS = {"actr3d": actr3d.cli.main, "workbench": workbench.cli.main}
+TABLES: dict[str, Callable[[], str]] = {}
+
+
+def table(name: str) -> str:
+    """Returns a table as Markdown.
+
+    Raises:
+        KeyError: If there is no such table.
+    """
+    return TABLES[name]()
+
+
+def command_help(command: str) -> str:
+    """Returns what a command prints with `--help`, as a block of text."""
+    name, *words = command.split()
+    out = io.StringIO()
+    with mock.patch.dict(os.environ, {"COLUMNS": "100"}), contextlib.redirect_stdout(out), contextlib.suppress(SystemExit):
+        COMMANDS[name]([*words, "--help"])
+    return f"```text\n{out.getvalue().strip()}\n```"
+
+
+def _registered(make: Callable[[], str]) -> Callable[[], str]:
+    TABLES[make.__name__.replace("_", " ")] = make
+    return make
+
+
+def _rows(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Returns a Markdown table."""
+    lines = [header, ["---"] * len(header), *([_cell(text) for text in row] for row in rows)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _cell(text: str) -> str:
+    """Returns a text for a cell of a table: bars do not end it, and units in brackets are no links."""
+    text = text.replace("|", "\\|")
+    return text if text.startswith("`") else text.replace("[", "\\[")
+
+
+def _code(text: str) -> str:
+    return f"`{text}`" if text else ""
+
+
+def _first_sentence(of: Callable[..., object]) -> str:
+    return (inspect.getdoc(of) or "").partition("\n\n")[0].replace("\n", " ").partition(". ")[0].rstrip(".") + "."
+
+
+def _words(words: Mapping[str, Word]) -> str:
+    parts = (Mannequin(), Car(position=(9, 0)), ImportedBody(name="imported", text=ROBOT, eye="eye", position=(0, 9, 0)))
+    bodies = World(Scene(parts=parts)).bodies
+    rows: list[Sequence[str]] = []
+    for name, word in words.items():
+        has = [kind for kind, body in bodies.items() if word.fits(body)]
+        rows.append((_code(name), _code(word.takes), "any" if len(has) == len(bodies) else ", ".join(has), word.meaning))
+    return _rows(("Name", "Arguments", "Bodies", "Meaning"), rows)
+
+
+@_registered
+def actuators() -> str:
+    """Returns the table of all actuators."""
+    return _words(ACTUATORS)
+
+
+@_registered
+def sensors() -> str:
+    """Returns the table of all sensors."""
+    return _words(SENSORS)
+
+
+@_registered
+def features() -> str:
+    """Returns the table of all features that vision finds."""
+    rows: list[Sequence[str]] = []
+    for name, one in sorted(DETECTORS.items()):
+        if one.builtin:
+            slots = [*slot_names(one.finds), *(f"{other} (alias of {slot})" for other, slot in one.finds.aliases.items())]
+            rows.append((_code(name), ", ".join(slots), ", ".join(map(_code, one.parameters))))
+    return _rows(("Feature", "Slots", "Parameters of the request"), rows)
+
+
+@_registered
+def motor_commands() -> str:
+    """Returns the table of all commands of the motor module."""
+    own = [name for name in vars(Motor) if not name.startswith("_") and inspect.isfunction(getattr(Motor, name))]
+    documented = [getattr(Motor, name) for name in own if inspect.getdoc(getattr(Motor, name))]
+    rows: list[Sequence[str]] = []
+    for command in documented:
+        parameters = list(inspect.signature(command).parameters.values())[1:]
+        takes = ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in parameters)
+        rows.append((_code(f"{command.__name__}({takes})"), _first_sentence(command)))
+    return _rows(("Command", "Meaning"), rows)
+
+
+@_registered
+def trace_kinds() -> str:
+    """Returns the table of all kinds of trace events."""
+    rows = [(_code(name), kind.level, kind.source, kind.data, kind.meaning) for name, kind in KINDS.items()]
+    return _rows(("Kind", "Level", "Source", "Data", "Meaning"), rows)

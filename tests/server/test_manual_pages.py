@@ -1,0 +1,29 @@
+"""The workbench serves the built manual, and says how to build it where there is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.server.asking import COOKIE, GATE, HOST, ask
+from workbench import app
+
+
+def test_the_built_manual_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = tmp_path / "site" / "workbench" / "buffers" / "index.html"
+    page.parent.mkdir(parents=True)
+    page.write_text("<h1>Buffers</h1>", encoding="utf-8")
+    monkeypatch.setattr(app, "manual", lambda: tmp_path / "site")
+    made = app.make_app(tmp_path / "models", GATE)
+    assert ask(made, "/manual/workbench/buffers/", HOST).status == 401
+    answer = ask(made, "/manual/workbench/buffers/", HOST, COOKIE)
+    assert (answer.status, answer.body) == (200, b"<h1>Buffers</h1>")
+    assert "script-src 'self';" in answer.headers["content-security-policy"]
+
+
+def test_without_a_built_manual_the_answer_says_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app, "manual", lambda: None)
+    answer = ask(app.make_app(tmp_path, GATE), "/manual/", HOST, COOKIE)
+    assert answer.status == 404
+    assert b"uv run mkdocs build" in answer.body

@@ -1,0 +1,74 @@
+"""The manual and the README: their code runs and prints what they say, and the site is complete and loads nothing from elsewhere."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from manual import FENCE, PAGES, ROOT, check, compare, has_code
+from moving import moving, until
+
+from actr3d.vision import DETECTORS
+
+
+@pytest.fixture
+def own_detectors() -> Iterator[None]:
+    """Forgets the detectors that a page defines."""
+    before = dict(DETECTORS)
+    yield
+    DETECTORS.clear()
+    DETECTORS.update(before)
+
+
+@pytest.mark.usefixtures("own_detectors")
+@pytest.mark.filterwarnings("default::actr3d.errors.ModelWarning")
+@pytest.mark.parametrize("page", [page for page in PAGES if has_code(page)], ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_the_code_of_a_page_prints_what_the_page_shows(page: Path, tmp_path: Path) -> None:
+    check(page, tmp_path)
+
+
+def test_a_page_that_shows_something_else_fails() -> None:
+    compare("a\n...\nd\n", "a\nb\nc\nd\n")
+    with pytest.raises(AssertionError, match="but this is printed"):
+        compare("a\nc\n", "a\nb\n")
+
+
+def test_the_readme_is_short() -> None:
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 200
+    assert (ROOT / "docs" / "images" / "workbench.png").stat().st_size < 300_000
+
+
+@pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "SECURITY.md"])
+def test_the_files_and_links_that_a_text_names_are_there(name: str) -> None:
+    text = FENCE.sub("", (ROOT / name).read_text(encoding="utf-8"))
+    named = re.findall(r"`((?:actr3d|workbench|static|models|tests|docs)/[\w/.-]*)`", text)
+    linked = re.findall(r"\]\((?!https?:|#|mailto:)([^)#]+)", text)
+    assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []
+
+
+# -- facts of pages that no code block shows
+
+
+def page(name: str) -> str:
+    """Returns the text of a page of the manual."""
+    return (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+
+
+def test_productions_can_match_what_the_page_on_motor_control_says() -> None:
+    _, motor = moving()
+    table = page("concepts/motor").split("## What productions can match")[1].split("\n\n")[1]
+    named = {word.replace("<group>", "torso").replace("<joint>", "torso_yaw") for word in re.findall(r"`(\w+|<\w+>_\w+)`", table)}
+    values = {"done", "stopped", "limit", "blocked", "none"}
+    assert {word for word in named if not hasattr(motor, word)} == values
+
+
+def test_a_posture_is_stored_as_the_page_on_motor_control_shows() -> None:
+    simulation, motor = moving()
+    motor.rotate_torso(60)
+    motor.extend_shoulder("right")
+    until(simulation, lambda: not motor.busy)
+    chunk = motor.parent.posture.chunk
+    (shown,) = re.findall(r"`(posture:rotate_torso .*?)`", page("concepts/motor"))
+    assert {f"{slot}:{value}" for slot, value in chunk.items()} >= set(shown.split()) - {"..."}
