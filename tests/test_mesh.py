@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, MeshError, ModelWarning
 from actr3d.world import Floor, Loose, Mesh, Scene, World
-from actr3d.world.files import Folder, digest
-from actr3d.world.surface import surface
+from actr3d.world.asset_folder import Folder, digest
+from actr3d.world.mesh_repair import surface
 
 creation: Any = trimesh.creation
 linalg: Any = np.linalg
@@ -448,7 +448,7 @@ def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, t
 
 
 def test_files_together_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("actr3d.world.files.MAX_BYTES", 100)
+    monkeypatch.setattr("actr3d.world.asset_folder.MAX_BYTES", 100)
     file(tmp_path, b"x" * 60, "a")
     file(tmp_path, b"x" * 60, "b")
     file(tmp_path, b"x" * 101, "c")

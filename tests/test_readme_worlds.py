@@ -8,23 +8,22 @@ from pathlib import Path
 import pytest
 
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # noqa: F401 # it adds `view`
-from actr3d.world import Car, ImportedBody, Mannequin, Scene, World
-from actr3d.world.actuators import ACTUATORS
-from actr3d.world.sensors import SENSORS
-from actr3d.world.words import Word
+from actr3d.world import Body, Car, ImportedBody, Mannequin, Scene, World
+from actr3d.world.body import ACTUATORS, SENSORS
+from actr3d.world.command_registry import BodyWord
 
 SECTION = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8").split("## Worlds and bodies\n")[1].split("\n## ")[0]
 ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
 
 
-def rows(words: Mapping[str, Word]) -> list[str]:
+def rows(words: Mapping[str, BodyWord[Body]]) -> list[str]:
     """Returns the rows of the table of some words: each with what it takes, which bodies have it, and what it does."""
     parts = (Mannequin(), Car(position=(9, 0)), ImportedBody(name="imported", text=ROBOT, eye="eye", position=(0, 9, 0)))
     bodies = World(Scene(parts=parts)).bodies
     table: list[str] = []
     for name, word in words.items():
-        has = [kind for kind, body in bodies.items() if word.fits(body)]
+        has = [kind for kind, body in bodies.items() if word.available(body)]
         table.append(f"| `{name}` | {word.takes} | {'any' if len(has) == len(bodies) else ', '.join(has)} | {word.meaning} |")
     return table
 

@@ -15,7 +15,7 @@ from looking import Mindful, agent
 from actr3d.camera import CameraParameters
 from actr3d.errors import Actr3dError, ConfigurationError, ParameterError, VisionError
 from actr3d.vision import DETECTORS, Emma, Vision
-from actr3d.vision.query import read_request
+from actr3d.vision.request_parser import read_request
 from actr3d.vision.salience import share, weigh
 from actr3d.world import Aperture, Floor, Mannequin, Scene, World
 

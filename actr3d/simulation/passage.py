@@ -10,8 +10,7 @@ from typing import Literal, NamedTuple
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.simulation.clearance import Clearance, Wall
 from actr3d.world import World
-from actr3d.world.parts import Aperture
-from actr3d.world.sensors.touch import last_felt
+from actr3d.world.scene_objects import Aperture
 
 SET_OUT = 0.05
 """Who has come as far as this from the start [m] has set out. Ours."""
@@ -159,14 +158,11 @@ class Passage:
         angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
         # The integrator has moved the joints on from the geometry, with these speeds.
         logged = sum([share * (self._qpos.item(q) - ago * self._qvel.item(v)) for q, v, share in self._hinges])
-        touches = last_felt(self._body)
+        touches = self._body.contacts.touches()
         force = max([touch.force for touch in touches], default=0.0)
         pairs = frozenset([(touch.part, touch.other) for touch in touches])
-        room = self._clearance.rooms(self._held()) if abs(before) < self._reach else None
+        room = self._clearance.rooms(self._body.contacts.held()) if abs(before) < self._reach else None
         return _Sample(time, before, angle, logged, room, pairs, force)
-
-    def _held(self) -> list[int]:
-        return [geom for hand in self._body.hands.values() for geom in hand.geoms]
 
     def result(self, *, over: bool) -> PassageResult:
         """Returns what has been measured up to now."""

@@ -16,12 +16,12 @@ from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
 from actr3d.vision.encoding import Emma, saccade_time
 from actr3d.vision.feature import off_sight
-from actr3d.vision.looks import Looks
+from actr3d.vision.feature_cache import Looks
 from actr3d.vision.noise import blurred
-from actr3d.vision.query import Query, read_request
+from actr3d.vision.request_parser import Query, read_request
 from actr3d.vision.search import Search
-from actr3d.vision.settings import CAMERA, check_camera, check_numbers, encoding_of, saliences_of
-from actr3d.world.words import number
+from actr3d.vision.validation import CAMERA, check_camera, check_numbers, encoding_of, saliences_of
+from actr3d.world.command_registry import number
 
 TICK = 10_000
 """After which a body answers [us]; see `actr3d.simulation`."""

@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.actr.modules.port import Reading
 from actr3d.camera import View
 from actr3d.vision.feature import Feature
-from actr3d.vision.query import Query, Test, refusal
+from actr3d.vision.request_parser import Query, Test, refusal
 from actr3d.vision.salience import Function, share, survivors, weigh
 
 

@@ -16,10 +16,10 @@ from mujoco import MjSpec
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.saying import warn_modeller
-from actr3d.world.files import Files, Folder, digest, resolved
-from actr3d.world.imported_document import Document, read_imported
+from actr3d.world.asset_folder import Files, Folder, digest, resolved
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
-from actr3d.world.parts import Name
+from actr3d.world.mjcf_rewrite import Document, read_imported
+from actr3d.world.scene_objects import Name
 
 HIDDEN_GROUP = 3
 """From this geom group on, MuJoCo's viewers draw nothing: files keep there what is only for contacts."""

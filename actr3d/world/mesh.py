@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, MeshError
 from actr3d.saying import warn_modeller
-from actr3d.world.convex import convex_parts
-from actr3d.world.files import Files, Folder, digest
-from actr3d.world.mesh_files import Triangles, read_triangles
-from actr3d.world.parts import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
-from actr3d.world.surface import Surface, check_extent, surface
+from actr3d.world.asset_folder import Files, Folder, digest
+from actr3d.world.convex_decomposition import convex_parts
+from actr3d.world.mesh_loading import Triangles, read_triangles
+from actr3d.world.mesh_repair import Surface, check_extent, surface
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
 
 Quaternion = tuple[float, float, float, float]
 

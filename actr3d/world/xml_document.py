@@ -9,7 +9,7 @@ from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 from actr3d.errors import WorldError
-from actr3d.world.files import Folder
+from actr3d.world.asset_folder import Folder
 
 MAX_ELEMENTS = 100_000
 """The most elements of a document with all that it includes; the largest public robots have some thousands."""
