@@ -433,7 +433,7 @@ def test_instances_are_counted_before_they_are_made(tmp_path: Path) -> None:
         ({"path": "one.stl", "files": (("two.stl", b""),)}, r"'two\.stl' is empty"),
         ({"path": "link.stl"}, r"'link\.stl' lies outside the folder 'here'"),
         ({"path": "loop.stl"}, r"'loop\.stl' cannot be read: Symlink loop|no file 'loop\.stl'"),
-        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no path that can be read: Symlink loop|no file 'one\.stl'"),
+        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no readable path: Symlink loop|no file 'one\.stl'"),
     ],
 )
 def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -30,9 +30,9 @@ class Freedom:
     angle: float
     """Felt position [rad] or [m]."""
     least: float
-    """Least felt position so far [rad] or [m]."""
+    """Least felt position up to now [rad] or [m]."""
     most: float
-    """Greatest felt position so far [rad] or [m]."""
+    """Greatest felt position up to now [rad] or [m]."""
     driven: bool
     """Whether a command can move it."""
 

@@ -68,7 +68,7 @@ class BodySchema:
         return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit[joint]
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
-        """Returns those of some joints that are a step beyond their extremes in all postures so far."""
+        """Returns those of some joints that are a step beyond their extremes in all earlier postures."""
         if self._step is None:
             return ()
         limbs = self._limbs

@@ -1,7 +1,7 @@
-"""Lockstep: minds and a world that go through the same time, tick by tick."""
+"""Lockstep: agents and a world that go through the same time, tick by tick."""
 
 from actr3d.actr.modules.port import BodyPort, Reading
-from actr3d.camera import View  # its package gives bodies with eyes their word `view`
+from actr3d.camera import View  # its package registers the sensor `view`
 from actr3d.simulation.commands import Command
 from actr3d.simulation.measure import Measure
 from actr3d.simulation.passage import Passage, PassageResult

@@ -318,7 +318,7 @@ class Simulation:
             time: When [s]; a whole number of ticks.
 
         Raises:
-            SimulationError: If the run has not come so far, or the time is no whole number of ticks.
+            SimulationError: If the time is after the end of the run, or the time is no whole number of ticks.
         """
         self._enter()
         to = whole_ticks(time, self._period, "seek")

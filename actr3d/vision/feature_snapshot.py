@@ -1,4 +1,4 @@
-"""What minds have found with their eyes, and where in the world that is: for who looks on; no mind gets this."""
+"""The features that agents have found, with their places in the world: for observers only, not for agents."""
 
 from __future__ import annotations
 
@@ -24,30 +24,30 @@ class Sighting:
     """The path of the vision module."""
     bottom_up: bool
     time: float
-    """When it was seen [s]."""
+    """Time of the view [s]."""
     chosen: bool
-    """Whether it is what the search brings to the buffer."""
+    """Whether the search puts it into the buffer."""
     feature: Feature
     view: View
-    """What it was found in, as that was misjudged."""
+    """The view in which it was found, with noise."""
     stood: Stand
-    """How the eye stood then."""
+    """The pose of the eye then."""
 
     @property
     def camera(self) -> CameraParameters:
-        """How the eye sees."""
+        """The parameters of the eye."""
         return self.view.parameters
 
     @property
     def slots(self) -> dict[str, Any]:
-        """What its chunk has: `feature`, labels, sizes in metres, angles in degrees."""
+        """The slots of its chunk: `feature`, labels, sizes in metres, angles in degrees."""
         return self.feature.slots()
 
     @property
     def corners(self) -> tuple[Place, Place, Place, Place]:
-        """The corners of an upright rectangle as wide and as high as it is, square to the direction in which it is seen: upper left,
-        upper right, lower right, lower left [m, in the world's frame]. What tells only its height has its middle as high as the
-        eye; what has no size, or no finite one, has none here either.
+        """The corners of an upright rectangle of its size, perpendicular to the viewing direction: upper left, upper right, lower right,
+        lower left [m, in the world's frame]. A feature with a height but no vertical position is centred at eye level; a size that
+        is missing or infinite is 0.
         """
         feature, (x, y, z, heading) = self.feature, self.stood
         way = heading + feature.direction
@@ -59,30 +59,30 @@ class Sighting:
         return (*left, z + top), (*right, z + top), (*right, z + bottom), (*left, z + bottom)
 
 
-def visions(mind: Model) -> list[Vision]:
-    """Returns all vision modules of a mind, or of an agent in it."""
-    return [part for part in mind._tree() if isinstance(part, Vision)]
+def visions(agent: Model) -> list[Vision]:
+    """Returns all vision modules of an agent and of the agents in it."""
+    return [part for part in agent._tree() if isinstance(part, Vision)]
 
 
-def sightings(mind: Model, body: Body) -> list[Sighting]:
-    """Returns what the last searches of all vision modules of a mind have noticed, what is brought or not; nothing of it changes.
+def sightings(agent: Model, body: Body) -> list[Sighting]:
+    """Returns the features that the last searches of all vision modules of an agent have noticed, chosen or not; it changes nothing.
 
     Args:
-        mind: The mind, or an agent in it.
+        agent: The agent of the body, or an agent in it.
         body: Its body.
     """
     eyes = [sense for sense in body.senses if isinstance(sense, Sight)]
-    return [sighting for module in visions(mind) for sighting in _of(module, eyes)]
+    return [sighting for module in visions(agent) for sighting in _of(module, eyes)]
 
 
 def _of(module: Vision, eyes: list[Sight]) -> Iterator[Sighting]:
     for search in module.searches:
         view, perceived = search.view, search.perceived
         if view is None or perceived is None:
-            continue  # it has begun anew, and not looked yet
+            continue  # it has begun again, and has no view yet
         stood = next((stand for eye in eyes if (stand := eye.stood(view)) is not None), None)
         if stood is None:
-            continue  # it was another body's
+            continue  # the view of another body
         for number, feature in enumerate(search.noticed):
             yield Sighting(
                 module=module._path,

@@ -1,4 +1,4 @@
-"""Requests: which feature is looked for, and what it must be like."""
+"""Reads requests: the feature to search for, and its required slots."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ SAYS = {">": "above ", ">=": "at least ", "<": "below ", "<=": "at most ", "is":
 
 
 class Test(NamedTuple):
-    """One thing that a feature must be like."""
+    """A required value of a slot."""
 
     slot: str
     sign: str
     """`>`, `>=`, `<`, `<=`, `is` or `!`."""
     value: float | str
-    """A number for comparisons; a text to be equal or not."""
+    """A number for comparisons; a text for equality."""
 
     def __str__(self) -> str:
         sign = "" if self.sign == "is" else self.sign
@@ -35,17 +35,17 @@ class Test(NamedTuple):
 
 @dataclass(frozen=True)
 class Query:
-    """What one request looks for."""
+    """A request that has been read."""
 
     detector: Detector
     parameters: tuple[tuple[str, float], ...]
-    """What the detector is given, in its own units."""
+    """Parameters of the detector, in its own units."""
     tests: tuple[Test, ...]
     asked: str
     """The request with the values of its variables."""
 
     def failing(self, feature: Feature) -> Test | None:
-        """Returns the first thing that a feature is not as was asked for; None where it is as asked."""
+        """Returns the first test that a feature fails; None if it passes all."""
         for test in self.tests:
             slot, sign, wanted = test
             value = feature.shown(slot)
@@ -61,7 +61,7 @@ class Query:
 
 
 def refusal(test: Test, feature: Feature) -> str:
-    """Returns in words why a feature is not what was asked for."""
+    """Returns in words why a feature fails a test."""
     value = feature.shown(test.slot)
     if value is None:
         return f"its {test.slot} is not known"
@@ -88,12 +88,12 @@ def read_request(
     Args:
         pattern: The text; it names the feature.
         given: Slots and the detector's parameters by keyword, as texts with signs and variables, or as numbers.
-        detectors: Those that there are.
-        bound: What `?name` stands for.
-        what: Who is asked, for messages.
+        detectors: The registered detectors.
+        bound: The values of variables such as `?name`.
+        what: The module, for messages.
 
     Raises:
-        VisionError: If there is no such feature or slot, or a value is not what it takes.
+        VisionError: If there is no such feature or slot, or a value is invalid.
         ChunkError: If a variable is not bound.
     """
     if not isinstance(pattern, str):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
@@ -144,7 +144,7 @@ class _Reader:
         return Query(self._detector, tuple(parameters), tuple(tests), asked)
 
     def _tests(self, slot: str, word: str, value: Any) -> list[Test]:
-        """Returns what the value of a slot asks for; a text may hold several comparisons, as '>0.5 <2'."""
+        """Returns the tests of a slot's value; a text may hold several comparisons, as '>0.5 <2'."""
         unit = self._units[slot]
         tests: list[Test] = []
         for sign, part in self._pieces(word, value):
@@ -163,7 +163,7 @@ class _Reader:
         return tests
 
     def _same(self, unit: Unit, word: str, part: Any) -> str:
-        """Returns the text that a label, or what has no unit, is to be equal to or not."""
+        """Returns the text to compare with a label, or with a value without a unit."""
         number = _number(part)
         if unit is LABEL:
             if number is not None and number.is_integer():
@@ -203,7 +203,7 @@ class _Reader:
 
 
 def _number(value: Any) -> float | None:
-    """Returns a number, which may be written as text; None where it is none."""
+    """Returns a number, also from text; None for anything else."""
     if isinstance(value, bool):
         return None
     try:

@@ -1,4 +1,4 @@
-"""The parameters of a vision module: what is wrong with them, and what words stand for."""
+"""Checks and converts the parameters of a vision module."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from actr3d.vision.encoding import Emma
 from actr3d.vision.salience import RULES, Function, salience_of
 
 MOST = 1e6
-"""No time [s] and no noise may be larger: more than a run takes, and still far from where numbers end."""
+"""Upper bound of times [s] and noise: longer than any run, and far from the limit of floats."""
 
 FROM_ZERO = ("delay", "delay_sd", "bottom_up_delay", "hold", "edge_noise", "distance_noise")
 
 CAMERA = tuple(field.name for field in fields(CameraParameters))
-"""What may be given besides a module's own parameters."""
+"""Parameters of the camera, which a module accepts besides its own."""
 
 
 def check_numbers(given: Mapping[str, Any]) -> None:
-    """Checks the numbers and the rule that a module is given.
+    """Checks the numbers and the rule of a module.
 
     Raises:
         ParameterError: If one is out of bounds.
@@ -48,7 +48,7 @@ def check_numbers(given: Mapping[str, Any]) -> None:
 
 
 def _number(value: Any) -> float:
-    """Returns a number, infinity for one beyond what floats hold, and one below 0 for what is none."""
+    """Returns a number; infinity if it is too large for a float, -1 if it is no number."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return -1.0
     try:
@@ -58,11 +58,11 @@ def _number(value: Any) -> float:
 
 
 def check_camera(camera: Mapping[str, Any], own: list[str]) -> None:
-    """Checks what is given besides a module's own parameters.
+    """Checks the camera parameters of a module.
 
     Raises:
         ParameterError: If the camera has no such parameter either.
-        ConfigurationError: If a value is not what the camera takes.
+        ConfigurationError: If a value is invalid.
     """
     for name in camera:
         if name not in CAMERA:
@@ -75,12 +75,12 @@ def saliences_of(given: Any, detectors: Mapping[str, Detector]) -> dict[str, Fun
     """Returns the salience of each feature, by name.
 
     Args:
-        given: A word or function for all features; or by the names of some; None for what each feature says of itself.
-        detectors: Those that there are.
+        given: A word or function for all features, or a mapping by feature name; None for the default of each feature.
+        detectors: The registered detectors.
 
     Raises:
         ParameterError: If there is no such feature.
-        VisionError: If a salience is neither word nor function.
+        VisionError: If a salience is neither a known word nor a function.
     """
     by_name: dict[Any, Any] = dict(cast("Mapping[Any, Any]", given)) if isinstance(given, Mapping) else {}
     for name in by_name:
@@ -94,7 +94,7 @@ def saliences_of(given: Any, detectors: Mapping[str, Detector]) -> dict[str, Fun
 
 
 def encoding_of(given: Any) -> Emma | float:
-    """Returns how encoding is timed: by EMMA, or a time [s].
+    """Returns the timing of encoding: EMMA, or a constant time [s].
 
     Raises:
         ParameterError: If it is neither.

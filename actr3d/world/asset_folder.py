@@ -1,4 +1,4 @@
-"""The files that a mesh or an imported description is made of: read once, from inside one folder, and kept."""
+"""The files of a mesh or an imported description: read once, from inside one folder, and stored."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from pathlib import Path
 from actr3d.errors import WorldError, did_you_mean
 
 MAX_BYTES = 256 * 1024 * 1024
-"""The most that the files of one part may hold together [bytes]; a mesh of the largest size takes less in any format."""
+"""Greatest total size of the files of one part [bytes]; a mesh of the largest size takes less in any format."""
 
 Files = tuple[tuple[str, bytes], ...]
-"""Names, as the first file and those that it mentions have them, and contents. The first is the one that was asked for."""
+"""Names, as in the files that mention them, and contents. The first file is the requested one."""
 
 
 class Folder:
-    """Reads the files of one part from inside a folder, each once; or gives those of an earlier reading, and no others.
+    """Reads the files of one part from inside a folder, each once; or returns those of an earlier reading, and no others.
 
-    A name that leads out of the folder, by `..`, as an absolute path or through a link, is refused: a description that
-    came from elsewhere must not make a recording hold whatever else is on the machine.
+    A name that leads out of the folder, by `..`, as an absolute path or through a link, is refused: a foreign description must
+    not copy other files of the machine into a recording.
 
     Args:
-        root: Where the files are; nothing outside it is read.
-        error: What is raised when a file cannot be read.
+        root: The folder; nothing outside it is read.
+        error: The exception for a file that cannot be read.
         given: Files of an earlier reading, or none at all. With them nothing is read from the disk.
     """
 
@@ -36,7 +36,7 @@ class Folder:
 
     @property
     def files(self) -> Files:
-        """What has been read, in the order of reading."""
+        """The files that were read, in this order."""
         return tuple(self._read.items())
 
     def put(self, name: str, content: bytes) -> None:
@@ -49,10 +49,10 @@ class Folder:
 
         Args:
             name: With `/` or `\\` between folders.
-            asked_by: Which file mentions it, for the message.
+            asked_by: The file that mentions it, for the message.
 
         Raises:
-            WorldError: (or the error given) If it is outside the folder, not there, not a file, or too large.
+            WorldError: (or the given error) If it is outside the folder, not there, not a file, or too large.
         """
         name = posixpath.normpath(name.replace("\\", "/"))
         if name not in self._read:
@@ -74,7 +74,7 @@ class Folder:
     def _content(self, name: str, whose: str) -> bytes:
         if self._given is not None:
             if not self._given:
-                raise self._error(f"{whose}'{name}' is not read: what a text mentions is read only from a folder that is given with it")
+                raise self._error(f"{whose}'{name}' is not read: files that a text mentions are read only from a given folder")
             if name not in self._given:
                 raise self._error(f"{whose}no '{name}' among the files that were recorded{did_you_mean(name, self._given)}")
             return self._given[name]
@@ -102,15 +102,15 @@ class Folder:
 
 
 def resolved(path: Path, error: type[WorldError]) -> Path:
-    """Returns a path made whole, without links.
+    """Returns an absolute path without links.
 
     Raises:
-        WorldError: (or the error given) If no path can be like this: links lead in a circle, or a character cannot be.
+        WorldError: (or the given error) If the path is invalid: a circle of links, or an impossible character.
     """
     try:
         return path.resolve()
     except (OSError, ValueError, RuntimeError) as failure:
-        raise error(f"{str(path)!r} is no path that can be read: {failure}") from failure
+        raise error(f"{str(path)!r} is no readable path: {failure}") from failure
 
 
 def digest(files: Files) -> str:

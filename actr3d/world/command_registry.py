@@ -104,7 +104,7 @@ def known(word: Any, words: Collection[str], whose: str, kind: str) -> str:
     Args:
         word: The given word.
         words: Those that exist.
-        whose: Who has them, for the message.
+        whose: The owner of the words, for the message.
         kind: What they are called, for the message.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Reads mesh files of every format that trimesh reads, into plain triangles."""
+"""Loads mesh files of every format that trimesh reads, as plain triangles."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from actr3d.errors import Actr3dError, MeshError, did_you_mean
 from actr3d.world.asset_folder import MAX_BYTES, Folder
 
 MAX_TRIANGLES = 500_000
-"""The most triangles of a mesh. At this size MuJoCo takes about two seconds to compile it; people and rooms need far fewer."""
+"""Greatest number of triangles of a mesh. At this size MuJoCo takes about two seconds to compile it; people and rooms need far fewer."""
 
 NEEDS = {"3mf": "lxml and networkx", "dae": "pycollada", "zae": "pycollada", "3dxml": "lxml, networkx and pillow", "xaml": "lxml"}
 """The packages without which trimesh does not read a format; the extra `formats` of this library has those of 3MF and DAE."""
@@ -26,39 +26,39 @@ _ARCHIVES = {"3mf", "zae", "3dxml"}
 _IMAGES = {".png", ".jpg", ".jpeg", ".webp", ".tga", ".bmp", ".tif", ".tiff", ".ktx2"}
 _TEXTS = {"obj", "off", "xyz"}
 _UNUSUAL = re.compile(rb"^[ \t]*f[ \t](?:[^\n]*[ \t/])?(?:-|0+(?![0-9]))", re.MULTILINE)
-"""Faces of an OBJ file that count backwards, or from 0."""
+"""Faces of an OBJ file with negative indices, or with index 0."""
 _Y_UP = {"glb", "gltf"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Triangles:
-    """What a mesh file holds, as it stands in the file."""
+    """The content of a mesh file, unchanged."""
 
     vertices: NDArray[np.float64]
     """(n, 3), in the file's units and frame, turned so that z is up."""
 
     faces: NDArray[np.int64]
-    """(m, 3) numbers of vertices, counterclockwise as seen from outside."""
+    """(m, 3) indices of vertices, counterclockwise as seen from outside."""
 
     colour: tuple[float, float, float, float] | None
     """The plain colour of the largest piece, in 0 to 1; `None` if the file gives none."""
 
     remarks: tuple[str, ...]
-    """What was not as it should be in the file, and what was done about it."""
+    """Defects of the file, and how they were handled."""
 
 
 def read_triangles(folder: Folder, name: str, up: str | None = None) -> Triangles:
-    """Reads a mesh file, all of its pieces where its scene puts them.
+    """Reads a mesh file, with all its pieces at their places in its scene.
 
     Args:
-        folder: Where it and the files it mentions are.
+        folder: The folder of it and of the files that it mentions.
         name: Its name in the folder.
-        up: "y" or "z", the file's axis that points up; `None` is y for glTF, which says so (Source: glTF 2.0, 3.4), else z.
+        up: "y" or "z", the file's axis that points up; `None` is y for glTF (Source: glTF 2.0, 3.4), otherwise z.
 
     Raises:
-        MeshError: If it is not a mesh, is cut short, has no triangles, refers to what is not there, or is too large.
+        MeshError: If it is not a mesh, is truncated, has no triangles, refers to missing vertices, or is too large.
     """
-    from trimesh.exchange import load  # takes about a second, which a scene without meshes need not wait
+    from trimesh.exchange import load  # takes about a second, and is only needed for meshes
 
     content = folder.read(name)
     kind, content, remarks = _kind(content, name)
@@ -70,7 +70,7 @@ def read_triangles(folder: Folder, name: str, up: str | None = None) -> Triangle
         raise
     except RecursionError as error:
         raise MeshError(f"'{name}': its pieces are nested without end") from error
-    except Exception as error:  # whatever a parser that was given nonsense stumbles over
+    except Exception as error:  # a parser may raise anything for invalid content
         raise MeshError(f"'{name}' cannot be read as {kind}: {beside.why or error}") from error
     if not pieces:
         raise MeshError(f"'{name}' has no triangles: {_what_instead(scene, content)}")
@@ -86,7 +86,7 @@ def read_triangles(folder: Folder, name: str, up: str | None = None) -> Triangle
 
 
 class _Beside:
-    """Gives trimesh the files that a mesh mentions, from its folder; notes the one that is not there. No image is read."""
+    """Gives trimesh the files that a mesh mentions, from its folder; notes a missing one. No image is read."""
 
     def __init__(self, folder: Folder, name: str) -> None:
         self._folder, self._name = folder, name
@@ -106,7 +106,7 @@ class _Beside:
 
 
 def _kind(content: bytes, name: str) -> tuple[str, bytes, list[str]]:
-    """Returns trimesh's name of the format, the content as its reader can take it, and remarks."""
+    """Returns trimesh's name of the format, the content for its reader, and remarks."""
     if not content:
         raise MeshError(f"'{name}' is empty")
     kind = PurePosixPath(name).suffix.lower().removeprefix(".")
@@ -128,7 +128,7 @@ def _kind(content: bytes, name: str) -> tuple[str, bytes, list[str]]:
 
 
 def _by_content(content: bytes) -> str:
-    """Returns the format that the content names itself, or an empty string."""
+    """Returns the format that the content itself names, or an empty string."""
     for start, kind in ((b"glTF", "glb"), (b"ply\n", "ply"), (b"ply\r", "ply"), (b"OFF", "off"), (b"PK\x03\x04", "zip")):
         if content.startswith(start):
             return kind
@@ -152,7 +152,7 @@ def _stl_size(content: bytes) -> int:
 
 
 def _stl(content: bytes, name: str, remarks: list[str]) -> tuple[bytes, str]:
-    """Tells binary from text, which trimesh tries one after the other, so that the message speaks of the right one."""
+    """Returns the content and its format, binary or text: trimesh tries both, and its message may be about the wrong one."""
     size = _stl_size(content) if len(content) >= 84 else 0
     if content.lstrip()[:5].lower() == b"solid" and size != len(content):
         if b"endsolid" not in content[-1000:].lower():
@@ -178,8 +178,8 @@ def _as_text(content: bytes) -> bytes:
 
 
 def _counted_forwards(content: bytes, name: str) -> bytes:
-    """Returns OBJ text whose faces count corners from the first of the file. Negative numbers count back from the last one before
-    the face, which trimesh takes for the last of the file."""
+    """Returns OBJ text whose faces have positive indices. Negative ones count back from the last vertex before the face, but trimesh
+    counts from the last of the file."""
     known = {b"v": 0, b"vt": 0, b"vn": 0}
     lines = content.replace(b"\\\n", b"  ").split(b"\n")
     for number, line in enumerate(lines):
@@ -192,7 +192,7 @@ def _counted_forwards(content: bytes, name: str) -> bytes:
 
 
 def _corner(word: bytes, known: dict[bytes, int], where: str) -> bytes:
-    """Returns a corner of a face, `vertex/texture/normal`, counted forwards."""
+    """Returns a corner of a face, `vertex/texture/normal`, with positive indices."""
     parts = word.split(b"/")
     if parts[0].isdigit() and int(parts[0]) == 0:
         raise MeshError(f"{where}: a triangle refers to vertex 0; OBJ files count from 1")
@@ -205,7 +205,7 @@ def _corner(word: bytes, known: dict[bytes, int], where: str) -> bytes:
 
 
 def _check_archive(content: bytes, name: str) -> None:
-    """Refuses an archive that unpacks to too much. A zip file never gives more than the sizes it states."""
+    """Raises an error for an archive that unpacks to too much. A zip file never unpacks to more than its stated sizes."""
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             size = sum(entry.file_size for entry in archive.infolist())
@@ -216,7 +216,7 @@ def _check_archive(content: bytes, name: str) -> None:
 
 
 def _pieces(scene: Any, name: str) -> list[Any]:
-    """Returns the meshes of a scene where it puts them, largest first."""
+    """Returns the meshes of a scene at their places, largest first."""
     counts = [len(getattr(scene.geometry[scene.graph[node][1]], "faces", ())) for node in scene.graph.nodes_geometry]
     if sum(counts) > MAX_TRIANGLES:
         raise MeshError(f"'{name}' has {sum(counts):,} triangles; the limit is {MAX_TRIANGLES:,}: simplify it")
@@ -254,5 +254,5 @@ def _colour(pieces: list[Any]) -> tuple[float, float, float, float] | None:
         return None
     source = visual.material if visual.kind == "texture" else visual
     red, green, blue, alpha = (float(value) / 255 for value in source.main_color)
-    # What is wholly transparent could be neither seen nor met by a ray.
+    # A wholly transparent mesh would be invisible, and rays would ignore it.
     return (red, green, blue, alpha) if alpha > 0 else None

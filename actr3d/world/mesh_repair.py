@@ -1,4 +1,4 @@
-"""Brings triangles in order: what can be repaired is repaired and said, what cannot be is refused."""
+"""Repairs triangles: reports what it repaired, and raises errors for other defects."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from actr3d.errors import MeshError
 
 MIN_EXTENT, MAX_EXTENT = 1e-4, 1e4
-"""The smallest and the largest length of a mesh [m]. Outside them the file's unit is most likely not the metre."""
+"""The smallest and the largest length of a mesh [m]. Outside this range the file's unit is most likely not the metre."""
 
 _SAME = 1e-7
-"""Vertices nearer than this part of the length are one. Source: 32-bit numbers, as in binary STL, hold 7 digits."""
+"""Vertices nearer than this fraction of the length are one. Source: 32-bit numbers, as in binary STL, hold 7 digits."""
 
 _FLAT = 1e-6
-"""What is thinner than this part of its length is flat: MuJoCo finds no hull around it."""
+"""Fraction of its length below which the thickness of a mesh counts as flat: MuJoCo finds no hull around it."""
 
 Vertices = NDArray[np.float64]
 Faces = NDArray[np.int64]
@@ -25,7 +25,7 @@ Faces = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class Surface:
-    """Triangles in order: no vertex twice, no triangle twice or without extent, all facing outward where there is an outside."""
+    """Repaired triangles: no vertex twice, no triangle twice or without extent, all facing outward if the surface is closed."""
 
     vertices: Vertices
     """(n, 3) [m]"""
@@ -34,21 +34,21 @@ class Surface:
     """(m, 3), counterclockwise as seen from outside."""
 
     closed: bool
-    """Whether it encloses a volume: every edge is passed as often one way as the other."""
+    """Whether it encloses a volume: triangles pass every edge equally often in both directions."""
 
     manifold: bool
-    """Whether, besides, every edge belongs to exactly two triangles."""
+    """Whether, in addition, every edge belongs to exactly two triangles."""
 
     flat: bool
     """Whether all of it lies in one plane."""
 
     repairs: tuple[str, ...]
-    """What was repaired, in words."""
+    """The repairs, in words."""
 
     def mass_properties(self, mass: float) -> tuple[Vertices, Vertices]:
         """Returns the centre of mass (3,) [m] and the inertia about it (3, 3) [kg m^2], of a solid of even density.
 
-        Where the surface is not closed, the solid is its convex hull.
+        If the surface is not closed, the solid is its convex hull.
 
         Raises:
             MeshError: If it is flat, so that there is no solid.
@@ -64,10 +64,10 @@ class Surface:
 
 
 def check_extent(vertices: Vertices, faces: Faces, name: str) -> None:
-    """Checks that the length of triangles is one of things and rooms.
+    """Checks that the length of a mesh is one of objects or rooms.
 
     Raises:
-        MeshError: If it is too small or too large; supposes another unit.
+        MeshError: If it is too small or too large; suggests another unit.
     """
     extent = float(np.ptp(vertices[faces.ravel()], axis=0).max())
     if extent and not MIN_EXTENT <= extent <= MAX_EXTENT:
@@ -79,12 +79,12 @@ def check_extent(vertices: Vertices, faces: Faces, name: str) -> None:
 
 
 def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:
-    """Brings triangles in order.
+    """Returns repaired triangles.
 
     Args:
         vertices: (n, 3) [m], finite.
-        faces: (m, 3) numbers of vertices.
-        name: Of what, for the messages.
+        faces: (m, 3) indices of vertices.
+        name: The name of the mesh, for messages.
 
     Raises:
         MeshError: If no triangle is left, or all of it is a point or a line.
@@ -117,7 +117,7 @@ def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:
 
 
 def _merged(vertices: Vertices, faces: Faces) -> tuple[Vertices, Faces]:
-    """Makes vertices at one place one: STL, among others, writes each corner of each triangle anew."""
+    """Merges vertices at one place: STL, among others, repeats each corner for each triangle."""
     used, faces = np.unique(faces, return_inverse=True)
     vertices, faces = vertices[used], faces.reshape(-1, 3)
     step = float(np.ptp(vertices, axis=0).max()) * _SAME
@@ -127,7 +127,7 @@ def _merged(vertices: Vertices, faces: Faces) -> tuple[Vertices, Faces]:
     new[1:] = (cells[order[1:]] != cells[order[:-1]]).any(axis=1)
     group = np.empty(len(order), dtype=np.int64)
     group[order] = np.cumsum(new) - 1
-    # In the order of the file, so that a mesh in order stays as it is.
+    # In the order of the file, so that a mesh without defects stays unchanged.
     first = np.full(int(group.max()) + 1, len(order), dtype=np.int64)
     np.minimum.at(first, group, np.arange(len(order)))
     rank = np.empty_like(first)
@@ -155,10 +155,10 @@ def _count(number: int) -> str:
 
 
 def _turned(faces: Faces, repairs: list[str]) -> Faces:
-    """Turns triangles over so that neighbours agree; in each connected piece the smaller part gives way.
+    """Turns triangles over so that neighbours agree; in each connected piece it turns the smaller part.
 
-    Each triangle is two nodes, as it is and turned over; an edge of two triangles joins the nodes that agree. What is
-    connected then is one consistent choice. A piece whose two choices are connected (a Moebius strip) has none.
+    Each triangle is two nodes, unchanged and turned over; an edge of two triangles connects the nodes that agree. A connected
+    component is then one consistent choice. A piece whose two choices are connected (a Moebius strip) has none.
     """
     from scipy.sparse import coo_array  # slow to load, and only for meshes
     from scipy.sparse.csgraph import connected_components
@@ -187,12 +187,12 @@ def _turned(faces: Faces, repairs: list[str]) -> Faces:
 
 
 def _directed(faces: Faces) -> tuple[Faces, Faces, Faces]:
-    """Returns the edges of the triangles: where each starts, where it ends, which triangle's it is, (3 m,) each."""
+    """Returns the edges of the triangles: start, end and triangle, (3 m,) each."""
     return faces.ravel(), faces[:, [1, 2, 0]].ravel(), np.repeat(np.arange(len(faces)), 3)
 
 
 def _edges(faces: Faces) -> tuple[Faces, NDArray[np.bool_]]:
-    """Returns for each edge how many triangles have it, and whether they pass it as often one way as the other."""
+    """Returns for each edge its number of triangles, and whether they pass it equally often in both directions."""
     start, end, _ = _directed(faces)
     key = np.minimum(start, end) * (int(faces.max()) + 1) + np.maximum(start, end)
     _, which, counts = np.unique(key, return_inverse=True, return_counts=True)
@@ -200,7 +200,7 @@ def _edges(faces: Faces) -> tuple[Faces, NDArray[np.bool_]]:
 
 
 def _without_slivers(vertices: Vertices, faces: Faces, name: str, repairs: list[str]) -> Faces:
-    """Leaves out triangles whose corners lie in a line. In a closed surface they stay: they hold it together."""
+    """Removes triangles whose corners lie in a line. In a closed surface they stay: it would have holes without them."""
     a, b, c = (vertices[faces[:, n]] for n in range(3))
     extent = np.ptp(vertices, axis=0).max()
     wide = np.linalg.norm(np.cross(b - a, c - a), axis=1) > (extent * _SAME) ** 2

@@ -1,4 +1,4 @@
-"""Makes an MJCF or URDF document fit to be attached: its files found, its reach limited, its gaps filled."""
+"""Rewrites an MJCF or URDF document for a scene: finds its files, limits its size, fills in missing values."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from actr3d.world.mesh_repair import Surface, surface
 from actr3d.world.xml_document import Element, read_document, written
 
 OF_THE_WORLD = ("option", "size", "statistic", "visual", "keyframe")
-"""Parts of an MJCF file that speak of the whole world, which is the scene's: they are left out."""
+"""Elements of an MJCF file about the whole world: they are left out, the scene has its own."""
 
 MAX_COPIES = 10_000
-"""The most elements that `<replicate>` may make."""
+"""Greatest number of elements that `<replicate>` may make."""
 
 MAX_COUNTS = {
     "count": 2_500,
@@ -32,11 +32,11 @@ MAX_COUNTS = {
     "num": 1_000,
     "params": 1_000,
 }
-"""The most that attributes which say how many may say, all the numbers of a `count` multiplied. Without a limit MuJoCo takes
-all memory, computes for minutes (a flex of 100 x 100 points: 14 s), or ends the process (a height field of 10^7 x 10^7)."""
+"""Greatest values of attributes that are counts; for `count`, of the product of its numbers. Without a limit MuJoCo uses all
+memory, computes for minutes (a flex of 100 x 100 points: 14 s), or ends the process (a height field of 10^7 x 10^7)."""
 
 LEAST_MASS, LEAST_INERTIA = 1e-3, 1e-6
-"""What a moving URDF link without a mass is given [kg, kg m^2]: too little to change how a robot moves."""
+"""Default mass and inertia of a moving URDF link [kg, kg m^2]: too little to change how a robot moves."""
 
 _NOT_TAKEN = {"skin": "skins", "model": "models inside models", "attach": "models inside models", "flexcomp": "flexcomp from a file"}
 _TEXTURE_FILES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
@@ -45,32 +45,32 @@ _MOVING = {"revolute", "continuous", "prismatic", "floating", "planar"}
 
 @dataclass
 class Document:
-    """A description that MuJoCo can read without touching the disk."""
+    """A description that MuJoCo can read without files."""
 
     text: str = ""
-    """XML, one element a line."""
+    """XML, one element per line."""
 
     origins: list[str] = field(default_factory=list[str])
-    """Where each line of the text came from."""
+    """The origin of each line of the text."""
 
     urdf: bool = False
     """Whether it is URDF, not MJCF."""
 
     meshes: dict[str, Surface] = field(default_factory=dict[str, Surface])
-    """The surfaces, by the file name that they have in the text."""
+    """The surfaces, by their file names in the text."""
 
     assets: dict[str, bytes] = field(default_factory=dict[str, bytes])
-    """Textures and height fields, by the file name that they have in the text."""
+    """Textures and height fields, by their file names in the text."""
 
     remarks: list[str] = field(default_factory=list[str])
-    """What is left out or filled in."""
+    """What was left out or filled in."""
 
 
 def read_imported(folder: Folder, name: str) -> Document:
-    """Reads an MJCF or URDF file and all that it needs.
+    """Reads an MJCF or URDF file and the files that it needs.
 
     Raises:
-        WorldError: If the document or a file cannot be read, or asks for more than is allowed; says the file and line.
+        WorldError: If the document or a file cannot be read, or exceeds a limit; with file and line.
     """
     root = read_document(folder, name)
     if root.tag not in ("mujoco", "robot"):
@@ -85,7 +85,7 @@ def read_imported(folder: Folder, name: str) -> Document:
     if document.urdf:
         _prepare_urdf(root, document)
     else:
-        _leave_to_the_scene(root, document)
+        _remove_world_elements(root, document)
     _Assets(root, folder, name, document).take()
     document.text, document.origins = written(root)
     return document
@@ -103,7 +103,7 @@ def _check_numbers(element: Element) -> None:
 
 
 def _numbers(value: str) -> list[float]:
-    """Returns those words of an attribute that are numbers."""
+    """Returns the numbers among the words of an attribute."""
     numbers: list[float] = []
     for word in value.split():
         try:
@@ -114,13 +114,13 @@ def _numbers(value: str) -> list[float]:
 
 
 def _copies(element: Element) -> float:
-    """Returns how many elements there are when each `<replicate>` has made its copies."""
+    """Returns the number of elements after each `<replicate>` has made its copies."""
     times = max(1, *_numbers(element.attributes.get("count", "1"))) if element.tag == "replicate" else 1
     return 1 + times * sum(map(_copies, element.children))
 
 
-def _leave_to_the_scene(root: Element, document: Document) -> None:
-    """Leaves out what would speak of the whole world, and says so where it would change how things move."""
+def _remove_world_elements(root: Element, document: Document) -> None:
+    """Removes elements about the whole world; adds a remark if they would change how things move."""
     options = sorted({name for child in root.children if child.tag == "option" for one in child.walk() for name in one.attributes})
     if options:
         document.remarks.append(f"its <option> is left out ({', '.join(options)}): those of the scene hold")
@@ -131,7 +131,7 @@ def _leave_to_the_scene(root: Element, document: Document) -> None:
 
 
 def _prepare_urdf(root: Element, document: Document) -> None:
-    """Keeps what is only seen and each link a body of its own; gives moving links without mass a little."""
+    """Keeps visual geoms and makes each link a body; gives moving links without mass a small one."""
     compiler = next((c for m in root.children if m.tag == "mujoco" for c in m.children if c.tag == "compiler"), None)
     if compiler is None:
         compiler = Element("compiler", {}, root.where)
@@ -163,7 +163,7 @@ def _is_without_mass(link: Element) -> bool:
 
 
 class _Assets:
-    """Finds the files that a document mentions, and gives each a name in the document that stands for its content."""
+    """Finds the files that a document mentions, and replaces their names in the document by unique ones."""
 
     def __init__(self, root: Element, folder: Folder, name: str, document: Document) -> None:
         self._root, self._folder, self._document = root, folder, document
@@ -214,7 +214,7 @@ class _Assets:
         content = self._folder.read(name, element.where)
         if not _check_image(content, name, element.where):
             rows, columns = struct.unpack("<ii", content[:8].ljust(8, b"\0"))
-            # MuJoCo believes these two numbers.
+            # MuJoCo does not check these two numbers.
             if not (0 < rows <= MAX_COUNTS["nrow"] and 0 < columns <= MAX_COUNTS["ncol"] and len(content) == 8 + 4 * rows * columns):
                 raise WorldError(f"{element.where}: '{name}' is neither PNG nor a height field of MuJoCo's own format, or is cut short")
         self._keep(element, "file", name, content)
@@ -238,18 +238,18 @@ class _Assets:
         self._document.remarks.append(f"there is no texture '{name}' ({element.where}): plain grey instead")
 
     def _keep(self, element: Element, attribute: str, name: str, content: bytes) -> None:
-        # Assets of all parts of a scene lie in one place.
+        # Assets of all parts of a scene share one namespace.
         key = f"{digest(((name, content),))[:16]}/{posixpath.basename(name)}"
         element.attributes.setdefault("name", posixpath.basename(name).rpartition(".")[0])
         element.attributes[attribute] = key
         self._document.assets[key] = content
 
     def _place(self, given: str, directory: str) -> str:
-        """Returns the name of a file in the folder, from how the document names it."""
+        """Returns the name of a file in the folder, from its name in the document."""
         given = given.replace("\\", "/")
         scheme, separator, rest = given.partition("://")
         if separator and scheme in ("package", "model"):
-            # The package's folder may be the folder itself, or lie in it.
+            # The package's folder may be the folder itself, or inside it.
             return next((place for place in (rest, rest.partition("/")[2]) if self._folder.has(place)), rest)
         given = rest if scheme == "file" and separator else given
         if self._compiler.get("strippath") == "true":
@@ -259,7 +259,7 @@ class _Assets:
 
 
 def _check_image(content: bytes, name: str, where: str) -> bool:
-    """Returns whether a content is PNG; its size stands in its first bytes.
+    """Returns whether a content is a PNG image of permitted size.
 
     Raises:
         WorldError: If the image would unpack to too much.

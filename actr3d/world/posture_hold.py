@@ -61,7 +61,7 @@ class SteadyState:
         """Upper bound of the speed of any point of the body in this state [m/s]; infinite if not all of it is actuated."""
 
     def met(self) -> bool:
-        """Returns whether the state is so near that nothing can need a correction; False says nothing."""
+        """Returns True if the state is near enough that nothing needs a correction; after False, something may."""
         state, numbers = self._state, self._numbers
         mujoco.mj_getState(self._model, self._data, state, _PARTS)
         if self._walks:  # MuJoCo's speeds are along the world's axes

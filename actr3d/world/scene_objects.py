@@ -1,4 +1,4 @@
-"""The simple parts of a scene: floor, walls, apertures, tracks, loose objects."""
+"""The simple objects of a scene: floor, walls, apertures, tracks, loose objects."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ SHAPES = {
     "cylinder": (mjtGeom.mjGEOM_CYLINDER, 2, "radius and height"),
     "capsule": (mjtGeom.mjGEOM_CAPSULE, 2, "radius and height without the round ends"),
 }
-"""By shape: MuJoCo's type, how many sizes it takes, and which."""
+"""By shape: MuJoCo's type, the number of sizes, and their meaning."""
 
 WALL_SOLREF = (5e-4, 1.0)
-"""How stiff a wall's contacts are: (time constant [s], damping ratio). MuJoCo makes the time constant twice the physics step
-at least, which is the stiffest that it simulates faithfully, so this is twice any step that there is: 4 ms at 2 ms, which keeps a
-body that runs into a wall at 3 m/s within millimetres of its surface."""
+"""Stiffness of a wall's contacts: (time constant [s], damping ratio). MuJoCo raises the time constant to at least twice the physics
+step, the stiffest that it simulates faithfully, so in effect this is twice any step: 4 ms at 2 ms, which keeps a body that runs into
+a wall at 3 m/s within millimetres of its surface."""
 
 
 def yaw_quaternion(heading: float) -> tuple[float, float, float, float]:
@@ -55,16 +55,16 @@ class Floor(Configuration):
 
 @dataclass(frozen=True, kw_only=True)
 class Wall(Configuration):
-    """A straight wall that stands on the floor between two points."""
+    """A straight wall on the floor between two points."""
 
     name: Name
     """Its name in the scene."""
 
     start: tuple[float, float]
-    """Where its middle line begins, (x, y) [m]."""
+    """Start of its middle line, (x, y) [m]."""
 
     end: tuple[float, float]
-    """Where its middle line ends, (x, y) [m]."""
+    """End of its middle line, (x, y) [m]."""
 
     height: Length = 2.5
     """[m]"""
@@ -102,7 +102,7 @@ class Aperture(Configuration):
     """A doorway: the gap between two wall segments in one line. Its width can be set before and during a run."""
 
     name: Name = "aperture"
-    """Its name in the scene; the segments are `<name>_left` and `<name>_right`, as seen by who walks along `heading`."""
+    """Its name in the scene; the segments are `<name>_left` and `<name>_right`, as seen when walking along `heading`."""
 
     width: Annotated[float, Ge(0)] = 0.8
     """The free width between the segments [m]; 0 is a closed wall."""
@@ -114,7 +114,7 @@ class Aperture(Configuration):
     """The direction in which one walks through it [rad], 0 along x."""
 
     segment: Length = 2.5
-    """How long each wall segment is [m]. Segments keep their length and slide when the width changes."""
+    """Length of each wall segment [m]. Segments keep their length and slide when the width changes."""
 
     height: Length = 2.5
     """[m]"""
@@ -126,7 +126,7 @@ class Aperture(Configuration):
     """Red, green, blue, alpha in 0 to 1."""
 
     def add_to(self, mj_spec: MjSpec) -> None:
-        """Adds the two segments, as mocap bodies: what moves them then is part of the physics state."""
+        """Adds the two segments, as mocap bodies, whose positions are part of the physics state."""
         for side, position in self.segment_positions(self.width).items():
             body = mj_spec.worldbody.add_body(name=f"{self.name}_{side}", pos=position, quat=yaw_quaternion(self.heading), mocap=True)
             size = [self.thickness / 2, self.segment / 2, self.height / 2]
@@ -134,7 +134,7 @@ class Aperture(Configuration):
             body.add_geom(name=name, type=mjtGeom.mjGEOM_BOX, size=size, rgba=self.colour, solref=WALL_SOLREF)
 
     def segment_positions(self, width: float) -> dict[str, tuple[float, float, float]]:
-        """Returns where the centres of the segments are for a free width [m]: world frame, {side: (x, y, z)} [m]."""
+        """Returns the centres of the segments for a free width [m]: {side: (x, y, z)} in the world frame [m]."""
         reach = (width + self.segment) / 2
         (x, y), z = self.position, self.height / 2
         left = (-math.sin(self.heading) * reach, math.cos(self.heading) * reach)
@@ -159,7 +159,7 @@ class Track(Configuration):
     """Between the lines [m]. Source of the default: a usual lane of a rural road."""
 
     line: Length = 0.1
-    """How wide a painted line is [m]."""
+    """Width of a painted line [m]."""
 
     colour: Colour = (0.95, 0.95, 0.95, 1.0)
     """Red, green, blue, alpha in 0 to 1."""
@@ -193,7 +193,7 @@ class Track(Configuration):
             )
 
     def _offset(self, by: float) -> list[tuple[float, float]]:
-        """Returns the line beside the middle one, at each point square to the mean of the pieces that meet there."""
+        """Returns the line beside the middle one; at each point the offset is perpendicular to the mean direction of the pieces there."""
         points = self.points
         line: list[tuple[float, float]] = []
         for n, (x, y) in enumerate(points):
@@ -211,7 +211,7 @@ class Loose(Configuration):
     """Its name in the scene."""
 
     shape: Literal["box", "sphere", "ellipsoid", "cylinder", "capsule"] = "box"
-    """What it looks like."""
+    """Its shape."""
 
     size: tuple[Length, ...] = (0.3, 0.3, 0.3)
     """Full sizes [m]: box (length, width, height); cylinder and capsule (radius, height); sphere (radius,); ellipsoid three radii."""
@@ -220,7 +220,7 @@ class Loose(Configuration):
     """Its centre at the start, (x, y, z) [m]."""
 
     heading: float = 0.0
-    """How it is turned about the vertical at the start [rad]."""
+    """Its rotation about the vertical at the start [rad]."""
 
     mass: Length | None = 1.0
     """[kg]; None fixes it in its place."""
@@ -232,7 +232,7 @@ class Loose(Configuration):
         """Checks the fields.
 
         Raises:
-            ConfigurationError: If a field is wrong, or there are too many or too few sizes for the shape.
+            ConfigurationError: If a field is wrong, or the number of sizes is wrong for the shape.
         """
         super().__post_init__()
         _, sizes, meaning = SHAPES[self.shape]

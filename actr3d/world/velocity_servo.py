@@ -1,4 +1,4 @@
-"""Servos: actuators that hold a speed with bounded force, so that what is in the way can stop them."""
+"""Velocity servos: actuators that hold a speed with bounded force, so that obstacles can stop them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ def add_servo(mj_spec: MjSpec, name: str, target: str, force: float, gear: tuple
     """Adds an actuator that keeps the speed of its target at its control, with at most `force`.
 
     Args:
-        mj_spec: The specification it is added to.
+        mj_spec: The specification.
         name: Its name.
         target: A joint, or a site where `gear` is given.
-        force: The most it pushes or turns with [N] or [N m].
-        gear: (6,) the direction it pushes and turns the site in, in the site's frame.
+        force: Its greatest force or torque [N] or [N m].
+        gear: (6,) the direction of its force and torque on a site, in the site's frame.
     """
     actuator: Any = mj_spec.add_actuator(name=name, target=target)
     actuator.trntype = mjtTrn.mjTRN_JOINT if gear is None else mjtTrn.mjTRN_SITE
@@ -30,7 +30,7 @@ def add_servo(mj_spec: MjSpec, name: str, target: str, force: float, gear: tuple
 
 
 def fit_servos(mj_model: MjModel, mj_data: MjData, names: Iterable[str]) -> None:
-    """Gives each servo the highest gain that cannot make it rattle, from the inertia it moves while all else is held.
+    """Sets each servo to the highest gain without oscillation, from the inertia that it moves while all else is held.
 
     While its force is at its bound, one step changes the speed by force * step / inertia; the band of speeds in which it is
     not at its bound is 2 * force / gain wide. A gain of inertia / step makes the band twice as wide as the change; with
@@ -39,7 +39,7 @@ def fit_servos(mj_model: MjModel, mj_data: MjData, names: Iterable[str]) -> None
     Args:
         mj_model: The model whose gains are set.
         mj_data: Its state at the start, positions up to date.
-        names: The servos.
+        names: The names of the servos.
     """
     for name in names:
         actuator = mj_model.actuator(name)
@@ -53,7 +53,7 @@ def fit_servos(mj_model: MjModel, mj_data: MjData, names: Iterable[str]) -> None
 
 
 def moved_by(mj_model: Any, actuator: int) -> list[int]:
-    """Returns the MuJoCo bodies that an actuator acts on: one, or all that a tendon joins."""
+    """Returns the MuJoCo bodies that an actuator acts on: one, or all that a tendon connects."""
     kind, target = int(mj_model.actuator_trntype[actuator]), int(mj_model.actuator_trnid[actuator, 0])
     of_joint, of_site = mj_model.jnt_bodyid, mj_model.site_bodyid
     if kind == int(mjtTrn.mjTRN_TENDON):

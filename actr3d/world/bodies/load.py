@@ -39,19 +39,19 @@ class Load(Configuration):
         if len(self.size) != sizes:
             raise ConfigurationError(f"Load.size: a {self.shape} takes {meaning} (got {self.size!r})")
         if self.shape == "bar" and self.size[0] < self.size[1]:
-            raise ConfigurationError(f"Load.size: a bar is at least as long as it is thick (got {self.size!r})")
+            raise ConfigurationError(f"Load.size: the length of a bar must be at least its thickness (got {self.size!r})")
 
     @property
     def width(self) -> float:
-        """How wide it is across the body [m]."""
+        """Width across the body [m]."""
         return self.size[0] if self.shape == "bar" else self.size[1]
 
     @property
     def height(self) -> float:
-        """How high it is [m]."""
+        """Height [m]."""
         return self.size[1] if self.shape == "bar" else self.size[2]
 
     @property
     def depth(self) -> float:
-        """How deep it is [m]."""
+        """Depth [m]."""
         return self.size[1] if self.shape == "bar" else self.size[0]
