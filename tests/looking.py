@@ -9,7 +9,7 @@ from seeing import seen
 
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
-from actr3d.simulation.minds import Minds
+from actr3d.simulation.agents import Agents
 from actr3d.vision import DETECTORS
 from actr3d.world import Aperture, Floor, Mannequin, Scene, World
 
@@ -55,7 +55,7 @@ class Mindful:
 
     def __init__(self, world: World, kind: Any, seed: int = 1, trace: Any = None) -> None:
         self._world = world
-        self._minds = Minds({"walker": kind}, frozenset({"walker"}), seed, trace)
+        self._minds = Agents({"walker": kind}, frozenset({"walker"}), seed, trace)
         self.mind: Any = self._minds.environment["walker"]
 
     def tick(self, n: int = 1) -> Mindful:

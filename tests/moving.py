@@ -25,7 +25,7 @@ def mover(**parameters: Any) -> Callable[[], Any]:
 
 def motor_of(simulation: Simulation, name: str = "walker") -> Any:
     """Returns the motor module of an agent."""
-    minds: Any = simulation._course.lockstep.minds
+    minds: Any = simulation.timeline.lockstep.agents
     return minds.environment[name].motor
 
 
@@ -48,6 +48,6 @@ def until(simulation: Simulation, condition: Callable[[], bool], most: int = 100
 
 def during(simulation: Simulation, act: Callable[[], None]) -> None:
     """Goes on by a tick, in the midst of which a mind does something."""
-    minds: Any = simulation._course.lockstep.minds
+    minds: Any = simulation.timeline.lockstep.agents
     minds.environment.sch.call_after(0.005, act)
     simulation.step()

@@ -38,7 +38,7 @@ def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: 
         assert joint.position == near(math.copysign(speed * 0.01 * tick, target), abs=1e-3)
     world.step(5)
     assert joint.position == target
-    assert not body.running
+    assert not body.motion
     ticks(world, 100)
     assert joint.position == near(target, abs=1e-6)
 
@@ -59,7 +59,7 @@ def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
     assert body.joints["torso_yaw"].position == near(0.4, abs=1e-3)
     world.step(1000)
     assert body.joints["torso_yaw"].position == near(0.7, abs=1e-6)
-    assert not body.running
+    assert not body.motion
 
 
 def test_a_posture_moves_several_joints_while_walking() -> None:
@@ -78,10 +78,10 @@ def test_a_turn_goes_as_far_round_as_told_while_walking(by: float, speed: float)
     body.set("walk", 0.5)
     body.set("turn", by, speed)
     ticks(world, math.ceil(abs(by) / speed * 100) - 1)
-    assert body.running
+    assert body.motion
     ticks(world, 1)
     assert body.base.place[2] == near(by, abs=1e-9)
-    assert not body.running
+    assert not body.motion
     assert body.base.speed == near((0.5, 0, 0), abs=1e-3)
     body.set("turn", 3.0, 1.0)
     body.set("heading", 0.0)
@@ -96,7 +96,7 @@ def test_a_posture_of_all_joints_is_reached_by_all_though_some_are_there_first(s
     targets = {name: random.uniform(joint.lower, joint.upper) for name, joint in body.joints.items() if not name.startswith("pelvis")}
     body.set("posture", targets, speed=3.0)
     ticks(world, 250)
-    assert not body.running
+    assert not body.motion
     assert {name: body.joints[name].position for name in targets} == near(targets, abs=2e-3)
 
 
@@ -105,7 +105,7 @@ def test_a_position_beyond_a_limit_ends_at_the_limit() -> None:
     body.set("position", "head_yaw", 3.0, 4.0)
     ticks(world, 60)
     assert body.joints["head_yaw"].position == near(body.joints["head_yaw"].upper)
-    assert not body.running
+    assert not body.motion
 
 
 def test_a_new_command_replaces_the_old_one() -> None:
@@ -118,7 +118,7 @@ def test_a_new_command_replaces_the_old_one() -> None:
     ticks(world, 10)
     assert body.joints["torso_yaw"].position == near(0.0, abs=1e-3)
     assert body.get("pose").x == near(0.13)
-    assert not body.running
+    assert not body.motion
 
 
 @pytest.mark.parametrize("point", [(2.0, 0.0), (1.0, 1.5), (-1.0, 0.3), (0.004, 0.0)])
@@ -128,7 +128,7 @@ def test_a_waypoint_is_reached_exactly_and_it_stands_there(point: tuple[float, f
     ticks(world, 300)
     pose = body.get("pose")
     assert (pose.x, pose.y) == near(point, abs=1e-9)
-    assert not body.running
+    assert not body.motion
     assert body.get("velocity").linear == near((0, 0, 0), abs=1e-9)
 
 
@@ -139,7 +139,7 @@ def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
     assert body.base.place[2] == near(3.1, abs=1e-3)
     ticks(world, 30)
     assert body.get("pose").heading == near(-3.0, abs=1e-9)
-    assert not body.running
+    assert not body.motion
 
 
 def test_teleport_keeps_posture_and_goes_on_walking_the_new_way() -> None:
@@ -189,10 +189,10 @@ def test_what_is_grasped_comes_along_until_released() -> None:
 
 def test_what_is_held_feels_what_it_touches() -> None:
     stick = Loose(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
-    _, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
+    world, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
     body.set("grasp", "stick")
     body.set("walk", 0.3)
-    ticks(body.world, 100)
+    ticks(world, 100)
     assert {(touch.part, touch.other) for touch in body.get("contacts")} >= {("stick", "wall")}
     body.set("release")
     assert "stick" not in {touch.part for touch in present(body)}

@@ -304,7 +304,7 @@ def test_a_seed_gives_the_same_bytes_however_it_is_run(model: Any, variant: str)
     straight.run()
     seen: list[float] = []
     stepped.observe(lambda glimpse: seen.append(float(glimpse.mj_data.qpos[0])))
-    while not stepped._course.lockstep.minds.stopped:
+    while not stepped.timeline.lockstep.agents.stopped:
         stepped.step()
     wandering.run(9.5)
     wandering.seek(7.0)

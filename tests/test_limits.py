@@ -225,7 +225,7 @@ def test_a_simulation_without_time_for_a_tick_is_left_at_a_whole_one() -> None:
             with pytest.raises(EndOfRun):
                 simulation.tick()
         assert simulation.ticks == 1
-        assert not simulation._course.lockstep.broken
+        assert not simulation.timeline.lockstep.broken
 
 
 MODELS = sorted((Path(__file__).parent / "models").glob("*.py")) + sorted((Path(__file__).parent.parent / "models").rglob("*.py"))

@@ -389,7 +389,7 @@ def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], messa
     ("wrong", "message"),
     [
         ({"size": (1.0, 0.2, 0.1)}, "Load.size: a bar takes length and thickness"),
-        ({"size": (0.1, 0.2)}, "a bar is at least as long as it is thick"),
+        ({"size": (0.1, 0.2)}, "the length of a bar must be at least its thickness"),
         ({"shape": "box"}, "a box takes depth, width and height"),
         ({"mass": 0}, "Load.mass: must be > 0"),
     ],

@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, MeshError, ModelWarning
 from actr3d.world import Floor, Loose, Mesh, Scene, World
-from actr3d.world.files import Folder, digest
-from actr3d.world.surface import surface
+from actr3d.world.asset_folder import Folder, digest
+from actr3d.world.mesh_repair import surface
 
 creation: Any = trimesh.creation
 linalg: Any = np.linalg
@@ -433,7 +433,7 @@ def test_instances_are_counted_before_they_are_made(tmp_path: Path) -> None:
         ({"path": "one.stl", "files": (("two.stl", b""),)}, r"'two\.stl' is empty"),
         ({"path": "link.stl"}, r"'link\.stl' lies outside the folder 'here'"),
         ({"path": "loop.stl"}, r"'loop\.stl' cannot be read: Symlink loop|no file 'loop\.stl'"),
-        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no path that can be read: Symlink loop|no file 'one\.stl'"),
+        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no readable path: Symlink loop|no file 'one\.stl'"),
     ],
 )
 def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -448,7 +448,7 @@ def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, t
 
 
 def test_files_together_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("actr3d.world.files.MAX_BYTES", 100)
+    monkeypatch.setattr("actr3d.world.asset_folder.MAX_BYTES", 100)
     file(tmp_path, b"x" * 60, "a")
     file(tmp_path, b"x" * 60, "b")
     file(tmp_path, b"x" * 101, "c")

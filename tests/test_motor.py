@@ -272,7 +272,7 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
     ("command", "given", "message"),
     [
         ("rotate", ("torso_jaw",), r"walker has no joint 'torso_jaw'; did you mean 'torso_yaw'\?"),
-        ("rotate", ("torso",), "'torso' has several joints; say about which axis it is to turn: yaw, pitch, roll"),
+        ("rotate", ("torso",), "'torso' has several joints; give the axis: yaw, pitch, roll"),
         ("rotate", ("torso", "yew"), r"walker: torso has no axis 'yew'; did you mean 'yaw'\?"),
         ("rotate", ("tors", "yaw"), r"no jointed part 'tors'; did you mean 'torso'\?"),
         ("rotate", ("torso", "yaw", "far"), r"rotate: angle: must be a number \(got 'far'\)"),
@@ -291,8 +291,8 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("turn", (None, 1e-9), r"turn: speed: walker can do no less than 5\.7e-05 \(got 1e-09\)"),
         ("rotate", ([1, 2],), r"walker has no joint \[1, 2\]; it has pelvis_yaw"),
         ("rotate", (np.array([1, 2]), "yaw"), r"walker has no jointed part array\(\[1, 2\]\)"),
-        ("feel", (object(),), r"feel: name: must be what the posture is to be called \(got <object"),
-        ("feel", (" ",), r"feel: name: must be what the posture is to be called \(got ' '\)"),
+        ("feel", (object(),), r"feel: name: must be a name for the posture \(got <object"),
+        ("feel", (" ",), r"feel: name: must be a name for the posture \(got ' '\)"),
         ("walk", ("fast",), r"walk: speed: must be a number \(got 'fast'\)"),
     ],
 )
@@ -322,7 +322,7 @@ def test_an_agent_without_a_body_is_told_so() -> None:
 
 def test_a_body_that_cannot_walk_says_so_with_the_line_that_asked() -> None:
     simulation, motor = moving(body=Car(name="walker"))
-    with pytest.raises(WorldError, match=r"walker cannot walk; it can be told: .*steering"):
+    with pytest.raises(WorldError, match=r"walker cannot walk; its commands are: .*steering"):
         motor.walk(1)
     with pytest.raises(WorldError, match="walker has no movement 'rotate_torso'; it has no movements"):
         motor.rotate_torso()
@@ -362,7 +362,8 @@ def test_a_limb_that_something_holds_back_is_blocked_and_stops_pushing() -> None
     until(simulation, lambda: not motor.busy)
     assert ended(motor, "left_upper_arm") == "blocked"
     assert angle(simulation, "left_upper_arm_pitch") == near(-37, abs=3)
-    assert simulation.world.bodies["walker"].joints["left_upper_arm_pitch"].told(simulation.world.bodies["walker"]) == 0
+    walker = simulation.world.bodies["walker"]
+    assert walker.hold.joint_speed(walker.joints["left_upper_arm_pitch"]) == 0
     assert motor.parent.posture.chunk["end"] == "blocked"
 
 
@@ -450,7 +451,7 @@ def test_an_imported_arm_is_known_and_moved() -> None:
 
 def test_a_joint_that_slides_needs_a_speed() -> None:
     _, motor = moving(body=ImportedBody(name="arm", text=ARM))
-    with pytest.raises(WorldError, match=r"joint 'grip' slides; say how fast \[m/s\]"):
+    with pytest.raises(WorldError, match=r"joint 'grip' slides; give its speed \[m/s\]"):
         motor.rotate("grip")
 
 

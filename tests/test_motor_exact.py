@@ -162,7 +162,7 @@ def test_whatever_is_commanded_limits_hold_and_what_is_known_is_so(seed: int) ->
         for name, joint in body.joints.items():
             assert joint.lower - 2e-3 <= joint.position <= joint.upper + 2e-3
             seen[name] = [min(seen[name][0], joint.position), max(seen[name][1], joint.position)]
-            if abs(joint.told(body)) > 0.01:
+            if abs(body.hold.joint_speed(joint)) > 0.01:
                 assert name.rpartition("_")[0] in busy, "who moves is busy"
     motor.stop()
     simulation.step(2)

@@ -309,9 +309,9 @@ def test_a_run_is_recorded_once_at_a_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("facts", "message"),
     [
-        ({"seed": 99}, "a recording tells 'seed' by itself; give that fact another name"),
-        ({"kind": "program"}, "a recording tells 'kind' by itself"),
-        ({"form": "mine"}, "a recording tells 'form' by itself"),
+        ({"seed": 99}, "a recording sets 'seed' itself; give that fact another name"),
+        ({"kind": "program"}, "a recording sets 'kind' itself"),
+        ({"form": "mine"}, "a recording sets 'form' itself"),
         ({"subject": object()}, "the fact 'subject' cannot be recorded, only numbers, texts, and lists and dicts of these"),
     ],
 )

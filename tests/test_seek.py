@@ -12,7 +12,7 @@ from walkers import Driver, digest, driving, scene_of
 from actr3d.actr.loading import load_text
 from actr3d.errors import SimulationError
 from actr3d.recording import Recorded
-from actr3d.simulation import Simulation, history
+from actr3d.simulation import Simulation, timeline
 from actr3d.world import Body
 
 COMMANDS = {
@@ -45,8 +45,8 @@ def first_run(ticks: int = 200, simulation: Simulation | None = None) -> tuple[S
 
 @pytest.mark.parametrize("answers", [10_000, 7, 0], ids=["all answers", "first answers", "no answers"])
 def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history, "MOST_ANSWERS", answers)
-    monkeypatch.setattr(history, "SPACING", 10)
+    monkeypatch.setattr(timeline, "MOST_ANSWERS", answers)
+    monkeypatch.setattr(timeline, "SPACING", 10)
     simulation, digests = first_run()
     choose = random.Random(1)
     for tick in [100, 200, 0, 199, 3, *(choose.randrange(201) for _ in range(12))]:
@@ -72,10 +72,10 @@ def test_known_answers_are_not_asked_for_again(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_many_states_are_thinned_out_and_still_lead_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history, "SPACING", 2)
-    monkeypatch.setattr(history, "MOST_STATES", 5)
+    monkeypatch.setattr(timeline, "SPACING", 2)
+    monkeypatch.setattr(timeline, "MOST_STATES", 5)
     simulation, digests = first_run()
-    assert len(simulation._course._history._states) <= 6
+    assert len(simulation.timeline._history._states) <= 6
     for tick in (7, 163, 50, 199):
         simulation.seek(tick / 100)
         assert digest(simulation) == digests[tick]

@@ -18,8 +18,8 @@ from mujoco import MjSpec, mjtGeom
 from actr3d.errors import Actr3dError
 from actr3d.world import Aperture, Body, Floor, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
-from actr3d.world.noise import Noise
-from actr3d.world.sensors.picture import Picture
+from actr3d.world.sensor_noise import SensorNoise
+from actr3d.world.sensors.render import Picture
 from actr3d.world.sensors.touch import present
 
 
@@ -233,7 +233,7 @@ def test_pictures_are_drawn_in_one_thread() -> None:
         pytest.skip("there is no EGL here")
     _, body = living(WALL)
     first = body.get("depth", 8, 6)
-    with ThreadPoolExecutor() as others, pytest.raises(Actr3dError, match="drawn in one thread, that of the first picture"):
+    with ThreadPoolExecutor() as others, pytest.raises(Actr3dError, match="draws its pictures in one thread, that of the first picture"):
         others.submit(body.get, "depth", 8, 6).result()
     assert body.get("depth", 8, 6) == first
 
@@ -241,7 +241,7 @@ def test_pictures_are_drawn_in_one_thread() -> None:
 def test_a_picture_s_noise_is_one_number() -> None:
     picture = Picture(kind="depth", width=1, height=1, pixels=bytes(4))
     with pytest.raises(Actr3dError, match="noise of depth: a picture has no fields; give one number"):
-        Noise(0, "walker").added("depth", picture, {"x": 1.0})
+        SensorNoise(0, "walker").added("depth", picture, {"x": 1.0})
 
 
 def test_without_egl_pictures_are_refused_with_a_reason() -> None:

@@ -76,10 +76,10 @@ class Agent(SGOMS):
         ("b_unit_task.modify(unit_task='tlak')", "has a unit task 'tlak'; did you mean 'talk'"),
         ("b_unit_task.set('state:start')", "names no unit task"),
         ("b_unit_task.modify(state='finishd')", "state 'finishd' does not end the unit task; did you mean 'finished'"),
-        ("b_unit_task.clear()", "'boil' is cleared, and nothing would come after it; it ends with b_unit_task.modify"),
+        ("b_unit_task.clear()", "'boil' is cleared, and nothing would follow it; end it with b_unit_task.modify"),
         ("b_interrupt.set('planning_unit:phoen when:now')", "b_interrupt: Agent has no planning unit 'phoen'; did you mean 'phone'"),
-        ("b_interrupt.set('planning_unit:phone')", "does not say when; 'when:now' cuts"),
-        ("b_interrupt.set('planning_unit:phone when:ned')", "does not say when; did you mean 'end'"),
+        ("b_interrupt.set('planning_unit:phone')", "has no valid 'when'; 'when:now' interrupts"),
+        ("b_interrupt.set('planning_unit:phone when:ned')", "has no valid 'when'; did you mean 'end'"),
         ("b_interrupt.set('phone when:now')", "b_interrupt: .* names no planning unit"),
     ],
 )
@@ -91,7 +91,7 @@ def test_misspelt_names_in_productions(text: str, message: str) -> None:
 
 def test_a_unit_task_that_no_production_takes_on() -> None:
     text = body("b_unit_task.modify(state='finished')").replace('"boil", "pour"', '"boil", "puor"')
-    with pytest.raises(PlanError, match=r"planning unit 'tea' of Agent: no production takes on its unit task 'puor'.*did you mean 'pour'"):
+    with pytest.raises(PlanError, match=r"planning unit 'tea' of Agent: no production matches its unit task 'puor'.*did you mean 'pour'"):
         cooking(text)
 
 
@@ -172,7 +172,7 @@ def test_planning_units_are_inherited_and_each_agent_has_its_own_buffers() -> No
 def test_an_agent_that_does_not_live_yet_has_no_buffer_of_its_own(buffer: str, chunk: str) -> None:
     """What was set there used to be every agent's, of whatever class, and a planning unit set so never began."""
     agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
-    with pytest.raises(PlanError, match=r"before its agent lives; do it in the agent's init\(\), or after its run\(0\)"):
+    with pytest.raises(PlanError, match=r"before its agent has started; do it in the agent's init\(\), or after its run\(0\)"):
         getattr(agent, buffer).set(chunk)
     assert not SGOMS.__dict__[buffer].chunk
     agent.run(0)
@@ -185,7 +185,7 @@ def test_an_agent_that_does_not_live_yet_has_no_buffer_of_its_own(buffer: str, c
         ("b_plan_unit", {"type": "situated"}, "'tea' is of type 'ordered', not 'situated'; begin it with 'planning_unit:tea'"),
         ("b_plan_unit", {"planning_unit": "phone"}, "'phone' is of type 'situated', not 'ordered'"),
         ("b_interrupt", {"planning_unit": "phon"}, "no planning unit 'phon'; did you mean 'phone'"),
-        ("b_interrupt", {"when": "nwo"}, "does not say when; did you mean 'now'"),
+        ("b_interrupt", {"when": "nwo"}, "has no valid 'when'; did you mean 'now'"),
     ],
 )
 def test_what_is_modified_is_checked_like_what_is_set(buffer: str, changes: dict[str, str], message: str) -> None:

@@ -35,7 +35,7 @@ def test_the_eye_sees_the_gap_as_wide_as_it_projects() -> None:
     walker = doorway().bodies["walker"]
     view = walker.get("view", rows=1, horizontal_fov=1.0)
     left, gap, again, right = edges(view)
-    eye = walker.world.mj_data.site(walker.eye).xpos
+    eye = walker.physics.mj_data.site(walker.eye).xpos
     depth = 5.0 + 0.05 - eye[0]  # to the far ends of the inner faces, which narrow the gap
     half = 0.4 / (2 * depth * 0.5463024898437905)  # tan(0.5), half the width of the screen at 1 m
     assert (gap, again) == (near(0.5 - half, abs=1e-6), near(0.5 + half, abs=1e-6))
@@ -103,12 +103,12 @@ def test_noise_of_a_view_is_seeded_and_leaves_the_view_alone() -> None:
     assert first.get("view") is plain
 
 
-def test_without_the_camera_the_word_says_where_it_is() -> None:
-    look = "from actr3d.world import Mannequin, Scene, World; World(Scene(parts=(Mannequin(),))).bodies['mannequin'].get('view')"
-    alone = subprocess.run([sys.executable, "-c", look], check=False, capture_output=True, text=True)
-    assert "mannequin: the sensor 'view' is the camera's: import actr3d.camera before the world is made" in alone.stderr
-    for package in ("actr3d.camera", "actr3d.simulation"):
-        assert subprocess.run([sys.executable, "-c", f"import {package}; {look}"], check=True, capture_output=True).stderr == b""
+def test_importing_the_camera_registers_the_sensor_before_or_after_the_world_is_made() -> None:
+    make = "from actr3d.world import Mannequin, Scene, World; body = World(Scene(parts=(Mannequin(),))).bodies['mannequin']"
+    alone = subprocess.run([sys.executable, "-c", f"{make}; body.get('view')"], check=False, capture_output=True, text=True)
+    assert "WorldError: mannequin has no sensor 'view'" in alone.stderr
+    for program in (f"import actr3d.simulation; {make}; body.get('view')", f"{make}; import actr3d.camera; body.get('view')"):
+        assert subprocess.run([sys.executable, "-c", program], check=True, capture_output=True).stderr == b""
 
 
 def test_numbers_may_come_as_text() -> None:

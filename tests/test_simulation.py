@@ -20,8 +20,8 @@ from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import Actr3dError, SimulationError, WorldError
-from actr3d.simulation import Glimpse, Simulation, history, minds
-from actr3d.simulation.minds import Environment
+from actr3d.simulation import Glimpse, Simulation, agents, timeline
+from actr3d.simulation.agents import Environment
 from actr3d.trace import Trace
 from actr3d.world import Body, Floor, Scene
 
@@ -354,16 +354,16 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.run(1, real_time=float("inf")), r"run\(real_time\): must be a finite number above 0 \(got inf\)"),
     (lambda s: s.run(until=True), r"run\(until\): must be a function that takes a Glimpse \(got True\)"),
     (lambda s: Simulation(odd("room")), r"Simulation\.scene: must be a Scene or a World \(got 'room'\)"),
-    (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the minds are \(it has come to 0\.02 s\)"),
+    (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the agents are \(it has come to 0\.02 s\)"),
     (
         lambda s: Simulation(Scene(), seed=odd(1.5)),
         r"Simulation\.seed: must be a whole number or a text .*got 1\.5",
     ),
     (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number or a text of printable characters"),
-    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.minds: must name what makes each mind, as in"),
+    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.minds: must name what makes each agent, as in"),
     (
         lambda s: Simulation(Scene(), bodiless={"": Driver}),
-        r"Simulation\.bodiless: a mind's name must be a text that does",
+        r"Simulation\.bodiless: an agent's name must be a text that does",
     ),
     (lambda s: Simulation(Scene(), bodiless={"sch": Driver}).step(), "cannot be named 'sch'"),
     (lambda s: Simulation(Scene(), bodiless={"parent": Driver}).step(), "cannot be named 'parent'"),
@@ -375,7 +375,7 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(s.world, {"walkr": Driver}), r"no body 'walkr' in the scene; did you mean 'walker'"),
     (lambda s: Simulation(s.world, bodiless={"walker": Driver}), "'walker' is the name of a body"),
     (lambda s: Simulation(Scene(), {"x": Driver}), "no body 'x' in the scene; there are: none"),
-    (lambda s: Simulation(s.world, dict[str, Any](walker=3)).step(), "must be what makes an agent"),
+    (lambda s: Simulation(s.world, dict[str, Any](walker=3)).step(), "must be an agent's class"),
     (lambda s: Simulation(s.world, {"walker": dict}).step(), r"must make an agent \(made \{\}\)"),
     (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
     (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "has no body"),
@@ -412,7 +412,7 @@ def test_no_name_of_a_living_environment_is_left_to_a_mind() -> None:
     environment = Environment()
     before = set(dir(environment))
     ensure_converted(environment)
-    assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(minds._LATER)
+    assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(agents._LATER)
 
 
 def test_an_unknown_word_names_the_modellers_line() -> None:
@@ -503,8 +503,8 @@ def test_nothing_is_asked_of_a_body_that_nobody_wants(asked: Counter[str]) -> No
 
 
 def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history, "MOST_STATES", 8)
-    monkeypatch.setattr(history, "MOST_ANSWERS", 100)
+    monkeypatch.setattr(timeline, "MOST_STATES", 8)
+    monkeypatch.setattr(timeline, "MOST_ANSWERS", 100)
     simulation = driving()
     simulation.run(2)
     tracemalloc.start()

@@ -258,5 +258,5 @@ def test_what_is_no_detector_is_refused() -> None:
     with pytest.raises(VisionError, match="takes the class of what it finds"):
         detector("odd")  # type: ignore[arg-type]
     for wrong in (nothing, needs_more, by_place):
-        with pytest.raises(VisionError, match=r"must take a view, and after a \* what has a default"):
+        with pytest.raises(VisionError, match=r"must take a view, and after a \* parameters with defaults"):
             detector(Odd)(wrong)

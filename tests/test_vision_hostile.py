@@ -15,7 +15,7 @@ from looking import Mindful, agent
 from actr3d.camera import CameraParameters
 from actr3d.errors import Actr3dError, ConfigurationError, ParameterError, VisionError
 from actr3d.vision import DETECTORS, Emma, Vision
-from actr3d.vision.query import read_request
+from actr3d.vision.request_parser import read_request
 from actr3d.vision.salience import share, weigh
 from actr3d.world import Aperture, Floor, Mannequin, Scene, World
 
@@ -200,8 +200,8 @@ def test_parameters_need_no_unit() -> None:
     ("text", "says"),
     [
         ("@detector(Text)\ndef texts(view): return ()\n", "'side' is no field; write @dataclass"),
-        ("@detector(Thing)\ndef things(view, *, width: Metres = 1.0): return ()\n", "'width' means something else in a request"),
-        ("@detector(Thing)\ndef things(view, *, bottom_up: Metres = 1.0): return ()\n", "'bottom_up' means something else"),
+        ("@detector(Thing)\ndef things(view, *, width: Metres = 1.0): return ()\n", "'width' is reserved in requests"),
+        ("@detector(Thing)\ndef things(view, *, bottom_up: Metres = 1.0): return ()\n", "'bottom_up' is reserved in requests"),
     ],
 )
 def test_words_that_requests_could_not_reach_are_refused(text: str, says: str) -> None:
@@ -226,5 +226,5 @@ def test_salience_and_encoding_set_later_count_and_are_checked() -> None:
 
 
 def test_a_camera_that_is_set_later_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"Vision.rows: a camera cannot be changed; give it to Vision\(rows=...\)"):
+    with pytest.raises(ParameterError, match=r"Vision.rows: a camera cannot be changed; set it in Vision\(rows=...\)"):
         Vision(None).rows = 50

@@ -203,6 +203,6 @@ def test_a_walker_sees_the_aperture_from_everywhere_as_wide_as_it_is() -> None:
         world.changed()
         widest: Opening = max(openings_of(walker.get("view")), key=lambda o: o.height)
         assert widest.width == near(0.5, abs=CENTIMETRE)
-        at = walker.world.mj_data.site(walker.eye).xpos
+        at = walker.physics.mj_data.site(walker.eye).xpos
         expected = math.atan2(-at[1], 7.0 - at[0]) - heading
         assert widest.direction == near(expected, abs=0.06)  # from where the legs point, wherever the head looks

@@ -11,8 +11,7 @@ from picturing import picture
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # noqa: F401 - it gives bodies the word `view`
 from actr3d.errors import WorldError
 from actr3d.world import Aperture, Car, Floor, ImportedBody, Loose, Mannequin, Scene, World
-from actr3d.world.actuators import ACTUATORS
-from actr3d.world.sensors import SENSORS
+from actr3d.world.body import ACTUATORS, SENSORS
 
 ARM = """<mujoco>
   <worldbody><body name="stand" pos="0 0 1"><geom size="0.1"/>
@@ -23,16 +22,16 @@ ARM = """<mujoco>
 </mujoco>"""
 
 DERIVED = {
-    ("World", "moment"),  # counts states, so that what was read of an earlier one is known to be stale
-    ("World", "_refreshed"),
-    ("World", "_solved"),  # whether MuJoCo's derived numbers are up to date
-    ("World", "_scratch"),
-    ("World", "_state_numbers"),  # room for numbers
-    ("World", "drawing"),  # draws pictures of the state
-    ("Compiled", "_image"),
-    ("Compiled", "_original"),  # made when it is first needed, and always the same
-    ("Holding", "_expected"),
-    ("Holding", "_new"),  # a short cut past what would find the same
+    ("Physics", "moment"),  # counts states, so that readings of an earlier one are known to be stale
+    ("Physics", "_refreshed"),
+    ("Physics", "_solved"),  # whether MuJoCo's derived numbers are up to date
+    ("Physics", "_scratch"),
+    ("Physics", "_numbers"),  # scratch memory
+    ("Physics", "renderer"),  # draws pictures of the state
+    ("ModelChanges", "_image"),
+    ("ModelChanges", "_original"),  # made when it is first needed, and always the same
+    ("PostureHold", "_steady"),
+    ("PostureHold", "_new"),  # a short cut that never changes the result
     ("Body", "_senses"),  # all senses that were ever made; those in use are in the state
     ("_Shapes", "_sizes"),
     ("_Shapes", "_formula"),  # computed again where sizes have changed
@@ -59,7 +58,7 @@ COMMANDS: dict[str, list[tuple[str, tuple[Any, ...]]]] = {
     "release": [("walker", ("right",))],
     "control": [("arm", ("turn", 0.5))],
 }
-"""Each word that a body can be told, with values."""
+"""Each command of a body, with values."""
 READINGS: dict[str, list[tuple[str, dict[str, Any]]]] = {
     "view": [("walker", {}), ("walker", {"horizontal_fov": 1.0, "rows": 9}), ("car", {"rows": 5})],
     "contacts": [("walker", {}), ("arm", {})],
@@ -127,9 +126,9 @@ def test_what_a_program_changes_in_the_compiled_scene_is_part_of_the_state() -> 
 def test_a_new_attribute_that_no_state_holds_is_found() -> None:
     there = world()
     state, before = there.state(), picture(there, DERIVED)
-    there.bodies["walker"].running.__dict__["patience"] = 3
+    there.bodies["walker"].motion.__dict__["patience"] = 3
     there.restore(state)
-    assert differences(before, picture(there, DERIVED)) == {"World.bodies.[walker].running.patience": (None, "3")}
+    assert differences(before, picture(there, DERIVED)) == {"World.bodies.[walker].motion.patience": (None, "3")}
 
 
 def test_a_state_of_another_scene_is_refused() -> None:

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.stand import Stand, stand_of
 from actr3d.camera.view import View
-from actr3d.world.sensors.registry import SENSORS
-from actr3d.world.words import adder
-
-if TYPE_CHECKING:
-    from actr3d.world.body import Body
-
+from actr3d.world.body import Body, sensor
 
 USUAL = CameraParameters()
 """What is looked with where no options are given."""
@@ -33,7 +28,7 @@ class Sight:
         self.parameters = parameters
         """How it sees."""
         self._body = body
-        self._camera = GeometricCamera(body.world.mj_model, site=body.eye, parameters=parameters)
+        self._camera = GeometricCamera(body.physics.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
         self._moment = -1
         self._view: View | None = None
@@ -45,13 +40,13 @@ class Sight:
         Raises:
             CameraError: If the poses are no numbers.
         """
-        world = self._body.world
-        if self._view is None or self._moment != world.moment:
-            world.refresh()
-            stand = stand_of(self._body, world.mj_data)
-            self._view = self._camera.look(world.mj_data, stand.heading)
+        physics = self._body.physics
+        if self._view is None or self._moment != physics.moment:
+            physics.refresh()
+            stand = stand_of(self._body, physics.mj_data)
+            self._view = self._camera.look(physics.mj_data, stand.heading)
             self._stands[self._view] = stand
-            self._moment = world.moment
+            self._moment = physics.moment
         return self._view
 
     def stood(self, view: View) -> Stand | None:
@@ -68,7 +63,7 @@ class Sight:
         self._view = None
 
 
-@adder(SENSORS, lambda body: body.eye is not None)
+@sensor.if_body(lambda body: body.eye is not None)
 def view(body: Body, **options: Any) -> View:
     """Senses the edges of all that is visible from the eye.
 

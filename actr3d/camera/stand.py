@@ -32,6 +32,6 @@ def stand_of(body: Body, data: Any) -> Stand:
         body: Whose eye; it has one.
         data: The `mj_data` of the world, or a copy in another state.
     """
-    site = mj_name2id(body.world.mj_model, mjtObj.mjOBJ_SITE, body.eye or "")
+    site = mj_name2id(body.physics.mj_model, mjtObj.mjOBJ_SITE, body.eye or "")
     x, y, z = data.site_xpos[site].tolist()
     return Stand(x, y, z, heading_of(data.xmat[body.root]))

@@ -1,4 +1,4 @@
-"""Limbs under a mind's command: the motor module, what it knows of the body, and the body schema it learns."""
+"""The motor module: commands to the limbs, knowledge of the body, and the learned body schema."""
 
 from actr3d.motor.limbs import BodyPart, Freedom
 from actr3d.motor.module import Motor

@@ -1,26 +1,22 @@
-"""Says which productions ask a motor module for what it does not have, once it knows its body; it only warns."""
+"""Warns of productions that match attributes which a motor module does not have, once it knows its body."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
 from weakref import WeakSet
 
+from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
 from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import did_you_mean
 from actr3d.saying import warn_at
 
-if TYPE_CHECKING:
-    from actr3d.motor.muscles import Muscles
-
 _CHECKED: WeakSet[type] = WeakSet()
 
 
-def check_patterns(motor: Muscles) -> None:
-    """Warns, once for each class of agent, of patterns that name a muscle group, joint or state that there is not."""
+def check_patterns(motor: Model) -> None:
+    """Warns, once for each class of agent, of patterns that name a muscle group, joint or state that does not exist."""
     known = [name for name in motor.__dict__ if name[0] != "_"]
-    top = top_of(motor)
-    for system in subtree(top):
+    for system in subtree(top_of(motor)):
         if not isinstance(system, ProductionSystem) or type(system) in _CHECKED:
             continue
         of_motor = [production for production in system._productions if any(target is motor for target in production.context.values())]

@@ -1,4 +1,4 @@
-"""The body as its mind knows it: parts, what they can do, how they stand, and how far they have ever been turned."""
+"""An agent's knowledge of its body: parts, joints, positions and extremes."""
 
 from __future__ import annotations
 
@@ -8,38 +8,38 @@ from math import radians
 
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import NamedMovement
+from actr3d.world.command_registry import known
 from actr3d.world.sensors.anatomy import BodyPlan, JointPlan
-from actr3d.world.words import known
 
 BASE_GROUP = "legs"
-"""The muscle group that walks and turns the whole body, whatever its base is called."""
+"""The muscle group that walks and turns the whole body, whatever the name of its base."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Freedom:
-    """One degree of freedom, as it is felt now. Radians, or metres where it slides."""
+    """The present knowledge of one degree of freedom. Radians, or metres for a slide."""
 
     name: str
     """Of the joint: `torso_yaw`."""
     axis: str
-    """`yaw`, `pitch` or `roll` for what turns, `x`, `y` or `z` for what slides."""
+    """`yaw`, `pitch` or `roll` of a hinge, `x`, `y` or `z` of a slide."""
     lower: float | None
-    """How far it can go [rad] or [m]; None without limit."""
+    """Lower limit [rad] or [m]; None without limit."""
     upper: float | None
-    """The same, the other way."""
+    """Upper limit [rad] or [m]; None without limit."""
     angle: float
-    """Where it is [rad] or [m]."""
+    """Felt position [rad] or [m]."""
     least: float
-    """The least that it has been so far [rad] or [m]."""
+    """Least felt position up to now [rad] or [m]."""
     most: float
-    """The greatest."""
+    """Greatest felt position up to now [rad] or [m]."""
     driven: bool
-    """Whether it can be turned at will."""
+    """Whether a command can move it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyPart:
-    """A part of the body with the joints by which it hangs on another, and with the parts that it carries."""
+    """A part of the body, with the joints that attach it to another, and the parts that it carries."""
 
     name: str
     """The name of the part: `torso`."""
@@ -63,44 +63,44 @@ class BodyPart:
 
 
 class Limbs:
-    """What a motor module knows of its body, in step with it.
+    """A motor module's knowledge of its body, updated with each reading.
 
     Args:
-        plan: What the body has told of itself.
+        plan: The description of the body.
     """
 
     def __init__(self, plan: BodyPlan) -> None:
         self.plan = plan
         self.joints: dict[str, JointPlan] = {joint.name: joint for part in plan.parts for joint in part.joints}
         self.order = tuple(self.joints)
-        """The joints in the order in which the body feels them."""
+        """The joints in the order of readings."""
         self.number = {joint: number for number, joint in enumerate(self.order)}
-        """By joint, its place there."""
+        """By joint, its index there."""
         self.shown_as = {name: f"{name}_{'angle' if joint.kind == 'hinge' else 'position'}" for name, joint in self.joints.items()}
-        """By joint, the motor module's attribute that shows where it is felt to be."""
+        """By joint, the motor module's attribute with its felt position."""
         self.unit = {name: radians(1) if joint.kind == "hinge" else 1.0 for name, joint in self.joints.items()}
-        """By joint, what one unit in which people give its position is inside: a degree in radians, or a metre."""
+        """By joint, the unit of its position in commands: a degree in radians, or a metre."""
         self.group_of: dict[str, str] = {joint.name: part.name for part in plan.parts for joint in part.joints}
-        """By joint, the muscle group that moves it: that of its part."""
+        """By joint, its muscle group: that of its part."""
         self.walks = "walk" in plan.actuators
         moved = {part.name: None for part in plan.parts if any(joint.driven for joint in part.joints)}
         self.groups: tuple[str, ...] = tuple(dict.fromkeys([*([BASE_GROUP] if self.walks else []), *moved]))
         """All muscle groups."""
         self.fastest = plan.fastest or (math.inf, math.inf, math.inf)
-        """How fast it can walk [m/s], turn [rad/s] and turn a joint [rad/s]."""
+        """Greatest speeds of walking [m/s], turning [rad/s] and joints [rad/s]."""
         self.felt: dict[str, float] = {}
-        """By joint, where it is felt to be [rad] or [m]."""
+        """By joint, its felt position [rad] or [m]."""
         self.least: dict[str, float] = {}
         self.most: dict[str, float] = {}
 
     def feel(self, joint: str, position: float) -> None:
-        """Takes in where a joint is felt to be [rad] or [m]."""
+        """Updates the felt position of a joint [rad] or [m]."""
         self.felt[joint] = position
         self.least[joint] = min(position, self.least.get(joint, position))
         self.most[joint] = max(position, self.most.get(joint, position))
 
     def freedom(self, joint: str) -> Freedom:
-        """Returns a joint as it is known now.
+        """Returns the present knowledge of a joint.
 
         Raises:
             WorldError: If the body has no such joint.
@@ -118,7 +118,7 @@ class Limbs:
         )
 
     def tree(self) -> BodyPart:
-        """Returns all parts as they are known now, from the base on."""
+        """Returns the present knowledge of all parts, from the base on."""
         made: dict[str, BodyPart] = {}
         for part in reversed(self.plan.parts):
             carried = tuple(made[other.name] for other in self.plan.parts if other.on == part.name)
@@ -132,7 +132,7 @@ class Limbs:
             WorldError: If there is none, or there are several.
         """
         whose = self.plan.name
-        if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a mind
+        if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
             known(name, self.joints, whose, "joint" if axis is None else "jointed part")
         if axis is None:
             if name in self.joints:
@@ -143,14 +143,14 @@ class Limbs:
             if not of:
                 known(name, self.joints, whose, "joint")
             axes = ", ".join(dict.fromkeys(self.joints[joint].axis for joint in of))
-            raise WorldError(f"{whose}: '{name}' has several joints; say about which axis it is to turn: {axes}")
+            raise WorldError(f"{whose}: '{name}' has several joints; give the axis: {axes}")
         by_axis = {self.joints[joint].axis: joint for joint, part in self.group_of.items() if part == name}
         if not by_axis:
             known(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
         return by_axis[known(axis, by_axis, f"{whose}: {name}", "axis")]
 
     def movement(self, name: str, side: str | None) -> NamedMovement:
-        """Returns a movement that the body has a name for.
+        """Returns a named movement of the body.
 
         Raises:
             WorldError: If there is none of that name, or none on that side.
@@ -162,16 +162,16 @@ class Limbs:
         return sides[known(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
 
     def possible(self, call: str, speed: float, kind: int, unit: float) -> None:
-        """Checks that a speed is one that the body can have.
+        """Checks that the body can reach a speed.
 
         Args:
-            call: What is to have that speed.
+            call: The command, for the message.
             speed: The speed [m/s] or [rad/s].
-            kind: Which of `fastest` it is compared with.
-            unit: What one unit in which people give it is inside.
+            kind: The index in `fastest`.
+            unit: The unit of speeds in the command.
 
         Raises:
-            WorldError: If it is faster, or slower than `SLOWEST` but not 0; says what would be possible.
+            WorldError: If it is faster, or slower than `SLOWEST` but not 0; with the possible range.
         """
         most = self.fastest[kind]
         if 0 < abs(speed) < SLOWEST:
@@ -180,27 +180,27 @@ class Limbs:
             raise WorldError(f"{call}: speed: {self.plan.name} can do at most {most / unit:g} (got {speed / unit:g})")
 
     def inside(self, joint: str, position: float) -> bool:
-        """Tells whether a position [rad] or [m] is within a joint's limits."""
+        """Returns whether a position [rad] or [m] is within a joint's limits."""
         plan = self.joints[joint]
         return (plan.lower is None or position >= plan.lower - TINY) and (plan.upper is None or position <= plan.upper + TINY)
 
     def limit(self, joint: str, way: float) -> float | None:
-        """Returns the limit of a joint [rad] or [m] that lies in the way of a speed; None where there is none."""
+        """Returns the limit of a joint [rad] or [m] in the direction of a speed; None without limit."""
         plan = self.joints[joint]
         return plan.upper if way > 0 else plan.lower
 
 
 SLOWEST = 1e-6
-"""What moves at all moves as fast as this [m/s] or [rad/s]: the least that the words of bodies take."""
+"""Least speed of a movement [m/s] or [rad/s]: the least that the commands of bodies accept."""
 
 FINEST = 1e-9
 """The finest grid [degrees] or [m]."""
 
 TINY = 1e-9
-"""What conversion between degrees and radians may add [rad]."""
+"""Greatest error of conversion between degrees and radians [rad]."""
 
 
 def on_grid(value: float, grid: float) -> float:
-    """Returns the multiple of `grid` that is nearest to a value; a whole one as a whole number, so that it reads well."""
+    """Returns the multiple of `grid` that is nearest to a value; as an int if it is one."""
     near = round(round(value / grid) * grid, 9)
     return int(near) if near == int(near) else near

@@ -1,8 +1,8 @@
-"""The motor module: commands by name."""
+"""The motor module: commands by name, movements in progress, and what is felt of the body."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import copysign, radians
 from typing import Any
@@ -10,53 +10,66 @@ from typing import Any
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.kernel.buffer import Buffer
-from actr3d.actr.kernel.parameters import named_parameters
-from actr3d.errors import ParameterError, SimulationError, WorldError
-from actr3d.motor.limbs import FINEST, BodyPart, Freedom, Limbs
-from actr3d.motor.movement import INFINITE, JointMovement, Movement, Turn, Walk
-from actr3d.motor.muscles import Muscles
-from actr3d.world.words import known, number
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.modules.port import Port, Request, place_of_caller
+from actr3d.clock import seconds
+from actr3d.errors import Actr3dError, ParameterError, SimulationError, WorldError
+from actr3d.motor.checks import check_patterns
+from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, Freedom, Limbs
+from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
+from actr3d.motor.schema import BodySchema
+from actr3d.world.command_registry import known, number
+from actr3d.world.sensors.anatomy import BodyPlan
+from actr3d.world.sensors.proprioception import Proprioception
 
 HUGE = 1e9
-"""Every parameter is below this."""
+"""Upper bound of every parameter."""
+
+FEELING = "the motor module's own feeling"
+"""Replaces the modeller's line in errors of the module's own requests."""
+
+_NOTHING = object()
 
 
-class Motor(Muscles):
+class Motor(WithParameters, Port):
     """Moves the body of its agent, and learns what the body is like in each posture.
 
-    Commands begin a movement and return at once. Each goes on at a constant speed until it is done, until `stop`, until
-    the joint's limit, or until something in the way has held it for a while; `<group>_end` says which: «done», «stopped»,
-    «limit» or «blocked». There is one muscle group for each part with joints, and one for the legs; groups move at once.
+    Commands begin a movement and return at once. A movement continues at a constant speed until it is done, until `stop`, until
+    the joint's limit, or until an obstacle has blocked it for a while; `<group>_end` holds the reason: «done», «stopped»,
+    «limit» or «blocked». There is one muscle group for each part with joints, and one for the legs; groups move in parallel.
+    A group carries out one movement at a time; the legs walk and turn in parallel.
 
-    Productions match `busy`, and `<group>_busy` of each muscle group; `error` after a command was refused, and `refusal`,
-    «busy» or «limit»; `walking` and `turning`; what is felt, `<joint>_angle` [degrees], `width`, `depth` and `height` [m].
-    Names that the body does not know, and values that are none, are errors.
+    Productions match `busy`, and `<group>_busy` of each muscle group; `error` after a refused command, and `refusal`,
+    «busy» or «limit»; `walking` and `turning`; felt values, `<joint>_angle` [degrees], `width`, `depth` and `height` [m].
+    Unknown names and invalid values raise errors.
 
-    The body tells what it consists of in the first tick; what is commanded before begins 10 ms after the start. While
-    something moves, the body is felt at the end of each tick, and a run that has no end goes on; else nothing costs time.
+    The module learns what the body consists of in the first tick; earlier commands begin 10 ms after the start. While
+    something moves, it feels the body at the end of each tick, and a run without an end continues; otherwise it takes no time.
 
     Angles are degrees in commands, attributes and posture chunks, radians in `body` and `joint()`. Numbers may be text.
 
     Args:
-        buffer: Where each posture goes that is stored; None for nowhere.
-        memory: The declarative memory that keeps postures; None for none. (By the rules of ACT-R 7 a memory collects what leaves
-            buffers; there a buffer alone is enough.)
-        speed: How fast joints and the whole body turn unless told otherwise [degrees/s].
+        buffer: Receives each stored posture; None for none.
+        memory: The declarative memory that stores postures; None for none. (By the rules of ACT-R 7 a memory collects the chunks
+            that leave buffers; there a buffer alone is enough.)
+        speed: Default speed of joints and of turns of the whole body [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (human-data).
-        angle_grid: What felt angles are rounded to [degrees]; this and the next two hold from when the body is known.
-        size_grid: What felt lengths are rounded to [m]. Ours: fine enough for judging a doorway to a hundredth of the shoulders.
-        extreme_step: How much further than ever a joint has to go for its posture to be stored on the way [degrees]; None
-            for never. Source: ours; about the ten samples to each side that the original took.
+        angle_grid: Step to which felt angles are rounded [degrees]; this and the next two apply once the body is known.
+        size_grid: Step to which felt lengths are rounded [m]. Source: chosen, fine enough to judge a doorway to a hundredth of the
+            shoulder width.
+        extreme_step: Distance beyond its former extreme at which a moving joint's posture is stored [degrees]; None
+            for never. Source: chosen; about the ten samples to each side that the original took.
         angle_noise: The standard deviation of felt angles [degrees].
         size_noise: The standard deviation of felt width, depth and height [m].
-        patience: How long a movement may fail to advance before it ends as «blocked» [s]; None for ever. It is told after at
-            most three times that. Ours.
-        preparation: How long a command is prepared [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
+        patience: Time without progress after which a movement ends as «blocked» [s]; None for never. It is detected after at
+            most three times that. Source: chosen.
+        preparation: Preparation time of a command [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
             that is new, 0.25 s for a whole hand movement (Byrne & Anderson, 1998).
-        initiation: How long it takes to begin after that [s]. Source: 0 as in the original; 0.05 s in ACT-R.
+        initiation: Time from the end of preparation to the start [s]. Source: 0 as in the original; 0.05 s in ACT-R.
 
     Raises:
-        ParameterError: If a parameter is not what it should be.
+        ParameterError: If a parameter is invalid.
     """
 
     @named_parameters
@@ -74,7 +87,27 @@ class Motor(Muscles):
         preparation: float = 0.0,
         initiation: float = 0.0,
     ) -> None:
-        super().__init__(buffer, memory)
+        Model.__init__(self)
+        self._buffer = buffer
+        self._memory = memory
+        self._limbs: Limbs | None = None
+        self._schema: BodySchema | None = None
+        self._waiting: list[tuple[Callable[[str], None], str]] = []
+        self._under_way: dict[str, Movement] = {}
+        self._ended: list[tuple[Movement, str]] = []
+        self._asked = False
+        self._wanted: list[str] = []
+        self._further: str | None = None
+        self._positions: tuple[float, ...] = ()
+        self._felt_us = 0
+        self.busy = False
+        self.error = False
+        self.refusal: str | None = None
+        self.walking = False
+        self.turning = False
+        self.width: float | None = None
+        self.depth: float | None = None
+        self.height: float | None = None
         for name, given, kind in (("buffer", buffer, Buffer), ("memory", memory, Memory)):
             if given is not None and not isinstance(given, kind):
                 raise ParameterError(f"Motor.{name}: must be a {kind.__name__}, or None (got {given!r})")
@@ -98,35 +131,35 @@ class Motor(Muscles):
         self.preparation = preparation
         self.initiation = initiation
 
-    # -- what is known of the body
+    # -- the known body
 
     @property
     def body(self) -> BodyPart:
-        """The body as it is known now: its base, with the parts that it carries. Radians and metres.
+        """The present knowledge of the body: its base, with the parts that it carries. Radians and metres.
 
         Raises:
-            SimulationError: If the body has not told what it is yet.
+            SimulationError: If the body is not known yet.
         """
         return self._known().tree()
 
     def joint(self, name: str) -> Freedom:
-        """Returns a joint as it is known now: where it is, its limits, how far it has been. Radians.
+        """Returns the present knowledge of a joint: its position, limits and extremes. Radians.
 
         Raises:
-            SimulationError: If the body has not told what it is yet.
+            SimulationError: If the body is not known yet.
             WorldError: If it has no such joint.
         """
         return self._known().freedom(name)
 
     def _known(self) -> Limbs:
         if self._limbs is None or self._schema is None:
-            raise SimulationError(f"'{self._path}' does not know its body yet; that tells what it is in the first tick of a Simulation")
+            raise SimulationError(f"'{self._path}' does not know its body yet; it learns about it in the first tick of a Simulation")
         return self._limbs
 
     # -- legs
 
     def walk(self, speed: Any) -> None:
-        """Walks at a speed [m/s], backward where it is negative, until told to stop; while walking, at another speed from now on.
+        """Walks at a speed [m/s], backward if negative, until `stop`; while walking, it changes the speed.
 
         Raises:
             WorldError: If the speed is no number, or the body cannot walk.
@@ -137,8 +170,8 @@ class Motor(Muscles):
         """Turns the whole body, also while it walks.
 
         Args:
-            angle: By how much [degrees, left is positive]; None until told to stop.
-            speed: How fast [degrees/s]; negative for to the right where there is no angle.
+            angle: The angle [degrees, left is positive]; None until `stop`.
+            speed: Speed [degrees/s]; without an angle, negative turns to the right.
 
         Raises:
             WorldError: If a value is no number, or the body cannot walk.
@@ -148,7 +181,7 @@ class Motor(Muscles):
         self._command(partial(self._turn, by, rate), "turn", angle=angle, speed=speed)
 
     def stop(self, *groups: Any) -> None:
-        """Stops what some muscle groups do, at once, or all of the body.
+        """Stops some muscle groups at once, or all of the body.
 
         Raises:
             WorldError: If there is no such muscle group.
@@ -181,14 +214,14 @@ class Motor(Muscles):
             self._tell("stop", place=place)
 
     def _need(self, word: str) -> None:
-        """Checks that the body can do something.
+        """Checks that the body has a command.
 
         Raises:
-            WorldError: If it cannot.
+            WorldError: If it does not.
         """
         plan = self._known().plan
         if word not in plan.actuators:
-            raise WorldError(f"{plan.name} cannot {word}; it can be told: {', '.join(plan.actuators) or 'nothing'}")
+            raise WorldError(f"{plan.name} cannot {word}; its commands are: {', '.join(plan.actuators) or 'none'}")
 
     # -- limbs
 
@@ -198,12 +231,11 @@ class Motor(Muscles):
         Args:
             joint: A joint, or a part and `axis`.
             axis: Of a part's joints, the one that turns about it: `yaw`, `pitch` or `roll`, or slides along `x`, `y` or `z`.
-            angle: To which angle [degrees], or position of one that slides [m]; None until its limit, or until told to stop.
-            speed: How fast [degrees/s], negative for towards smaller angles where there is no angle; [m/s] where it slides, and
-                needed there.
+            angle: Target angle [degrees], or position of a slide [m]; None for its limit, or until `stop`.
+            speed: Speed [degrees/s]; without an angle, negative turns towards smaller angles; for a slide [m/s], and required.
 
         Raises:
-            WorldError: If there is no such joint, it has no muscles, or a value is not what it should be.
+            WorldError: If there is no such joint, it has no muscles, or a value is invalid.
         """
         pace = self._speed("rotate", speed, angle is not None)
         usual = speed is None
@@ -211,16 +243,16 @@ class Motor(Muscles):
         self._command(partial(self._rotate, joint, axis, to, pace, usual), "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
 
     def move(self, movement: Any, side: Any = None, angle: Any = None, speed: Any = None) -> None:
-        """Makes a movement that the body has a name for.
+        """Makes a named movement of the body.
 
         Args:
-            movement: Which.
-            side: Which side, where there is one on each: `left` or `right`.
-            angle: To which angle [degrees], in the movement's own direction; None until the limit, or until told to stop.
-            speed: How fast [degrees/s]; negative for the other direction where there is no angle.
+            movement: Its name.
+            side: Its side, if there is one on each: `left` or `right`.
+            angle: Target angle [degrees], in the movement's own direction; None for the limit, or until `stop`.
+            speed: Speed [degrees/s]; without an angle, negative moves in the other direction.
 
         Raises:
-            WorldError: If the body has no such movement, or a value is not what it should be.
+            WorldError: If the body has no such movement, or a value is invalid.
         """
         pace = self._speed(str(movement), speed, angle is not None)
         to = None if angle is None else number(angle, f"{movement}: angle")
@@ -231,27 +263,27 @@ class Motor(Muscles):
         self.move("rotate_torso", None, angle, speed)
 
     def extend_shoulder(self, side: Any, angle: Any = None, speed: Any = None) -> None:
-        """Brings a shoulder forward, to an angle [degrees], or until its limit; see `move`."""
+        """Moves a shoulder forward, to an angle [degrees], or until its limit; see `move`."""
         self.move("extend_shoulder", side, angle, speed)
 
     def compress_shoulder(self, side: Any, angle: Any = None, speed: Any = None) -> None:
-        """Brings a shoulder backward, to an angle [degrees], or until its limit; see `move`."""
+        """Moves a shoulder backward, to an angle [degrees], or until its limit; see `move`."""
         self.move("compress_shoulder", side, angle, speed)
 
     def lower_arms(self, speed: Any = None) -> None:
-        """Lowers both arms to where they hang; see `move`."""
+        """Lowers both arms until they hang; see `move`."""
         self.move("lower_arms", None, None, speed)
 
     def assume(self, posture: Any, speed: Any = None) -> None:
-        """Brings joints to where they are in a posture, such as one that was retrieved; other slots do not matter.
+        """Moves joints to their angles in a posture, such as a retrieved one; other slots are ignored.
 
         Args:
             posture: A buffer that holds it, a chunk, a mapping, or text: joints with angles [degrees], or positions [m].
-            speed: How fast each joint moves [degrees/s] or [m/s].
+            speed: Speed of each joint [degrees/s] or [m/s].
 
         Raises:
             ChunkError: If it is no posture.
-            WorldError: If it names no joint of the body, or a value is not what it should be.
+            WorldError: If it names no joint of the body, or a value is invalid.
         """
         pace = self._speed("assume", speed, True)
         wanted = Chunk(posture, self.sch.bound)
@@ -263,8 +295,8 @@ class Motor(Muscles):
         Raises:
             WorldError: If the name is no text.
         """
-        if not isinstance(name, str) or not name.strip():  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a mind
-            raise WorldError(f"feel: name: must be what the posture is to be called (got {name!r})")
+        if not isinstance(name, str) or not name.strip():  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
+            raise WorldError(f"feel: name: must be a name for the posture (got {name!r})")
         self._command(partial(self._want, name), "feel", name=name)
 
     def _want(self, name: str, place: str) -> None:
@@ -275,7 +307,7 @@ class Motor(Muscles):
         limbs = self._known()
         name = limbs.joint(joint, axis)
         if usual and limbs.joints[name].kind == "slide":
-            raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; say how fast [m/s]: rotate('{name}', speed=…)")
+            raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; give its speed [m/s]: rotate('{name}', speed=…)")
         target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
         self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, place)
 
@@ -318,12 +350,229 @@ class Motor(Muscles):
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:
-        """Returns a speed as people give it, or the usual one.
+        """Returns a given speed, in the units of commands, or the default.
 
         Raises:
-            WorldError: If it is no number, 0, or negative where there is an angle to go to.
+            WorldError: If it is no number, 0, or negative although there is a target angle.
         """
         given = self.speed if speed is None else number(speed, f"{call}: speed")
         if given == 0 or (bounded and given < 0):
             raise WorldError(f"{call}: speed: must {'be above 0 to go to an angle' if bounded else 'not be 0'} (got {speed!r})")
         return given
+
+    # -- knowing the body
+
+    def start(self) -> None:
+        """Asks the body what it consists of, when the agent starts."""
+        self.sch.call_after(0, self._ask_body)
+
+    def _ask_body(self) -> None:
+        if self._find_embodiment() is not None:
+            self._inquire("anatomy", place=FEELING)
+            self._wanted.append("start")
+            self._ask()
+
+    def _receive(self, request: Request, answer: Any) -> None:
+        if request.word == "anatomy":
+            self._know(answer)
+        else:
+            self._asked = False
+            self._feel(answer)
+
+    def _know(self, plan: BodyPlan) -> None:
+        """Stores what the body consists of."""
+        limbs = self._limbs = Limbs(plan)
+        for group in limbs.groups:
+            self._become(f"{group}_busy", False)
+            self._become(f"{group}_end", "none")
+
+    def _command(self, act: Callable[[str], None], call: str, **given: Any) -> None:
+        """Carries out a command, or delays it until the body is known."""
+        self._joined(call)
+        self._trace_request(call, **given)
+        if self._schema is None:
+            self._waiting.append((act, place_of_caller()))
+            self._become("busy", True)
+        else:
+            act(place_of_caller())
+
+    def _catch_up(self) -> None:
+        """Carries out the commands that waited until the body was known."""
+        waiting, self._waiting = self._waiting, []
+        for act, place in waiting:
+            try:
+                act(place)
+            except Actr3dError as error:
+                error.add_note(f"  asked for by '{self._path}' in {place}")
+                raise
+        self._show_busy()
+
+    # -- movements in progress
+
+    def _begin(self, movements: dict[str, Movement]) -> None:
+        """Begins movements, all or none of them. The keys are the resources that they occupy: a muscle group, walking, or turning."""
+        for key, movement in movements.items():
+            if key in self._under_way:
+                self._refuse(movement.name, "busy")
+                return
+        self._become("error", False)
+        self._become("refusal", None)
+        self._under_way |= movements
+        self._show_busy()
+        delay = self.preparation + self.initiation
+        for key, movement in movements.items():
+            self._become(f"{movement.group}_end", "none")
+            if delay > 0:
+                self.sch.call_after(delay, self._launch, (key, movement))
+            else:
+                self._launch(key, movement)
+
+    def _launch(self, key: str, movement: Movement) -> None:
+        """Commands the body to begin a movement, unless it was stopped during preparation."""
+        if self._under_way.get(key) is not movement:
+            return
+        movement.begun = True
+        self._obey(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.place)
+        self._emit("move", movement.trace_data())
+        self._ask()
+
+    def _refuse(self, call: str, why: str) -> None:
+        """Refuses a command."""
+        self._become("error", True)
+        self._become("refusal", why)
+        self._emit("refused", {"movement": call, "why": why})
+
+    def _halt(self, keys: Iterable[str], place: str, end: str = "stopped") -> None:
+        """Ends movements before they are done."""
+        halted = [self._under_way.pop(key) for key in keys]
+        for movement in halted:
+            if movement.begun and isinstance(movement, JointMovement):
+                self._obey(movement.halt(), place)
+        if any(movement.base and movement.begun for movement in halted):
+            self._obey(self._gait(), place)
+        self._end([(movement, end) for movement in halted])
+        self._ended += [(movement, end) for movement in halted if movement.begun and not movement.base]
+
+    def _end(self, ended: Iterable[tuple[Movement, str]]) -> None:
+        """Shows the end of movements to productions and in the trace."""
+        for movement, end in ended:
+            self._become(f"{movement.group}_end", end)
+            self._emit("moved", {"movement": movement.name, "group": movement.group, "end": end})
+        self._show_busy()
+
+    def _gait(self) -> Iterable[Order]:
+        walk, turn = (of if of is not None and of.begun else None for of in (self._under_way.get("walk"), self._under_way.get("turn")))
+        assert walk is None or isinstance(walk, Walk)
+        assert turn is None or isinstance(turn, Turn)
+        return gait(walk, turn)
+
+    def _obey(self, orders: Iterable[Order], place: str) -> None:
+        for word, values, named in orders:
+            self._tell(word, *values, named=named, place=place)
+
+    # -- feeling
+
+    def _ask(self) -> None:
+        """Requests a reading of the posture at the end of this tick, once."""
+        if not self._asked:
+            self._asked = True
+            self._inquire("proprioception", place=FEELING)
+
+    def _feel(self, reading: Proprioception) -> None:
+        """Processes a reading: updates the felt body, ends movements that are over, and stores postures."""
+        limbs = self._limbs
+        assert limbs is not None
+        before, self._positions = self._positions or reading.positions, reading.positions
+        now = self.sch.now_us
+        step = Step(seconds(now - self._felt_us), before, reading)
+        self._felt_us = now
+        if self._schema is None:
+            self._update(limbs, reading, limbs.order)
+            check_patterns(self)
+        elif before != reading.positions:
+            gone = [joint for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at]
+            self._update(limbs, reading, gone)
+        over: list[tuple[str, str]] = []
+        for key, movement in self._under_way.items():
+            end = movement.ended(step, self.patience) if movement.begun else None
+            if end is not None:
+                over.append((key, end))
+        ended = [(self._under_way.pop(key), end) for key, end in over if end in ("done", "limit")]
+        if over:
+            self._end(ended)
+            for key in [key for key, _ in over if key in self._under_way]:
+                self._halt([key], self._under_way[key].place, dict(over)[key])
+        self._remember(limbs, ended)
+        if any(movement.begun for movement in self._under_way.values()):
+            self._ask()
+
+    def _update(self, limbs: Limbs, reading: Proprioception, joints: Sequence[str]) -> None:
+        """Updates the felt positions of some joints, and the felt size of the body."""
+        draw = self.random.gauss
+        for joint in joints:
+            noise = draw(0, self.angle_noise * limbs.unit[joint]) if self.angle_noise else 0.0
+            limbs.feel(joint, reading.positions[limbs.number[joint]] + noise)
+        schema = self._schema
+        if schema is None:
+            schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
+        for joint in joints:
+            self._become(limbs.shown_as[joint], schema.shown(joint, limbs.felt[joint]))
+        for name in ("width", "depth", "height"):
+            noise = draw(0, self.size_noise) if self.size_noise else 0.0
+            self._become(name, schema.size(getattr(reading, name) + noise))
+        further = schema.extremes(joints)
+        if further:
+            schema.note(further)
+            self._further = further[0]
+
+    def _remember(self, limbs: Limbs, ended: list[tuple[Movement, str]]) -> None:
+        """Stores the posture after movements have ended, at new extremes of joints, and on request."""
+        if self._ended:
+            ended, self._ended = [*self._ended, *ended], []
+        if self._further is not None:
+            passing = self._under_way.get(limbs.group_of[self._further])
+            if passing is not None:  # else it has just ended, or was pushed
+                self._store(passing.name, "passing", self._further)
+            self._further = None
+        for movement, end in ended:
+            if isinstance(movement, JointMovement):
+                self._store(movement.name, end, next(joint for joint in limbs.order if joint in movement.ways))
+        if self._wanted:
+            wanted, self._wanted = self._wanted, []
+            for name in wanted:
+                self._store(name, "felt", None)
+        if self._waiting:
+            self._catch_up()
+
+    def _store(self, name: str, end: str, joint: str | None) -> None:
+        """Puts the present posture into the buffer and into declarative memory."""
+        schema = self._schema
+        assert schema is not None
+        posture = schema.posture(name, end, joint, {"width": self.width, "depth": self.depth, "height": self.height})
+        if self._memory is not None:
+            self._memory._collect(Chunk(posture))
+        if self._buffer is not None:
+            self._buffer.set(posture)
+
+    # -- attributes and trace
+
+    def _show_busy(self) -> None:
+        limbs = self._limbs
+        if limbs is not None:
+            groups = {movement.group for movement in self._under_way.values()}
+            for group in limbs.groups:
+                self._become(f"{group}_busy", group in groups)
+            if BASE_GROUP in limbs.groups:
+                self._become("walking", "walk" in self._under_way)
+                self._become("turning", "turn" in self._under_way)
+        self._become("busy", bool(self._under_way or self._waiting))
+
+    def _become(self, name: str, value: Any) -> None:
+        """Sets an attribute if its value changes."""
+        if self.__dict__.get(name, _NOTHING) != value:
+            Model.__setattr__(self, name, value)
+
+    def _emit(self, kind: str, data: dict[str, Any]) -> None:
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, kind, data)

@@ -1,4 +1,4 @@
-"""Movements under way: what each tells the body, how it gets on, and how it ends."""
+"""Movements in progress: their commands to the body, their progress and their end."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from actr3d.world.sensors.motion import AT_LIMIT
 from actr3d.world.sensors.proprioception import Proprioception
 
 HELD = 0.25
-"""A movement that makes less than this part of its way, and no more of it than before, does not advance: pressed joints give way by
-about a tenth, and legs that something touches take some 0.2 s to get going. Ours."""
+"""A movement that covers less than this fraction of its way, and no more than in the period before, makes no progress: pressed joints
+yield by about a tenth, and legs in contact with something need some 0.2 s to start. Source: chosen for this library."""
 
 FASTER = 1.2
-"""How many times more than before is more. Ours."""
+"""Factor above which progress counts as more than before. Source: chosen for this library."""
 
 INFINITE = float("inf")
 
 Order = tuple[str, tuple[Any, ...], Mapping[str, Any]]
-"""What the body is told: a word, its values, and more by name."""
+"""A command to the body: a word, its values, and more values by name."""
 
 
 class Step(NamedTuple):
-    """What has happened since the body was last felt."""
+    """Changes since the last reading of the body."""
 
     duration: float
-    """How long that is [s]."""
+    """Time since then [s]."""
     before: tuple[float, ...]
-    """Where the joints were, in the order of the body [rad] or [m]."""
+    """Former positions of the joints, in the order of the body [rad] or [m]."""
     reading: Proprioception
-    """How the body stands now."""
+    """The present reading."""
 
 
 class Movement:
     """One movement of one muscle group, at a constant speed.
 
     Args:
-        name: What the modeller calls it, with the side if there is one.
+        name: Its name in the command, with the side if there is one.
         group: The muscle group.
-        pace: How fast it is [rad/s] or [m/s].
-        place: `file:line` where it was asked for.
+        pace: Its speed [rad/s] or [m/s].
+        place: `file:line` of the command.
     """
 
     base = False
@@ -52,16 +52,16 @@ class Movement:
         self.pace = pace
         self.place = place
         self.begun = False
-        """Whether the body has been told."""
+        """Whether the body has received the command."""
         self._felt = False
         self._before = self._gone = self._time = 0.0
 
     def ended(self, step: Step, patience: float | None) -> str | None:
-        """Returns how it has ended: «done», «limit», «blocked» or «stopped»; None while it goes on.
+        """Returns how it has ended: «done», «limit», «blocked» or «stopped»; None while it continues.
 
         Args:
-            step: What has happened.
-            patience: How long it may fail to advance [s]; None for ever.
+            step: Changes since the last reading.
+            patience: Time without progress after which it is blocked [s]; None for never.
         """
         end = self._arrived(step)
         if end is not None:
@@ -78,20 +78,20 @@ class Movement:
             return None
         return "done" if self._rest(step) <= self.pace * step.duration else "blocked"
 
-    def told(self) -> dict[str, Any]:
-        """Returns what a trace keeps of it."""
+    def trace_data(self) -> dict[str, Any]:
+        """Returns its data for the trace."""
         raise NotImplementedError
 
     def _arrived(self, step: Step) -> str | None:
-        """Returns how it has ended, but for being blocked."""
+        """Returns how it has ended, except «blocked»."""
         raise NotImplementedError
 
     def _way(self, step: Step) -> float:
-        """Returns how far it has come in a step [rad] or [m]."""
+        """Returns its way in a step [rad] or [m]."""
         raise NotImplementedError
 
     def _rest(self, step: Step) -> float:
-        """Returns how far it still has to go [rad] or [m]; who is as near as a tick's way, and weak, is there."""
+        """Returns the rest of its way [rad] or [m]; a blocked movement within one tick of its target counts as done."""
         return INFINITE
 
 
@@ -99,13 +99,13 @@ class JointMovement(Movement):
     """Turns joints of one part.
 
     Args:
-        name: What the modeller calls it.
+        name: Its name in the command.
         group: The muscle group.
-        pace: How fast [rad/s] or [m/s].
-        place: `file:line` where it was asked for.
-        ways: By joint, where it goes [rad] or [m]; infinite where there is no end.
+        pace: Its speed [rad/s] or [m/s].
+        place: `file:line` of the command.
+        ways: By joint, its target [rad] or [m]; infinite without an end.
         order: The joints of the body in its order.
-        to_limit: Whether it was to go on until its limit.
+        to_limit: Whether the target is its limit.
     """
 
     def __init__(
@@ -118,7 +118,7 @@ class JointMovement(Movement):
         self._left = set(ways)
 
     def begin(self) -> Iterable[Order]:
-        """Yields what begins it. A limit in its way is where it goes to, so that it meets it exactly."""
+        """Yields the commands that begin it. A limit in its way is its target, so that it is reached exactly."""
         for joint, target in self.ways.items():
             if abs(target) < INFINITE:
                 yield "position", (joint, target, self.pace), {}
@@ -126,12 +126,12 @@ class JointMovement(Movement):
                 yield "joint", (joint, self.pace if target > 0 else -self.pace), {}
 
     def halt(self) -> Iterable[Order]:
-        """Yields what ends it at once."""
+        """Yields the commands that end it at once."""
         for joint in self.ways:
             yield "joint", (joint, 0.0), {}
 
-    def told(self) -> dict[str, Any]:
-        """Returns what a trace keeps of it."""
+    def trace_data(self) -> dict[str, Any]:
+        """Returns its data for the trace."""
         ends = {joint: target if abs(target) < INFINITE else None for joint, target in self.ways.items()}
         return {"movement": self.name, "group": self.group, "to": ends, "speed": self.pace}
 
@@ -140,7 +140,7 @@ class JointMovement(Movement):
         if self._left:
             return None
         if any(abs(step.reading.positions[self._number[joint]] - target) > AT_LIMIT for joint, target in self.ways.items()):
-            return "stopped"  # by someone else, such as the user
+            return "stopped"  # by another command, such as the user's
         return "limit" if self.to_limit else "done"
 
     def _way(self, step: Step) -> float:
@@ -152,7 +152,7 @@ class JointMovement(Movement):
 
 
 class Walk(Movement):
-    """Walks at a speed [m/s], backward where it is negative, until told to stop."""
+    """Walks at a speed [m/s], backward if negative, until it is stopped."""
 
     base = True
 
@@ -160,8 +160,8 @@ class Walk(Movement):
         super().__init__("walk", BASE_GROUP, abs(speed), place)
         self.speed = speed
 
-    def told(self) -> dict[str, Any]:
-        """Returns what a trace keeps of it."""
+    def trace_data(self) -> dict[str, Any]:
+        """Returns its data for the trace."""
         return {"movement": self.name, "group": self.group, "speed": self.speed}
 
     def _arrived(self, step: Step) -> str | None:
@@ -172,7 +172,7 @@ class Walk(Movement):
 
 
 class Turn(Movement):
-    """Turns the whole body by an angle [rad, left is positive], or until told to stop at a rate [rad/s]."""
+    """Turns the whole body by an angle [rad, left is positive], or without an end at a rate [rad/s]."""
 
     base = True
 
@@ -180,10 +180,10 @@ class Turn(Movement):
         super().__init__("turn", BASE_GROUP, abs(rate), place)
         self.rate = rate
         self.rest = angle
-        """How far it still goes, as last felt; None for ever."""
+        """Rest of the angle at the last reading [rad]; None without an end."""
 
-    def told(self) -> dict[str, Any]:
-        """Returns what a trace keeps of it."""
+    def trace_data(self) -> dict[str, Any]:
+        """Returns its data for the trace."""
         return {"movement": self.name, "group": self.group, "speed": self.rate, **({} if self.rest is None else {"to": self.rest})}
 
     def _arrived(self, step: Step) -> str | None:
@@ -200,7 +200,7 @@ class Turn(Movement):
 
 
 def gait(walk: Walk | None, turn: Turn | None) -> Iterable[Order]:
-    """Yields what makes the legs walk and turn so, and nothing else."""
+    """Yields the commands that make the legs do exactly this walk and this turn."""
     yield "walk", (walk.speed if walk else 0.0,), {"turn": turn.rate if turn and turn.rest is None else 0.0}
     if turn is not None and turn.rest is not None:
         yield "turn", (turn.rest, turn.pace), {}

@@ -8,21 +8,21 @@ from typing import Any
 from actr3d.motor.limbs import Limbs, on_grid
 
 AWAY = 5.0
-"""From where on a joint that is not always told of is away from where it was at the start [degrees]. Ours: limbs that are held still
-while others swing give way by about a degree."""
+"""Distance from its start from which a posture includes a joint that it does not always include [degrees]. Source: chosen; limbs
+that hold still while others swing yield by about a degree."""
 
 
 class BodySchema:
-    """Makes posture chunks of what is felt. All numbers are on a grid: else no posture would ever be felt again, and merge.
+    """Makes posture chunks from felt values. All numbers are rounded to a grid; otherwise no posture would ever occur twice and merge.
 
-    A posture has a slot for each joint that the body's named movements turn as far as one likes (where there are none, for
-    each joint), and one for every other joint that is away from where it was at the start.
+    A posture has a slot for each joint that the body's named movements turn to any angle (without such movements, for
+    each joint), and one for every other joint that is away from its start.
 
     Args:
-        limbs: The body as it is felt at the start.
-        angle_grid: What angles are rounded to [degrees].
-        size_grid: What lengths are rounded to [m].
-        step: How much further than before a joint has to go for a new extreme [degrees]; None for never.
+        limbs: The body, felt at the start.
+        angle_grid: Step to which angles are rounded [degrees].
+        size_grid: Step to which lengths are rounded [m].
+        step: Distance beyond the former extreme that makes a new one [degrees]; None for never.
     """
 
     def __init__(self, limbs: Limbs, angle_grid: float, size_grid: float, step: float | None) -> None:
@@ -37,7 +37,7 @@ class BodySchema:
         self._least, self._most = dict(limbs.felt), dict(limbs.felt)
 
     def shown(self, joint: str, position: float) -> float:
-        """Returns a joint's position as people read it, on the grid: degrees, or metres where it slides."""
+        """Returns a joint's position on the grid: degrees, or metres for a slide."""
         return on_grid(position / self._limbs.unit[joint], self._grids[joint])
 
     def size(self, length: float) -> float:
@@ -48,10 +48,10 @@ class BodySchema:
         """Returns the present posture as a chunk.
 
         Args:
-            name: The movement that led here, or what else it is to be called.
-            end: How that ended.
-            joint: The joint that was turned: `extreme` tells whether it has never been further.
-            box: The width, depth and height felt.
+            name: The movement that led here, or another name.
+            end: How the movement ended.
+            joint: The joint that moved: the slot `extreme` shows whether this is its extreme.
+            box: The felt width, depth and height.
         """
         limbs = self._limbs
         at = {of: self.shown(of, position) for of, position in limbs.felt.items()}
@@ -68,7 +68,7 @@ class BodySchema:
         return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit[joint]
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
-        """Returns those of some joints that have gone further by a step than in any posture so far."""
+        """Returns those of some joints that are a step beyond their extremes in all earlier postures."""
         if self._step is None:
             return ()
         limbs = self._limbs
@@ -81,7 +81,7 @@ class BodySchema:
         return tuple(further)
 
     def note(self, joints: Iterable[str]) -> None:
-        """Notes that some joints are in a posture as they are now."""
+        """Updates the extremes of some joints with their present positions."""
         for joint in joints:
             at = self._limbs.felt[joint]
             self._least[joint] = min(self._least[joint], at)

@@ -10,7 +10,7 @@ from actr3d.printing import ToldOutput
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
-    from actr3d.simulation.voice import Voice
+    from actr3d.simulation.stdout_capture import StdoutCapture
 
 
 class ProgramOutput(ToldOutput):
@@ -35,14 +35,14 @@ class BuiltOutput(ToldOutput):
     def __init__(self) -> None:
         super().__init__(self._hear)
         self._early: list[str] = []
-        self._voice: Voice | None = None
+        self._voice: StdoutCapture | None = None
 
     def lead_to(self, simulation: Simulation) -> None:
         """Tells this simulation of what came until now."""
         self.finish()
         for text in self._early:
-            simulation._journal.preface(text)
-        self._voice = simulation._journal.voice
+            simulation.event_log.preface(text)
+        self._voice = simulation.event_log.stdout
 
     def take(self, write: Callable[[Any], int], data: Any, encoded: bytes) -> int:
         """Writes something, and tells of its lines; also of what minds print to an output that their file has kept."""

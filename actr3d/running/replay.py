@@ -135,7 +135,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Pro
     """Runs a simulation beside its recording."""
     from actr3d.simulation import Command
 
-    facts, world, journal = recorded.facts, simulation.world, simulation._journal
+    facts, world, journal = recorded.facts, simulation.world, simulation.event_log
     then = facts["period_us"], facts["timestep_us"], facts["seed"]
     now = round(simulation.period * MICROSECONDS), world.scene.timestep_us, simulation.seed
     if then != now:
@@ -149,13 +149,13 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Pro
         for tick in range(1, ticks + 1):
             simulation.step()
             progress(tick / ticks)
-        simulation._course.repeat_commands()
+        simulation.timeline.repeat_commands()
         if recorded.over:
             simulation.conclude()
         if recorded.closed:
-            journal.voice.finish()
+            journal.stdout.finish()
         journal.check()
-        for command in commands[: simulation._course.lockstep.commands]:
+        for command in commands[: simulation.timeline.lockstep.commands]:
             beside.command(1, command.tick, command.to_data())
     except Differs:
         pass

@@ -22,7 +22,7 @@ from actr3d.trace import Trace
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
-    from actr3d.simulation.pace import Ending
+    from actr3d.simulation.real_time import Ending
 
 Settings = Callable[[Sequence[Field]], Mapping[str, Any]]
 """Gives values to parameters, by name, of those that there are."""

@@ -1,22 +1,46 @@
-"""The SGOMS agent: an ACT-R agent that works by planning units, and can be interrupted and resume."""
+"""The SGOMS agent: an ACT-R agent that works by planning units, and can be interrupted and resume.
 
-# ruff: noqa: N815 - as buffers are called in models of this kind
+Its productions move from unit task to unit task, into a response, and back. They are ordinary productions of the agent, and
+take its `production_time` each. From the end of an ordered unit task to the next: `sgoms_ask_next`, the retrieval,
+`sgoms_take`; of a situated one: `sgoms_look`, then the choice. An interruption takes one production; resumption after a
+response `sgoms_resume`, the retrieval of the place, `sgoms_take_up`.
+"""
+# pyright: reportSelfClsParameterName=false
+# ruff: noqa: N803, N805, N815, N816, ARG001 - buffers and productions follow Python ACT-R's own idiom
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
-from actr3d.actr import Buffer, Chunk, Memory
+from actr3d.actr import ACTR, Buffer, Chunk, Memory
 from actr3d.actr.kernel.class_members import Method
-from actr3d.errors import PlanError, did_you_mean
+from actr3d.errors import PlanError
 from actr3d.sgoms.checks import check_plans
-from actr3d.sgoms.control import IN_BUFFER, IN_MEMORY, Control, choices
 from actr3d.sgoms.levels import LEVELS, Interruption, Level, PlanUnitLevel, UnitTaskLevel
 from actr3d.sgoms.places import place_of, put_back
-from actr3d.sgoms.units import Ordered, PlanningUnit, Situated
+from actr3d.sgoms.units import END, Ordered, PlanningUnit, Plans, Situated
+
+if TYPE_CHECKING:  # names that bodies of productions use
+    b_unit_task = Buffer()
+    b_DM = Buffer()
+    DM = Memory(b_DM)
+    self: Any = None
+
+URGENT = 10
+"""The utility of productions that interrupt; those that match in a unit task have 0 by default, before learning."""
+ELSE = -10
+"""The utility of asking memory again, when its answer is useless to the waiting productions."""
+FIRST = 1
+"""The utility of ending a situated planning unit, higher than that of its unit tasks."""
+
+IN_MEMORY = ("sgoms_resume", "sgoms_resume_again", "sgoms_take_up", "sgoms_forget_place")
+"""The productions that resume if places are stored in memory."""
+IN_BUFFER = ("sgoms_resume_from_buffer", "sgoms_lose_place")
+"""The productions that resume if places are stored in a buffer."""
 
 
-class SGOMS(Control):
+class SGOMS(ACTR):
     """An ACT-R agent whose work is divided into planning units, these into unit tasks, methods and operators.
 
     A subclass declares planning units (`Ordered`, `Situated`) as attributes, and has productions that match the buffers:
@@ -40,19 +64,19 @@ class SGOMS(Control):
     b_DM = Buffer()
     DM: Memory
     place_kept_in = "memory"
-    """Where the place is kept at which a planning unit was interrupted: «memory», or «buffer», where it costs and fails nothing."""
+    """Where the place of an interruption is stored: «memory», or «buffer», where retrieval takes no time and never fails."""
     resume_at = "unit_task"
-    """Where a unit task that was cut short goes on: at the start of the «unit_task» (a situated planning unit looks at the
-    situation anew), or at the «method»: with the state, the method and the operator as they were."""
+    """Where an interrupted unit task resumes: at the start of the «unit_task» (a situated planning unit looks at the
+    situation again), or at the «method»: with its state, method and operator."""
 
-    _units: dict[str, PlanningUnit]
+    _plans: Plans
     _interruptions = 0
-    """How many places have been saved."""
+    """Number of saved places."""
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         units = {name: thing for name, thing in objects.items() if isinstance(thing, (Ordered, Situated))}
-        self.__dict__["_units"] = units
-        if "DM" not in objects:  # not in the class, where what a modeller adds to it would be every agent's
+        self.__dict__["_plans"] = Plans(type(self).__name__, units)
+        if "DM" not in objects:  # not in the class, where all agents would share what a modeller adds to it
             objects["DM"] = Memory(objects["b_DM"])
         self._check_members(objects)
         options = {**objects, **self.__dict__}
@@ -72,7 +96,7 @@ class SGOMS(Control):
             if not isinstance(objects[name], (Level, Interruption)):
                 raise PlanError(
                     f"{kind}.{name}: must be the buffer that every SGOMS agent has; leave it out, or write {name} = SGOMS.{name} "
-                    "where a module is made with it"
+                    "to make a module with it"
                 )
         if not isinstance(objects["DM"], Memory) or objects["DM"]._buffer is not objects["b_DM"]:
             raise PlanError(f"{kind}.DM: must be a memory with the buffer b_DM: DM = Memory(SGOMS.b_DM)")
@@ -81,61 +105,38 @@ class SGOMS(Control):
         return super()._settable() | {"place_kept_in", "resume_at"}
 
     def _begin(self) -> None:
-        check_plans(self, self._units)
+        check_plans(self, self._plans.units)
         super()._begin()
 
-    # -- names
-
-    def _unit(self, name: str, where: str) -> PlanningUnit:
-        """Returns a planning unit by its name.
-
-        Raises:
-            PlanError: If there is none.
-        """
-        if name not in self._units:
-            known = ", ".join(self._units) or "none"
-            raise PlanError(
-                f"{where}: {type(self).__name__} has no planning unit '{name}'{did_you_mean(name, self._units)}; it has: {known}"
-            )
-        return self._units[name]
-
-    def _check_unit_task(self, name: str) -> None:
-        known = [task for unit in self._units.values() for task in unit.unit_tasks]
-        if name not in known:
-            raise PlanError(
-                f"b_unit_task: no planning unit of {type(self).__name__} has a unit task '{name}'{did_you_mean(name, known)}; "
-                f"there are: {', '.join(dict.fromkeys(known)) or 'none'}"
-            )
-
-    # -- what the productions of `Control` do
+    # -- called by the productions
 
     def _remember_plans(self) -> None:
-        for name, unit in self._units.items():
+        for name, unit in self._plans.units.items():
             unit.remember(name, self.DM)
 
     def _clear_below(self) -> None:
-        """Clears what the planning unit is about."""
+        """Clears unit task, method and operator."""
         for buffer in (self.b_operator, self.b_method, self.b_unit_task):
             if buffer.chunk is not None:
                 Buffer.clear(buffer)
 
     def _interrupt(self, response: str) -> None:
-        """Saves the place, where there is one to go back to, and begins the response."""
+        """Saves the present place, if there is one, and begins the response."""
         plan = self.b_plan_unit.chunk
         back = {"interrupted": "none", "place": "none"}
         if plan is not None and plan["state"] in ("finished", "resuming"):
-            back = {slot: plan[slot] for slot in back}  # this response is over; the next one goes back to the same place
+            back = {slot: plan[slot] for slot in back}  # this response is over; the next one returns to the same place
         elif plan is not None:
             back = {"interrupted": plan["planning_unit"], "place": self._save(plan)}
             trace = self.sch.trace
             if trace is not None and trace.production:
-                self.b_plan_unit._end(trace, "interrupted", by=response)
+                self.b_plan_unit.trace_end(trace, "interrupted", by=response)
         self._clear_below()
         self.b_interrupt.clear()
         self.b_plan_unit.set({"planning_unit": response, **back})
 
     def _save(self, plan: Chunk) -> str:
-        """Saves the present place, and returns the number it has."""
+        """Saves the present place, and returns its number."""
         self._interruptions += 1
         number = str(self._interruptions)
         place = place_of(self, plan, number, whole=self.resume_at == "method")
@@ -146,7 +147,7 @@ class SGOMS(Control):
         return number
 
     def _take_up(self, place: Chunk) -> None:
-        """Puts everything back as it was at a saved place."""
+        """Restores a saved place."""
         if self.place_kept_in == "buffer":
             before = place["before"]
             if before is None:
@@ -155,3 +156,172 @@ class SGOMS(Control):
                 self.b_place.set(before)
         self._clear_below()
         put_back(self, place)
+
+    # -- productions: start
+
+    def sgoms_plans():
+        """Adds the chains of the ordered planning units to memory."""
+        self._remember_plans()
+
+    # -- ordered planning units
+
+    def sgoms_begin(b_plan_unit: Any = "planning_unit:?unit type:ordered cue:?cue unit_task:?task state:begin", DM: Any = "busy:False"):
+        """Asks memory for the first unit task, or again for the one after the present."""
+        DM.request("planning_unit:?unit cuelag:?cue cue:?task")
+        self._clear_below()
+        b_plan_unit.modify(state="retrieving")
+
+    def sgoms_ask_next(
+        b_plan_unit: Any = "planning_unit:?unit type:ordered cue:?cue unit_task:?task state:running",
+        b_unit_task: Any = "state:finished",
+        DM: Any = "busy:False",
+    ):
+        """Asks memory for the next unit task; the last one and the present one are the cues."""
+        DM.request("planning_unit:?unit cuelag:?cue cue:?task")
+        b_plan_unit.modify(state="retrieving")
+
+    def sgoms_ask_again(
+        b_plan_unit: Any = "planning_unit:?unit cue:?cue unit_task:?task state:retrieving",
+        DM: Any = "busy:False error:False",
+        utility: Any = ELSE,
+    ):
+        """Asks again after another request has replaced this one."""
+        DM.request("planning_unit:?unit cuelag:?cue cue:?task")
+
+    def sgoms_take(
+        b_plan_unit: Any = "planning_unit:?unit state:retrieving",
+        b_DM: Any = "planning_unit:?unit unit_task:?next!finished",
+        DM: Any = "busy:False",
+    ):
+        """Begins the retrieved unit task."""
+        self._clear_below()
+        b_plan_unit.modify(cuelag=b_DM["cuelag"], cue=b_DM["cue"], unit_task=b_DM["unit_task"], state="running")
+        b_unit_task.set("unit_task:?next")
+        b_DM.clear()
+
+    def sgoms_end(
+        b_plan_unit: Any = "planning_unit:?unit state:retrieving",
+        b_DM: Any = "planning_unit:?unit unit_task:finished",
+        DM: Any = "busy:False",
+    ):
+        """Ends the planning unit after its last unit task."""
+        b_plan_unit.modify(state="finished")
+        self._clear_below()
+        b_DM.clear()
+
+    def sgoms_forget_unit_task(b_plan_unit: Any = "state:retrieving", DM: Any = "error:True"):
+        """Notes that memory did not find the next unit task."""
+        b_plan_unit.modify(lost="unit_task", state="lost")
+
+    # -- situated planning units
+
+    def sgoms_begin_situated(b_plan_unit: Any = "type:situated state:begin"):
+        """Looks at the situation."""
+        self._clear_below()
+        b_plan_unit.modify(state="choosing")
+
+    def sgoms_look(b_plan_unit: Any = "type:situated state:running", b_unit_task: Any = "state:finished"):
+        """Looks at the situation after the unit task."""
+        b_plan_unit.modify(state="choosing")
+
+    # -- interruption
+
+    def sgoms_interrupt_now(
+        b_interrupt: Any = "planning_unit:?response when:now",
+        b_plan_unit: Any = "planning_unit:?unit!?response state:running",
+        b_unit_task: Any = "state:!finished",
+        utility: Any = URGENT,
+    ):
+        """Interrupts within a unit task."""
+        self._interrupt(b_interrupt["planning_unit"])
+
+    def sgoms_interrupt_at_end(
+        b_interrupt: Any = "planning_unit:?response",
+        b_plan_unit: Any = "planning_unit:?unit!?response state:running",
+        b_unit_task: Any = "state:finished",
+        utility: Any = URGENT,
+    ):
+        """Interrupts between two unit tasks."""
+        self._interrupt(b_interrupt["planning_unit"])
+
+    def sgoms_interrupt_between(
+        b_interrupt: Any = "planning_unit:?response",
+        b_plan_unit: Any = "planning_unit:?unit!?response state:!running!finished!resuming",
+        utility: Any = URGENT,
+    ):
+        """Interrupts during retrieval or choice of the next unit task, or when it is lost."""
+        self._interrupt(b_interrupt["planning_unit"])
+
+    def sgoms_answer(
+        b_interrupt: Any = "planning_unit:?response",
+        b_plan_unit: Any = "state:!begin!retrieving!choosing!running!lost",
+        utility: Any = URGENT,
+    ):
+        """Responds after a planning unit, or during retrieval of the place of another."""
+        self._interrupt(b_interrupt["planning_unit"])
+
+    def sgoms_answer_idle(b_interrupt: Any = "planning_unit:?response", b_plan_unit: Any = None, utility: Any = URGENT):
+        """Responds when there is nothing to interrupt."""
+        self._interrupt(b_interrupt["planning_unit"])
+
+    # -- resumption
+
+    def sgoms_resume(b_plan_unit: Any = "interrupted:?unit!none place:?place state:finished", DM: Any = "busy:False"):
+        """Asks memory for the place of the interrupted planning unit."""
+        DM.request("saved:?unit place:?place")
+        b_plan_unit.modify(state="resuming")
+
+    def sgoms_resume_again(
+        b_plan_unit: Any = "interrupted:?unit place:?place state:resuming", DM: Any = "busy:False error:False", utility: Any = ELSE
+    ):
+        """Asks again after another request has replaced this one."""
+        DM.request("saved:?unit place:?place")
+
+    def sgoms_take_up(b_plan_unit: Any = "interrupted:?unit state:resuming", b_DM: Any = "saved:?unit", DM: Any = "busy:False"):
+        """Resumes at the retrieved place."""
+        self._take_up(b_DM.chunk)
+        b_DM.clear()
+
+    def sgoms_forget_place(b_plan_unit: Any = "state:resuming", DM: Any = "error:True"):
+        """Notes that memory did not find the place."""
+        b_plan_unit.modify(lost="place", state="lost")
+
+    def sgoms_resume_from_buffer(b_plan_unit: Any = "interrupted:?unit!none state:finished", b_place: Any = "saved:?unit"):
+        """Resumes at the place in the buffer."""
+        self._take_up(b_place.chunk)
+
+    def sgoms_lose_place(b_plan_unit: Any = "interrupted:?unit!none state:finished", utility: Any = ELSE):
+        """Notes that the buffer does not hold the place."""
+        b_plan_unit.modify(lost="place", state="lost")
+
+
+def choices(name: str, unit: PlanningUnit) -> dict[str, Callable[..., None]]:
+    """Returns the productions of a situated planning unit that choose the next unit task; an ordered one has none."""
+    if not isinstance(unit, Situated):
+        return {}
+    made = {f"sgoms_{name}_{task}": _choice(name, task, situation) for task, situation in unit.situations.items()}
+    return {**made, f"sgoms_{name}_{END}": _end(name, unit.until)}
+
+
+def _choice(unit: str, task: str, situation: Any) -> Callable[..., None]:
+    def choose(
+        b_plan_unit: Any = f"planning_unit:{unit} state:choosing",
+        b_context: Any = situation,
+    ) -> None:
+        self._clear_below()
+        b_plan_unit.modify(cuelag=b_plan_unit["cue"], cue=b_plan_unit["unit_task"], unit_task=task, state="running")
+        b_unit_task.set({"unit_task": task})
+
+    return choose
+
+
+def _end(unit: str, situation: Any) -> Callable[..., None]:
+    def end(
+        b_plan_unit: Any = f"planning_unit:{unit} state:choosing",
+        b_context: Any = situation,
+        utility: Any = FIRST,
+    ) -> None:
+        b_plan_unit.modify(state="finished")
+        self._clear_below()
+
+    return end

@@ -1,4 +1,4 @@
-"""Checks what planning units and productions say of each other, before an agent begins."""
+"""Checks that planning units and productions refer to each other correctly, before an agent starts."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from actr3d.sgoms.units import PlanningUnit
 
 
 def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
-    """Checks that there is a production for every unit task, and warns of productions for what no plan has.
+    """Checks that every unit task has a production, and warns of productions for unknown unit tasks and planning units.
 
     Raises:
-        PlanError: If no production can ever take on a unit task.
+        PlanError: If no production matches a unit task.
     """
     productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in part._productions]
     productions = [p for p in productions if not p.name.startswith("sgoms_")]
@@ -27,7 +27,7 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
         for task, unit in tasks.items():
             if task not in taken:
                 raise PlanError(
-                    f"planning unit '{unit}' of {type(agent).__name__}: no production takes on its unit task '{task}': none has "
+                    f"planning unit '{unit}' of {type(agent).__name__}: no production matches its unit task '{task}': none has "
                     f"b_unit_task='unit_task:{task} …'{did_you_mean(task, taken - tasks.keys())}"
                 )
     for production in productions:
@@ -39,13 +39,13 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
 
 
 def _named(production: Production, key: str) -> Iterator[str]:
-    """Yields the names that a production asks for in the buffers of planning units and unit tasks."""
+    """Yields the names that a production matches in the buffers of planning units and unit tasks."""
     for condition in production.conditions:
         if condition.name in ("b_unit_task", "b_plan_unit") and condition.key == key and condition.op == "is":
             yield condition.value
 
 
 def _takes_any(production: Production) -> bool:
-    """Tells whether a production may take on any unit task."""
+    """Returns whether a production may match any unit task."""
     found = [condition for condition in production.conditions if condition.name == "b_unit_task" and condition.op != "empty"]
     return bool(found) and not any(condition.key == "unit_task" and condition.op == "is" for condition in found)

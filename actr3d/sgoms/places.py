@@ -9,25 +9,25 @@ from actr3d.sgoms.levels import LEVELS
 from actr3d.sgoms.units import END, START
 
 PREFIXES = dict(zip(("plan", "task", "method", "operator"), LEVELS, strict=True))
-"""How the slots of each level's chunk begin in a place, where the names of their own would clash."""
+"""Prefixes of the slots of each level's chunk in a place, whose names would clash otherwise."""
 
 
 def place_of(agent: Any, plan: Chunk, number: str, *, whole: bool) -> dict[Any, Any]:
-    """Returns the chunk of the place where an agent is now.
+    """Returns the chunk of an agent's present place.
 
-    Its slots: `saved` (the planning unit) and `place` (its number), by which it is found again, and those of the chunks
+    Its slots: `saved` (the planning unit) and `place` (its number), which identify it, and those of the chunks
     in the agent's buffers, as `plan_cue` or `task_state`.
 
     Args:
         agent: The agent.
         plan: Its present planning unit.
         number: The number of the interruption.
-        whole: Whether a unit task that is cut short is to go on where it was; otherwise it starts anew.
+        whole: Whether an interrupted unit task continues where it was; otherwise it starts again.
     """
     chunks: dict[str, dict[Any, Any]] = {"plan": dict(plan)}
     task = agent.b_unit_task.chunk
     if plan["state"] == "retrieving":
-        chunks["plan"]["state"] = "begin"  # the answer will not be waited for; it is asked for again
+        chunks["plan"]["state"] = "begin"  # the request is repeated on resumption
     if task is not None and task["state"] == END:
         chunks["task"] = dict(task)
     elif task is not None and whole:
@@ -45,10 +45,10 @@ def place_of(agent: Any, plan: Chunk, number: str, *, whole: bool) -> dict[Any, 
 
 
 def put_back(agent: Any, place: Chunk) -> None:
-    """Puts everything back into an agent's buffers as a place has it."""
+    """Restores an agent's buffers from a place."""
     for prefix, buffer in PREFIXES.items():
         start = f"{prefix}_"
         slots = {slot.removeprefix(start): value for slot, value in place.items() if isinstance(slot, str) and slot.startswith(start)}
         if slots:
-            anew = prefix == "task" and slots["state"] == START
-            getattr(agent, buffer)._put(slots, "begun" if anew else "resumed")
+            again = prefix == "task" and slots["state"] == START
+            getattr(agent, buffer).put_back(slots, "begun" if again else "resumed")

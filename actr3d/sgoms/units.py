@@ -1,4 +1,4 @@
-"""Planning units as data: ordered ones are chains in declarative memory, situated ones are led by the situation."""
+"""Planning units as data: ordered ones are chains in declarative memory, situated ones choose by the situation."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from typing import Any
 
 from actr3d.actr import Memory
 from actr3d.actr.chunks.pattern import conditions
-from actr3d.errors import PatternException, PlanError
+from actr3d.errors import PatternException, PlanError, did_you_mean
 
 BEFORE, START, END = "none", "start", "finished"
-"""In the place of a unit task: what comes before the start, the start itself, and the end."""
+"""Names in a chain instead of unit tasks: before the start, the start, and the end."""
 _WORD = re.compile(r"[\w.-]+")
 
 
 @dataclass(frozen=True, init=False)
 class Ordered:
-    """A planning unit whose unit tasks follow one another in a fixed order; the attribute it is set as is its name.
+    """A planning unit whose unit tasks follow one another in a fixed order; its name is that of the agent's attribute.
 
-    The order is kept as chunks in declarative memory, `planning_unit:… cuelag:… cue:… unit_task:…`: the unit task before
-    the last, the last, and the next. So the next one is remembered, in its time, and can be forgotten.
+    The order is stored as chunks in declarative memory, `planning_unit:… cuelag:… cue:… unit_task:…`: the unit task before
+    the last, the last, and the next. So the next one is retrieved, which takes time and can fail.
 
     Args:
         unit_tasks: Their names, in order.
-        added: What the memory's activation modules are told of each chunk: `baselevel`, `fixed`, `time`, as in `Memory.add`.
+        added: Arguments of each chunk for the memory's activation modules: `baselevel`, `fixed`, `time`, as in `Memory.add`.
 
     Raises:
-        PlanError: If there is no unit task, a name is not one word or has a meaning of its own, or the cues cannot
-            tell what comes next, because two unit tasks that follow one another do so again with another one after them.
+        PlanError: If there is no unit task, a name is not one word or is reserved, or the cues are ambiguous, because the same two
+            successive unit tasks occur twice with different ones after them.
     """
 
     unit_tasks: tuple[str, ...]
@@ -47,10 +47,12 @@ class Ordered:
             if known.setdefault((lag, cue), task) != task:
                 raise PlanError(
                     f"Ordered{unit_tasks}: after '{lag}', '{cue}' comes '{known[lag, cue]}' once and '{task}' once, which memory "
-                    "cannot tell apart; give one of the unit tasks another name"
+                    "cannot distinguish; give one of the unit tasks another name"
                 )
         if len(known) <= len(unit_tasks):
-            raise PlanError(f"Ordered{unit_tasks}: it has no end, for the same cues come again; give one of the unit tasks another name")
+            raise PlanError(
+                f"Ordered{unit_tasks}: it has no end, because the same cues occur again; give one of the unit tasks another name"
+            )
 
     def links(self) -> list[tuple[str, str, str]]:
         """Returns the chain: (unit task before the last, last one, next one)."""
@@ -58,22 +60,22 @@ class Ordered:
         return list(zip(line, line[1:], line[2:], strict=False))
 
     def remember(self, name: str, memory: Memory) -> None:
-        """Puts the chain into declarative memory."""
+        """Adds the chain to declarative memory."""
         for lag, cue, task in self.links():
             memory.add({"planning_unit": name, "cuelag": lag, "cue": cue, "unit_task": task}, **self.added)
 
 
 @dataclass(frozen=True, init=False)
 class Situated:
-    """A planning unit whose next unit task is the one that the situation asks for; the attribute it is set as is its name.
+    """A planning unit whose next unit task depends on the situation; its name is that of the agent's attribute.
 
     Args:
-        until: The situation in which it has ended: a pattern for the buffer `b_context`. It comes before any unit task.
-        situations: By unit task, the situation that asks for it: a pattern for `b_context`, or a list of patterns. Of
-            several, the one with the highest utility is chosen, or one at random.
+        until: The situation in which it ends: a pattern for the buffer `b_context`, with priority over all unit tasks.
+        situations: By unit task, its situation: a pattern for `b_context`, or a list of patterns. If several
+            match, the one with the highest utility is chosen, or one at random.
 
     Raises:
-        PlanError: If it has no unit task or no end, or a name has a meaning of its own.
+        PlanError: If it has no unit task or no end, or a name is reserved.
         PatternException: If a pattern cannot be read.
     """
 
@@ -85,7 +87,7 @@ class Situated:
         if not situations:
             raise PlanError("Situated(): a planning unit needs unit tasks: Situated(until='dishes:clean', wash='dishes:dirty')")
         if until is None:
-            raise PlanError(f"Situated({', '.join(situations)}): it has no end; say in which situation it ends: until='dishes:clean'")
+            raise PlanError(f"Situated({', '.join(situations)}): it has no end; give the situation in which it ends: until='dishes:clean'")
         _check_words("Situated", situations)
         for name, pattern in {**situations, "until": until}.items():
             try:
@@ -101,10 +103,56 @@ class Situated:
         return tuple(self.situations)
 
     def remember(self, name: str, memory: Memory) -> None:
-        """Leaves memory as it is: what comes next is seen, not remembered."""
+        """Does nothing: the next unit task depends on the situation, not on memory."""
 
 
 PlanningUnit = Ordered | Situated
+
+
+class Plans:
+    """The planning units of one agent by name.
+
+    Args:
+        agent: The name of the agent's class, for messages.
+        units: The planning units.
+    """
+
+    def __init__(self, agent: str, units: Mapping[str, PlanningUnit]) -> None:
+        self.units = units
+        self._agent = agent
+
+    def unit(self, name: str, where: str) -> PlanningUnit:
+        """Returns a planning unit by name.
+
+        Args:
+            name: Its name.
+            where: The buffer that names it, for the message.
+
+        Raises:
+            PlanError: If there is none.
+        """
+        if name not in self.units:
+            known = ", ".join(self.units) or "none"
+            raise PlanError(f"{where}: {self._agent} has no planning unit '{name}'{did_you_mean(name, self.units)}; it has: {known}")
+        return self.units[name]
+
+    def check_unit_task(self, name: str) -> None:
+        """Checks that a planning unit has a unit task.
+
+        Raises:
+            PlanError: If none has it.
+        """
+        known = [task for unit in self.units.values() for task in unit.unit_tasks]
+        if name not in known:
+            raise PlanError(
+                f"b_unit_task: no planning unit of {self._agent} has a unit task '{name}'{did_you_mean(name, known)}; "
+                f"there are: {', '.join(dict.fromkeys(known)) or 'none'}"
+            )
+
+
+def plans_of(agent: Any) -> Plans:
+    """Returns the planning units of an agent; its public attributes belong to the modeller, so it has them under a private name."""
+    return agent.__dict__["_plans"]
 
 
 def _check_words(kind: str, names: Any) -> None:
@@ -112,4 +160,4 @@ def _check_words(kind: str, names: Any) -> None:
         if not isinstance(name, str) or not _WORD.fullmatch(name):
             raise PlanError(f"{kind}: the name of a unit task is one word of letters, digits, '_', '.' and '-' (got {name!r})")
         if name in (BEFORE, START, END):
-            raise PlanError(f"{kind}: a unit task cannot be called '{name}', which marks the start or the end; use another name")
+            raise PlanError(f"{kind}: a unit task cannot be called '{name}', which is reserved for the start or the end; use another name")

@@ -1,4 +1,4 @@
-"""How much room a body has in a doorway: its distance to the wall on each side."""
+"""Clearance of a body in a doorway: its distance to the wall on each side."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Wall(NamedTuple):
     position: tuple[float, float]
     """The middle of the gap on the floor [m]."""
     heading: float
-    """In which direction one walks through it [rad]."""
+    """The direction of walking through it [rad]."""
     thickness: float
     """[m]"""
     segments: tuple[int, int]
@@ -28,12 +28,12 @@ class Wall(NamedTuple):
 
 
 class Clearance:
-    """Measures how far some geoms, a body's, are from the two segments of a wall.
+    """Measures the distances of a body's geoms from the two segments of a wall.
 
     Args:
         model: The compiled scene.
-        data: Its state, whose geometry is up to date whenever it is asked.
-        geoms: The body's.
+        data: Its state, whose geometry is up to date in each call.
+        geoms: The geoms of the body.
         wall: The wall.
     """
 
@@ -46,10 +46,10 @@ class Clearance:
         self._radii = model.geom_rbound
 
     def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
-        """Returns the smallest distances to the left and right segment [m]; None where nothing of the body is between their faces.
+        """Returns the smallest distances to the left and right segment [m]; None if no part of the body is between their faces.
 
         Args:
-            held: More geoms that count as the body's: what it holds.
+            held: More geoms that count as the body's: held objects.
         """
         geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
         half = self._wall.thickness / 2

@@ -1,4 +1,4 @@
-"""What a user may do to a running simulation, between two steps."""
+"""Commands of a user to a running simulation, between two ticks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.errors import SimulationError, did_you_mean
-from actr3d.simulation.minds import Minds
+from actr3d.simulation.agents import Agents
 from actr3d.world import World
 
 Carry = Callable[..., None]
@@ -17,18 +17,18 @@ Carry = Callable[..., None]
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One thing that a user did to the run."""
+    """One command of a user."""
 
     tick: int
-    """After how many ticks."""
+    """Number of ticks before it."""
     word: str
-    """What: see `ON_WORLD`, `ON_MINDS`; any other word is one for a body."""
+    """One of `ON_WORLD` or `ON_AGENTS`; any other word is for a body."""
     values: tuple[Any, ...]
     """Its positional arguments."""
     named: Mapping[str, Any]
     """Its keyword arguments."""
     body: str | None = None
-    """To which body the word is said."""
+    """The body that receives it; None for the world or the agents."""
 
     def to_data(self) -> dict[str, Any]:
         """Returns the command as plain values."""
@@ -41,27 +41,27 @@ class Command:
         named = {name: _fixed(value) for name, value in given["named"].items()}
         return cls(tick, data["command"], tuple(map(_fixed, given["values"])), named, given["body"])
 
-    def carry_out(self, world: World, minds: Minds, *, only_minds: bool = False) -> None:
-        """Does it.
+    def carry_out(self, world: World, agents: Agents, *, only_agents: bool = False) -> None:
+        """Carries it out.
 
         Args:
-            world: On what.
-            minds: On whom.
-            only_minds: Whether what concerns the world is left out, because its state is to come from a record.
+            world: The world.
+            agents: The agents.
+            only_agents: Whether to leave out commands to the world, because its state is restored later.
 
         Raises:
-            SimulationError: If there is nothing of that name, or what is given is wrong.
+            SimulationError: If there is no such command, or a value is wrong.
             Exception: What a body raises.
         """
-        if self.body is None and self.word in ON_MINDS:
-            self._call(ON_MINDS[self.word], minds)
-        elif not only_minds:
+        if self.body is None and self.word in ON_AGENTS:
+            self._call(ON_AGENTS[self.word], agents)
+        elif not only_agents:
             if self.body is None:
                 self._call(ON_WORLD[self.word], world)
             else:
                 world.bodies[self.body].set(self.word, *self.values, **self.named)
 
-    def _call(self, carry: Carry, on: World | Minds) -> None:
+    def _call(self, carry: Carry, on: World | Agents) -> None:
         try:
             carry(on, *self.values, **self.named)
         except TypeError as error:
@@ -72,18 +72,18 @@ def _aperture(world: World, width: float, name: str = "aperture") -> None:
     world.set_aperture_width(width, name)
 
 
-def _parameter(minds: Minds, path: str, value: Any) -> None:
-    minds.set_parameter(path, value)
+def _parameter(agents: Agents, path: str, value: Any) -> None:
+    agents.set_parameter(path, value)
 
 
 ON_WORLD: dict[str, Carry] = {"aperture": _aperture}
-"""By word, what is done to the world; it may change its state only, not the compiled model, so that a stored state has it."""
-ON_MINDS: dict[str, Carry] = {"parameter": _parameter}
-"""By word, what is done to the minds."""
+"""Commands to the world by word; they may change its state only, not the compiled model, so that a stored state contains it."""
+ON_AGENTS: dict[str, Carry] = {"parameter": _parameter}
+"""Commands to the agents by word."""
 
 
 def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, world: World) -> Command:
-    """Returns a command, with the body it is for.
+    """Returns a command, with the body that receives it.
 
     Raises:
         SimulationError: If there is no such body, or more than one, or a value is not plain.
@@ -93,9 +93,9 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
     for text in given:
         if not isinstance(text, str):
             raise SimulationError(f"a command is a word, and its body is named by one (got {text!r})")
-    if body is None and word not in ON_WORLD and word not in ON_MINDS:
+    if body is None and word not in ON_WORLD and word not in ON_AGENTS:
         if len(bodies) != 1:
-            known = [*ON_WORLD, *ON_MINDS]
+            known = [*ON_WORLD, *ON_AGENTS]
             say = f"name its body: {', '.join(bodies)}" if bodies else f"there are: {', '.join(known)}"
             raise SimulationError(f"no command '{word}'{did_you_mean(word, known)}; {say}")
         (body,) = bodies
@@ -105,7 +105,7 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
 
 
 def _fixed(value: Any) -> Any:
-    """Returns a value that can be recorded, and that nobody can change."""
+    """Returns an immutable value that can be recorded."""
     if type(value) in LASTING_TYPES:
         return value
     if isinstance(value, Real):  # of numpy, for instance

@@ -1,4 +1,4 @@
-"""The numbers of `random` and `numpy.random`, which all of a program shares, as one simulation's own."""
+"""Separate global random numbers (`random` and `numpy.random`) for each simulation."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from actr3d.simulation.numpy_random import Numbers, own_numbers, present_numbers
 
 
 class GlobalRandom:
-    """Lets `random` and `numpy.random` be a simulation's own in a `with` block; everybody else finds them as they left them.
+    """Sets `random` and `numpy.random` to a simulation's own state in a `with` block, and restores the former state after it.
 
-    So minds that draw from them do the same whatever else the program, another simulation or an observer draws. Blocks may
-    stand in one another; only the outermost costs time, about 20 us. Simulations in two threads at once still share them.
+    Agents that draw from them act the same whatever else the program, another simulation or an observer draws. Blocks may be
+    nested; only the outermost takes time, about 20 us. Simulations in two threads at once still share them.
     """
 
     __slots__ = ("_depth", "_others", "_own")
@@ -37,7 +37,7 @@ class GlobalRandom:
 
     @contextmanager
     def aside(self) -> Generator[None]:
-        """Lets them be everybody else's inside the block, also where that stands inside one of the simulation's own."""
+        """Restores the former state inside the block, also within a block of the simulation."""
         if not self._depth:
             yield
             return
@@ -65,6 +65,6 @@ def _present() -> tuple[Any, Numbers]:
 
 def _put(numbers: tuple[Any, Numbers]) -> None:
     state, of_numpy = numbers
-    if state is not None:  # a run that begins seeds its own
+    if state is not None:  # a run seeds its own at its start
         random.setstate(state)
     put_in_place(of_numpy)

@@ -1,4 +1,4 @@
-"""One run from its start on: the minds and the world, a tick and a tock at a time."""
+"""One run from its start on: the agents and the world, a tick and a tock at a time."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.modules.port import Request
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, SimulationError
+from actr3d.simulation.agents import Agents, Factory
 from actr3d.simulation.commands import Command
-from actr3d.simulation.journal import Journal
-from actr3d.simulation.minds import Factory, Minds
+from actr3d.simulation.event_log import EventLog
 from actr3d.world import World
 
 
 class Lockstep:
-    """Minds that begin at time 0, and the world beside them.
+    """Runs agents and a world through the same time, from time 0.
 
     Args:
-        world: The world; at its start, too.
-        factories: By name, what makes each mind.
-        bodies: The names of those minds that have bodies.
-        seed: What all random choices come from.
-        steps: How many physics steps a tick is.
-        period: How long a tick is [us].
-        journal: Who is told of everything.
+        world: The world, at its start.
+        factories: By name, the factory of each agent.
+        bodies: The names of those agents that have bodies.
+        seed: The seed of all random choices.
+        steps: Number of physics steps in a tick.
+        period: Length of a tick [us].
+        log: Receives everything that happens.
 
     Raises:
-        SimulationError: If a mind cannot be made.
+        SimulationError: If an agent cannot be made.
     """
 
     def __init__(
@@ -39,27 +39,27 @@ class Lockstep:
         seed: int | str,
         steps: int,
         period: int,
-        journal: Journal,
+        log: EventLog,
     ) -> None:
         self._world = world
-        self._journal = journal
+        self._log = log
         self._steps = steps
         self._period_us = period
         self._period = seconds(period)
-        self.trace = journal.begin()
-        """Its trace; None where nothing is traced."""
-        self._voice = journal.voice
-        with self._voice:
-            self.minds = Minds(factories, bodies, seed, self.trace)
+        self.trace = log.begin()
+        """Its trace; None if nothing is traced."""
+        self._stdout = log.stdout
+        with self._stdout:
+            self.agents = Agents(factories, bodies, seed, self.trace)
         self.ticks = 0
-        """How many whole ticks it has gone."""
+        """Number of completed ticks."""
         self.commands = 0
-        """How many commands have been carried out."""
+        """Number of commands that have been carried out."""
         self._phase = "ready"
 
     @property
     def broken(self) -> bool:
-        """Whether it cannot go on from here: it stands in the midst of a tick."""
+        """Whether it cannot continue from here: a tick is incomplete."""
         return self._phase != "ready"
 
     # -- one tick
@@ -70,11 +70,11 @@ class Lockstep:
         Raises:
             EndOfRun: If an earlier run was cut short by them.
         """
-        return self.minds.may_run((self.ticks + 1) * self._period_us)
+        return self.agents.may_run((self.ticks + 1) * self._period_us)
 
     def cut(self) -> None:
-        """Notes that the limits of the program have cut the run short, for lack of time for another tick."""
-        self.minds.cut((self.ticks + 1) * self._period_us)
+        """Notes that the limits of the program have cut the run short."""
+        self.agents.cut((self.ticks + 1) * self._period_us)
 
     def tick(self) -> None:
         """Runs the agents for one period.
@@ -85,25 +85,25 @@ class Lockstep:
             Exception: What an agent raises.
         """
         self._expect("ready", "tick")
-        self.minds.claim((self.ticks + 1) * self._period_us)
+        self.agents.claim((self.ticks + 1) * self._period_us)
         self._phase = "failed"
-        with self._voice:
-            self.minds.run(self._period, (self.ticks + 1) * self._period_us)
+        with self._stdout:
+            self.agents.run(self._period, (self.ticks + 1) * self._period_us)
         self._phase = "ticked"
 
     def tock(self) -> tuple[Any, ...]:
-        """Carries out what the minds want, simulates the physics, and lets the bodies answer.
+        """Carries out the agents' requests to their bodies, simulates the physics, and collects the answers of the bodies.
 
         Returns:
             The answers, in the order of the questions.
 
         Raises:
             SimulationError: If there has been no tick before, or something has failed.
-            Exception: What a body raises; it names the modeller's line.
+            Exception: What a body raises; a note names the modeller's line.
         """
         self._expect("ticked", "tock")
         self._phase = "failed"
-        world, outbox = self._world, self.minds.outbox
+        world, outbox = self._world, self.agents.outbox
         questions: list[Request] = []
         if outbox:
             for request in outbox:
@@ -122,17 +122,17 @@ class Lockstep:
         return answers
 
     def remember(self, answers: tuple[Any, ...]) -> None:
-        """Goes through a tick that is known already, without its physics.
+        """Repeats a known tick with its answers, without its physics.
 
         Raises:
-            SimulationError: If the minds ask other questions than the first time: they use more than the seed.
+            SimulationError: If the agents ask other questions than the first time: their choices do not all come from the seed.
         """
         self.tick()
-        questions = [request for request in self.minds.outbox if request.reading is not None]
-        self.minds.outbox.clear()
+        questions = [request for request in self.agents.outbox if request.reading is not None]
+        self.agents.outbox.clear()
         if len(questions) != len(answers):
             raise SimulationError(
-                f"the minds asked {len(questions)} questions where they had asked {len(answers)} the first time, in the tick from "
+                f"the agents asked {len(questions)} questions where they had asked {len(answers)} the first time, in the tick from "
                 f"{seconds(self.ticks * self._period_us):g} s on: they use something that does not come from the seed"
             )
         self._answer(questions, answers)
@@ -141,45 +141,45 @@ class Lockstep:
 
     def _answer(self, questions: Sequence[Request], answers: Sequence[Any]) -> None:
         for request, answer in zip(questions, answers, strict=True):
-            self.minds.take(request, answer)
-        self._journal.answers(self.ticks + 1, questions, answers)
+            self.agents.take(request, answer)
+        self._log.answers(self.ticks + 1, questions, answers)
 
     def _expect(self, phase: str, what: str) -> None:
         if self._phase == phase:
             return
         if self._phase == "failed":
-            raise SimulationError(f"{what}: the run has failed at {seconds(self.minds.time):g} s and cannot go on; seek an earlier time")
+            raise SimulationError(f"{what}: the run has failed at {seconds(self.agents.time):g} s and cannot go on; seek an earlier time")
         raise SimulationError("a tick waits for its tock" if phase == "ready" else "tock: there is a tick to be made first")
 
     # -- commands
 
     def command(self, command: Command) -> None:
-        """Carries out something new that a user does.
+        """Carries out a new command of a user.
 
         Raises:
-            SimulationError: If a tick waits for its tock, or there is nothing of that name.
+            SimulationError: If a tick waits for its tock, or there is no such command.
             Exception: What a body raises.
         """
         self._expect("ready", f"command '{command.word}'")
-        command.carry_out(self._world, self.minds)
+        command.carry_out(self._world, self.agents)
         self.commands += 1
 
-    def tell(self, command: Command) -> None:
-        """Lets the trace know of a command that has been carried out."""
+    def trace_command(self, command: Command) -> None:
+        """Traces a command that has been carried out."""
         if self.trace is not None:
-            self.minds.tell(self.trace, "command", command.to_data())
+            self.agents.trace_event(self.trace, "command", command.to_data())
 
-    def repeat_commands(self, known: Sequence[Command], *, only_minds: bool = False) -> None:
-        """Carries out what users did the first time, after as many ticks."""
+    def repeat_commands(self, known: Sequence[Command], *, only_agents: bool = False) -> None:
+        """Carries out the known commands of this tick again."""
         while self.commands < len(known) and known[self.commands].tick == self.ticks:
             command = known[self.commands]
-            command.carry_out(self._world, self.minds, only_minds=only_minds)
+            command.carry_out(self._world, self.agents, only_agents=only_agents)
             self.commands += 1
-            self.tell(command)
+            self.trace_command(command)
 
 
 def _ask(request: Request, word: Callable[..., Any]) -> Any:
-    """Hands a request to its body; an error is told with the line that asked."""
+    """Passes a request to its body; adds the modeller's line to an error."""
     try:
         return word(request.word, *request.values, **request.named)
     except Actr3dError as error:

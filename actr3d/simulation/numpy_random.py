@@ -1,4 +1,4 @@
-"""numpy's global random numbers, as something that can be put aside and into its place again in a microsecond."""
+"""Saves and restores numpy's global random numbers in a microsecond."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ random: Any = numpy.random
 
 
 class MT19937(numpy.random.MT19937):
-    """numpy's own generator of bits, whose state may stay where it is while another one takes its place.
+    """numpy's bit generator, whose state can stay in place while another one is active.
 
-    numpy keeps half a pair of normal numbers beside the generator, and gives it out with the generator's whole state only,
-    copied number by number, which takes 25 us. Its name is that of numpy's, by which numpy knows whose state it has.
+    numpy stores half a pair of normal numbers beside the generator, and returns it only with the generator's whole state,
+    copied number by number, which takes 25 us. The class has the name of numpy's, by which numpy identifies a state.
     """
 
     apart = False
-    """Whether its state is left out of what numpy gives out and takes."""
+    """Whether its state is left out when numpy gets and sets states."""
 
     @property
     def state(self) -> Any:
-        """The state as numpy has it."""
+        """The state in numpy's format."""
         if self.apart:
             return {"bit_generator": "MT19937", "state": None}
         return random.MT19937.state.__get__(self)
@@ -36,20 +36,20 @@ class MT19937(numpy.random.MT19937):
 
 
 class Numbers(NamedTuple):
-    """What numpy's global numbers come from."""
+    """The source of numpy's global random numbers."""
 
     bits: BitGenerator
     rest: Any
-    """What there is beside the generator; all of the state, of a generator that somebody else chose."""
+    """The state beside the generator; for another kind of generator, all of its state."""
 
 
 def own_numbers() -> Numbers:
-    """Returns new ones, that nobody shares; to be seeded by who uses them."""
+    """Returns new, unshared numbers; the caller seeds them."""
     return Numbers(MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
 
 
 def present_numbers() -> Numbers:
-    """Returns those in place, to be put back later."""
+    """Returns the present numbers, to restore them later."""
     bits = random.get_bit_generator()
     if type(bits) is random.MT19937:
         state = random.get_state(legacy=False)
@@ -61,7 +61,7 @@ def present_numbers() -> Numbers:
 
 
 def put_in_place(numbers: Numbers) -> None:
-    """Lets numpy's global numbers be these."""
+    """Sets numpy's global random numbers."""
     random.set_bit_generator(numbers.bits)
     with _apart(numbers.bits):
         random.set_state(numbers.rest)

@@ -1,4 +1,4 @@
-"""How a body passes an aperture: what the world tells, whatever its mind believes."""
+"""Measures a body's passage through an aperture, from the state of the world."""
 
 from __future__ import annotations
 
@@ -10,47 +10,46 @@ from typing import Literal, NamedTuple
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.simulation.clearance import Clearance, Wall
 from actr3d.world import World
-from actr3d.world.parts import Aperture
-from actr3d.world.sensors.touch import last_felt
+from actr3d.world.scene_objects import Aperture
 
 SET_OUT = 0.05
-"""Who has come as far as this from the start [m] has set out. Ours."""
+"""Distance from the start after which a body has set out [m]. Source: chosen for this library."""
 TINY = 1e-9
 """Less than any physics step [s]."""
 TURNED = math.radians(1)
-"""A turn begins where the shoulder line is turned as far as this [rad]. Ours."""
+"""Angle of the shoulder line at which a turn begins [rad]. Source: chosen for this library."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PassageResult:
-    """What came of a walk to an aperture. Distances are from the body's axis to the middle plane of the wall, before it positive."""
+    """The result of a walk to an aperture. Distances are from the body's axis to the middle plane of the wall, positive before it."""
 
     outcome: Literal["passed", "declined", "stopped"]
-    """Whether all of the body came through; never set out and ended so; or neither."""
+    """Whether all of the body passed; the run ended before it set out; or neither."""
     peak_angle_deg: float | None
-    """The greatest angle between the shoulder line and the wall while walking [degrees, 0 to 90]; None where it did not set out."""
+    """The greatest angle between the shoulder line and the wall while walking [degrees, 0 to 90]; None if it did not set out."""
     wall_angle_deg: float | None
-    """The same as the axis reached the wall; None where it did not."""
+    """The same when the axis reached the wall; None if it did not."""
     logged_angle_deg: float | None
-    """Torso plus clavicle, as joints, at that moment [degrees]: what the original model logged (human-data); and the stance, where the
-    body can turn it."""
+    """Torso plus clavicle, as joints, at that moment [degrees]: the value that the original model logged (human-data); plus the
+    stance, if the body can turn it."""
     onset_distance_m: float | None
-    """How far before the wall the shoulders began to turn; None where they did not."""
+    """Distance from the wall at which the shoulders began to turn; None if they did not."""
     onset_time_s: float | None
-    """When."""
+    """Time of that."""
     contacts: int
-    """How often a part of the body came to touch something."""
+    """Number of contacts of a part of the body with an object."""
     max_force_n: float
-    """The hardest touch."""
+    """Greatest force of a contact."""
     clearance_left_m: float | None
-    """The smallest distance between any part of the body and the left segment of the wall, while something of the body was between
-    its faces; None where nothing was."""
+    """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
+    faces; None if none was."""
     clearance_right_m: float | None
     """The same on the right."""
     speed_m_s: float | None
-    """How fast it walked on average, from setting out until it reached the wall, or else until the end."""
+    """Mean walking speed, from setting out until it reached the wall, otherwise until the end."""
     time_s: float
-    """How long the run took."""
+    """Duration of the run."""
 
     def __str__(self) -> str:
         lines = [f"{self.outcome} after {self.time_s:.2f} s"]
@@ -74,7 +73,7 @@ class _Sample(NamedTuple):
     time: float
     """[s]"""
     before: float
-    """How far the axis is before the wall [m]."""
+    """Distance of the axis before the wall [m]."""
     angle: float
     """Between shoulder line and wall [rad]."""
     logged: float
@@ -89,8 +88,8 @@ class Passage:
     """Measures one body at one aperture, at every physics step.
 
     Args:
-        body: Whose passage; one with shoulders.
-        aperture: Through which aperture.
+        body: The name of the body; it has shoulders.
+        aperture: The name of the aperture.
     """
 
     def __init__(self, body: str, aperture: str = "aperture") -> None:
@@ -102,7 +101,7 @@ class Passage:
         """Finds body and aperture.
 
         Raises:
-            WorldError: If they are not there, or the body has no shoulders.
+            WorldError: If they do not exist, or the body has no shoulders.
         """
         body, aperture = self._names
         if body not in world.bodies:
@@ -131,7 +130,7 @@ class Passage:
         self._reach = 2.0 + wall.thickness
 
     def look(self) -> None:
-        """Keeps what is to be known of a physics step, once the body has set out; in place of what was kept of that time before."""
+        """Stores a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
         end, ago = self._world.mj_data.time, self._world.mj_model.opt.timestep
         x, y, _ = self._places[self._body.root].tolist()
         number = len(self._times)
@@ -159,17 +158,14 @@ class Passage:
         angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
         # The integrator has moved the joints on from the geometry, with these speeds.
         logged = sum([share * (self._qpos.item(q) - ago * self._qvel.item(v)) for q, v, share in self._hinges])
-        touches = last_felt(self._body)
+        touches = self._body.contacts.touches()
         force = max([touch.force for touch in touches], default=0.0)
         pairs = frozenset([(touch.part, touch.other) for touch in touches])
-        room = self._clearance.rooms(self._held()) if abs(before) < self._reach else None
+        room = self._clearance.rooms(self._body.contacts.held()) if abs(before) < self._reach else None
         return _Sample(time, before, angle, logged, room, pairs, force)
 
-    def _held(self) -> list[int]:
-        return [geom for hand in self._body.hands.values() for geom in hand.geoms]
-
     def result(self, *, over: bool) -> PassageResult:
-        """Returns what has been measured up to now."""
+        """Returns the result up to now."""
         now = float(self._world.mj_data.time)
         samples = self._samples[: bisect_right(self._times, now + TINY)]
         at_wall = next((sample for sample in samples if sample.before <= 0), None)

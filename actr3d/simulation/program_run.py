@@ -1,4 +1,4 @@
-"""A simulation as one of the runs that the trace of a whole program records."""
+"""A simulation as one of the runs in the trace of a whole program."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from actr3d.world import World
 
 
 class ProgramRun:
-    """Hands all that a simulation does on to the program's trace and recorder, as the run that it is there: «top», «top#2» and so on.
+    """Passes the events of a simulation on to the program's trace and recorder, as one run of it: «top», «top#2» and so on.
 
     Args:
-        trace: The program's.
-        recorder: The program's; None for none.
-        present: Returns the simulation's run as its own trace has it at present; None where there is none.
+        trace: The trace of the program.
+        recorder: The recorder of the program; None for none.
+        present: Returns the simulation's run in its own trace; None if there is none.
     """
 
     def __init__(self, trace: Trace, recorder: Recorder | None, present: Callable[[], Run | None]) -> None:
@@ -31,18 +31,18 @@ class ProgramRun:
         self._begun = 0
 
     def take(self, event: TraceEvent) -> None:
-        """Hands an event on, if the program's trace records as much. What a mind prints, whoever runs the program tells of.
+        """Passes an event on, if the program's trace records its level; except output of agents, which the program's runner traces.
 
         Raises:
             Exception: What a listener of that trace has raised.
         """
         if event.kind == "output" or LEVELS.index(KINDS[event.kind].level) > self._rank:
             return
-        self._hand_on(event, self._trace)
+        self._pass_on(event, self._trace)
         self._trace.raise_failures()
 
     def state(self, tick: int, world: World) -> None:
-        """Hands on the physics at the end of a tick.
+        """Passes the physics state at the end of a tick on.
 
         Raises:
             Exception: What the recorder raises.
@@ -51,12 +51,12 @@ class ProgramRun:
             self._recorder.state(self._number, tick, world.state_bytes())
 
     def answer(self, tick: int, request: Request, value: Any) -> None:
-        """Hands on what a body answered in a tick."""
+        """Passes the answer of a body in a tick on."""
         if self._recorder is not None:
             self._recorder.answer(self._number, tick, request.body, request.word, value)
 
     def command(self, command: Command) -> None:
-        """Hands on what a user did."""
+        """Passes a command of a user on."""
         if self._recorder is not None:
             self._recorder.command(self._number, command.tick, command.to_data())
 
@@ -66,12 +66,12 @@ class ProgramRun:
             self._begun = self._trace.begin(self)
         return self._begun
 
-    def _hand_on(self, event: TraceEvent, trace: Trace) -> None:
+    def _pass_on(self, event: TraceEvent, trace: Trace) -> None:
         data = event.data if self._number == 1 else self._renamed(event.data)
         trace.emit(event.time_us, self._name(event.source), event.kind, data)
 
     def _renamed(self, data: Any) -> Any:
-        """Returns data in which parts have the names that they have in the program's trace."""
+        """Returns data with the names of parts as in the program's trace."""
         if type(data) is Naming:
             return data.renamed(self._name)
         if isinstance(data, dict):
@@ -84,25 +84,25 @@ class ProgramRun:
         top = top_path(self._number)
         return source if self._number == 1 else top if source == "top" else f"{top}.{source}"
 
-    # -- what the trace asks of it
+    # -- for the trace
 
     @property
     def model(self) -> Any:
-        """The environment of its minds; None where it is gone."""
+        """The environment of its agents; None if it is gone."""
         present = self._present()
         return None if present is None else present.model
 
     def now_us(self) -> int | None:
-        """Returns its present [us]; None where it is gone."""
+        """Returns its present time [us]; None if it is gone."""
         present = self._present()
         return None if present is None else present.now_us()
 
     def tell(self, trace: Trace) -> None:
-        """Tells a trace what everything is like at present."""
+        """Traces the present state of everything."""
         present = self._present()
         if present is not None:
             named = Trace(trace.level, keep=False)
-            named.listen(lambda event: self._hand_on(event, trace))
+            named.listen(lambda event: self._pass_on(event, trace))
             present.tell(named)
 
     def stop(self) -> None:

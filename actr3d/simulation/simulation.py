@@ -1,54 +1,59 @@
-"""Simulation: minds and their bodies in one world, in lockstep."""
+"""Simulation: agents and their bodies in one world, in lockstep."""
 
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import asdict
 from functools import partial
+from pathlib import Path
 from typing import Any
 from zlib import crc32
 
 from actr3d.actr.kernel.run_limits import RunLimits, fresh_seed
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
-from actr3d.simulation.arguments import check_names, count_of, factor_of, named_minds, seed_of, steps_of, whole_ticks, world_of
+from actr3d.recording import Recording
+from actr3d.simulation.agents import Factory
 from actr3d.simulation.commands import Command
-from actr3d.simulation.course import Course
-from actr3d.simulation.glimpse import Glimpse
+from actr3d.simulation.event_log import EventLog, Listener
 from actr3d.simulation.global_random import GlobalRandom
-from actr3d.simulation.journal import Journal
 from actr3d.simulation.lockstep import Lockstep
-from actr3d.simulation.looked_on import LookedOn
-from actr3d.simulation.minds import Factory
-from actr3d.simulation.pace import Ending, Pace, RunReport
-from actr3d.simulation.sources import told_facts
-from actr3d.simulation.submissions import Submissions
+from actr3d.simulation.measure import Measure
+from actr3d.simulation.observers import Observer, Observers
+from actr3d.simulation.provenance import facts_of
+from actr3d.simulation.real_time import Ending, RealTime, RunReport
+from actr3d.simulation.snapshot import Glimpse
+from actr3d.simulation.timeline import Timeline
+from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
+from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
 
 
-class Simulation(LookedOn):
-    """Runs minds and their bodies through the same time: a tick of cognition, then a tock of physics, then sensing.
+class Simulation:
+    """Runs agents and their bodies through the same time: a tick of cognition, then a tock of physics, then sensing.
 
-    A tick lets every mind think for one period, events at its very end included. The tock carries out what the minds
-    told their bodies meanwhile, simulates the physics of the same period, and lets the bodies answer what they were
-    asked; the answers are there when the next tick begins. However long a tick takes on the wall, the result is the
-    same: it depends on scene, minds, seed and commands alone.
+    A tick runs every agent for one period, events at its very end included. The tock carries out the commands of the agents to
+    their bodies, simulates the physics of the same period, and reads the sensors that the agents asked for; the answers are
+    available when the next tick begins. Wall-clock time never affects the result: it depends on scene, agents, seed and
+    commands alone.
 
-    A simulation belongs to the thread that makes it; others may `submit` commands.
+    A simulation belongs to the thread that makes it; other threads may `submit` commands.
 
     Args:
-        scene: What the world is made of; or a world that is compiled already, at its start, with a seed of its own.
-        minds: By a body's name, what makes its mind: an agent's class, or a function without arguments. It is called again
-            where the run goes back to an earlier time. A body that is not named has no mind.
-        bodiless: By a name, what makes a mind that has no body.
-        period: How long a tick is [s]; a whole multiple of the physics step. Source of 10 ms: the original ACT-R 3D.
-        seed: What all random choices come from; None takes the program's, or draws one.
-        trace: How much of what happens is kept; see `actr3d.trace.LEVELS`.
+        scene: The description of the world; or a compiled world, at its start, with its own seed.
+        minds: By a body's name, the factory of its agent: an agent's class, or a function without arguments. It is called again
+            when the run goes back to an earlier time. A body that is not named has no agent.
+        bodiless: By name, the factory of an agent without a body.
+        period: Length of a tick [s]; a whole multiple of the physics step. Source of 10 ms: the original ACT-R 3D.
+        seed: The seed of all random choices; None takes the program's, or draws one.
+        trace: The level of the trace; see `actr3d.trace.LEVELS`.
 
     Raises:
-        SimulationError: If the period is no whole multiple of the physics step, a mind's body is not there, the world is not
-            at its start, or something is of another kind than it should be.
+        SimulationError: If the period is no whole multiple of the physics step, an agent's body does not exist, the world is not
+            at its start, or a value has the wrong type.
         ParameterError: If the trace's level is unknown.
     """
 
@@ -64,85 +69,90 @@ class Simulation(LookedOn):
     ) -> None:
         self._limits = limits = RunLimits.current()
         self.seed: int | str = seed_of(seed) if seed is not None else fresh_seed() if limits is None else limits.next_seed()
-        self._minds = named_minds(minds, "Simulation.minds")
-        self._bodiless = named_minds(bodiless, "Simulation.bodiless")
-        world = world_of(scene, crc32(str(self.seed).encode()))
-        check_names(self._minds, self._bodiless, world.bodies)
-        self._steps = steps_of(period, world)
-        self._period = self._steps * world.scene.timestep_us
-        journal = Journal(trace)
+        self._embodied = named_factories(minds, "Simulation.minds")
+        self._bodiless = named_factories(bodiless, "Simulation.bodiless")
+        self.world = world_of(scene, crc32(str(self.seed).encode()))
+        check_names(self._embodied, self._bodiless, self.world.bodies)
+        self._steps = steps_of(period, self.world)
+        self._period = self._steps * self.world.scene.timestep_us
+        self.event_log = EventLog(trace)
+        """Passes all events on; for recorders and runners."""
         if limits is not None and limits.trace is not None:
-            journal.tell_program(limits.trace, limits.recorder)
+            self.event_log.join_program(limits.trace, limits.recorder)
         self._random = GlobalRandom()
-        self._submitted = Submissions()
-        super().__init__(world, Course(world, self._begin, journal), journal, self._random)
+        self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
+        self._observers = Observers(self._random)
+        self._measure: Measure | None = None
+        self.timeline = Timeline(self.world, self._begin, self.event_log)
+        """The run in time; for recorders and runners."""
         self._owner = threading.get_ident()
 
     def _begin(self) -> Lockstep:
-        minds = {**self._minds, **self._bodiless}
+        factories = {**self._embodied, **self._bodiless}
         with self._random:
-            return Lockstep(self.world, minds, frozenset(self._minds), self.seed, self._steps, self._period, self._journal)
+            return Lockstep(self.world, factories, frozenset(self._embodied), self.seed, self._steps, self._period, self.event_log)
 
-    def _told(self, facts: Mapping[str, Any]) -> dict[str, Any]:
-        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
-        return told_facts(own, facts, [*self._minds.values(), *self._bodiless.values()])
-
-    # -- where it stands
+    # -- the present
 
     @property
     def ticks(self) -> int:
-        """How many whole ticks the run has gone."""
-        return self._course.ticks
+        """Number of completed ticks."""
+        return self.timeline.ticks
 
     @property
     def time(self) -> float:
-        """The present [s]."""
+        """The present time [s]."""
         return seconds(self.ticks * self._period)
 
     @property
     def period(self) -> float:
-        """How long a tick is [s]."""
+        """Length of a tick [s]."""
         return seconds(self._period)
 
     @property
     def furthest(self) -> float:
-        """How far the run has come [s]; after `seek` the present may lie before that."""
-        return seconds(self._course.furthest * self._period)
+        """The latest time of the run [s]; after `seek` the present may be before it."""
+        return seconds(self.timeline.furthest * self._period)
 
     @property
     def minds(self) -> dict[str, Any]:
-        """The minds by name, to look at: what is changed here from outside is not repeated when the run goes back.
+        """The agents by name, read only: changes from outside are not repeated when the run goes back.
 
         Raises:
-            SimulationError: If a mind cannot be made.
+            SimulationError: If an agent cannot be made.
         """
-        environment = self._course.lockstep.minds.environment
-        return {name: environment[name] for name in (*self._minds, *self._bodiless)}
+        environment = self.timeline.lockstep.agents.environment
+        return {name: environment[name] for name in (*self._embodied, *self._bodiless)}
 
     @property
     def done(self) -> bool:
-        """Whether no mind has anything left to do, now or ever, and no user has asked for anything."""
-        return self._course.lockstep.minds.done and not self._submitted and self.ticks >= self._course.furthest
+        """Whether no agent has anything left to do, now or ever, and no command of a user waits."""
+        return self.timeline.lockstep.agents.done and not self._submitted and self.ticks >= self.timeline.furthest
 
-    # -- going on
+    @property
+    def trace(self) -> Trace | None:
+        """The trace of the run up to now; None if nothing is traced. After `seek` it is another one."""
+        return self.timeline.lockstep.trace
+
+    # -- running
 
     def tick(self) -> None:
-        """Lets the minds think for one period, after carrying out what other threads have submitted.
+        """Runs the agents for one period, after carrying out the commands that other threads have submitted.
 
         Raises:
             SimulationError: If the last tick has had no tock, or has failed; if this is another thread, or an observer.
-            Exception: What a mind raises.
+            Exception: What an agent raises.
         """
         self._enter()
         if self._submitted:
             self.carry_out_submitted()
         if not self.ticks:
-            self._pass(0)
+            self._notify_limits(0)
         with self._random:
-            self._course.tick()
+            self.timeline.tick()
 
     def tock(self) -> None:
-        """Lets the bodies do what they were told, simulates the physics of the same period, and lets them answer.
+        """Carries out the commands to the bodies, simulates the physics of the same period, and reads the sensors.
 
         Raises:
             SimulationError: If there has been no tick before, or something has failed.
@@ -150,19 +160,19 @@ class Simulation(LookedOn):
             Exception: What a body, an observer or a listener of the trace raises.
         """
         self._enter()
-        self._course.tock()
-        self._onlookers.show(self._glimpse)
-        self._journal.check()
-        self._pass(self._period)
+        self.timeline.tock()
+        self._observers.show(self._glimpse)
+        self.event_log.check()
+        self._notify_limits(self._period)
 
-    def _pass(self, time: int) -> None:
-        """Lets the limits of the program know that time has passed [us]; they may hold it up here."""
+    def _notify_limits(self, time: int) -> None:
+        """Notifies the limits of the program that time has passed [us]; they may wait here."""
         if self._limits is not None and self._limits.ticked is not None:
             with self._random.aside():
                 self._limits.ticked(self, time)
 
     def step(self, n: int = 1) -> None:
-        """Goes on by a number of ticks, each with its tock.
+        """Runs a number of ticks, each with its tock.
 
         Raises:
             SimulationError: If the number is no whole one, or negative; and as `tick` does.
@@ -176,19 +186,19 @@ class Simulation(LookedOn):
     def run(
         self, seconds: float | None = None, *, until: Callable[[Glimpse], bool] | None = None, real_time: float | None = None
     ) -> RunReport:
-        """Goes on until a time has passed, something has come true, a mind says `stop`, or no mind has anything left to do.
+        """Runs until a time has passed, a condition is true, an agent calls `stop`, or no agent has anything left to do.
 
-        The last of these ends a run only where neither a time nor a condition is given. A mind that says `stop` ends the
+        The last of these ends a run only if neither a time nor a condition is given. An agent that calls `stop` ends the
         run after the present tick and its tock. The limits of the program (`actr3d run --until`) cut a run after the last
         whole tick that they leave time for.
 
         Args:
-            seconds: How long [s from now]; a whole number of ticks.
-            until: Asked after each tock; ends the run when it returns True.
-            real_time: How many times as fast as real time it is to go, at most; None for as fast as possible.
+            seconds: Duration [s from now]; a whole number of ticks.
+            until: Called after each tock; ends the run when it returns True.
+            real_time: Greatest speed as a multiple of real time; None for as fast as possible.
 
         Returns:
-            How it went: what ended it, how fast it was, and how late where it could not keep to real time.
+            What ended the run, its speed, and its delays if it could not keep up with real time.
 
         Raises:
             SimulationError: If the time is no whole number of ticks, the factor is not above 0, or `until` is no function; and
@@ -201,14 +211,14 @@ class Simulation(LookedOn):
             raise SimulationError(f"run(until): must be a function that takes a Glimpse (got {until!r})")
         end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
         held = self._limits is not None and self._limits.ticked is not None
-        pace = Pace(self._period, None if held else factor)  # who holds the program up says how fast it goes
+        clock = RealTime(self._period, None if held else factor)  # limits that wait set the speed themselves
         with self._random:
-            return pace.report(self._go_on(pace, end, until, open_end=end is None and until is None))
+            return clock.report(self._run_until(clock, end, until, open_end=end is None and until is None))
 
-    def _go_on(self, pace: Pace, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> Ending:
-        """Goes on until something ends the run; says what."""
-        lockstep = self._course.lockstep
-        minds, begin = lockstep.minds, self.ticks
+    def _run_until(self, clock: RealTime, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> Ending:
+        """Runs until something ends the run, and returns what."""
+        lockstep = self.timeline.lockstep
+        agents, begin = lockstep.agents, self.ticks
         while end is None or self.ticks < end:
             if open_end and self.done:
                 return "done"
@@ -217,11 +227,11 @@ class Simulation(LookedOn):
                 return "limits"
             self.tick()
             self.tock()
-            pace.tick()
-            if minds.stopped:
+            clock.tick()
+            if agents.stopped:
                 return "stop"
             if until is not None:
-                with self._onlookers.only_looking():
+                with self._observers.only_looking():
                     if until(self._glimpse()):
                         return "until"
         return "seconds"
@@ -229,23 +239,22 @@ class Simulation(LookedOn):
     def _enter(self) -> None:
         if threading.get_ident() != self._owner:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
-        if self._onlookers.looking:
+        if self._observers.looking:
             raise SimulationError("an observer only looks, as a listener and `until` do: it cannot step or change the simulation")
 
     # -- commands
 
     def command(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> None:
-        """Does something to the run, at once, between two ticks: `command("aperture", 0.6)`, `command("walk", 1.2, body="walker")`.
+        """Carries out a command at once, between two ticks: `command("aperture", 0.6)`, `command("walk", 1.2, body="walker")`.
 
-        A word of the world (`aperture`), of the minds (`parameter`, a path and a value), or any word that a body takes. It
-        is recorded with its tick, and done again at the same tick where the run goes back and on again. Where the run
-        has gone back, a new command makes it go another way: what came after the present is forgotten, also by the
-        recording.
+        It is a word of the world (`aperture`), of the agents (`parameter`, a path and a value), or any word of a body. It
+        is recorded with its tick, and repeated at the same tick when the run goes back and forward again. After the run
+        went back, a new command starts another future: what came after the present is forgotten, also by the recording.
 
         Args:
-            word: What to do.
-            values: With what; numbers, texts, and tuples and dicts of these.
-            body: Which body is to do it; the only one unless named.
+            word: The command.
+            values: Its values: numbers, texts, and tuples and dicts of these.
+            body: The body that carries it out; the only one by default.
             named: More values, by name.
 
         Raises:
@@ -254,57 +263,153 @@ class Simulation(LookedOn):
         """
         self._enter()
         with self._random:
-            self._course.command(word, values, named, body)
-        self._journal.check()
+            self.timeline.command(word, values, named, body)
+        self.event_log.check()
 
     def plan(self, commands: Sequence[Command], ticks: int = 0) -> None:
-        """Lets the commands of an earlier run be done again, each after its tick, as if this run had gone back to its start.
+        """Plans the commands of an earlier run, each after its tick, as if this run had gone back to its start.
 
         Args:
-            commands: What users did.
-            ticks: How far the earlier run came: this one can go to any time up to there.
+            commands: The commands of users.
+            ticks: Length of the earlier run: this one can seek any time up to its end.
 
         Raises:
             SimulationError: If the run has begun already.
         """
-        if self._course.begun:
+        if self.timeline.begun:
             raise SimulationError("commands are planned before the run begins, and this one has begun already")
-        self._course.plan(commands, ticks)
+        self.timeline.plan(commands, ticks)
 
     def forget_ahead(self) -> None:
-        """Forgets that the run has been further than it is now, as where it does not do again what an earlier run did."""
-        self._course.forget_ahead()
+        """Forgets that the run has been further than it is now; used when it differs from an earlier run."""
+        self.timeline.forget_ahead()
 
     def submit(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> Future[None]:
-        """Asks for a command from any thread; it is carried out before the next tick.
+        """Submits a command from any thread; it is carried out before the next tick.
 
         Returns:
-            What tells when it is done, or raises what went wrong with it.
+            A future that is done when the command is, or raises its error.
         """
-        return self._submitted.add(partial(self.command, word, *values, body=body, **named))
+        future: Future[None] = Future()
+        self._submitted.append((future, partial(self.command, word, *values, body=body, **named)))
+        return future
 
     def carry_out_submitted(self) -> None:
-        """Carries out what other threads have submitted; `tick` does so by itself, this is for a run that is paused."""
-        self._submitted.carry_out()
+        """Carries out submitted commands; `tick` does this itself, a paused run needs it."""
+        while self._submitted:
+            future, command = self._submitted.popleft()
+            if not future.set_running_or_notify_cancel():
+                continue
+            try:
+                command()
+            except Exception as error:  # noqa: BLE001 - the future raises it
+                future.set_exception(error)
+            else:
+                future.set_result(None)
 
     # -- going back
 
     def seek(self, time: float) -> None:
-        """Brings the run to any time from its start to the furthest it has come; to the end of that tick, before what users did then.
+        """Moves the run to any time from its start to its latest time: to the end of that tick, before its commands.
 
-        Going on from there gives what the first run gave, with all its commands, byte for byte.
+        Continuing from there gives the same bytes as the first run, with all its commands.
 
         Args:
             time: When [s]; a whole number of ticks.
 
         Raises:
-            SimulationError: If the run has not come so far, or the time is no whole number of ticks.
+            SimulationError: If the time is after the end of the run, or the time is no whole number of ticks.
         """
         self._enter()
         to = whole_ticks(time, self._period, "seek")
-        if to > self._course.furthest:
+        if to > self.timeline.furthest:
             raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
         with self._random:
-            self._course.seek(to)
-        self._journal.check()
-        self._onlookers.show(self._glimpse)
+            self.timeline.seek(to)
+        self.event_log.check()
+        self._observers.show(self._glimpse)
+
+    # -- observing, without an effect on the run
+
+    def observe(self, observer: Observer) -> None:
+        """Calls an observer with a `Glimpse` after each tock, and after `seek`; it receives copies and can change nothing."""
+        self._observers.add(observer)
+
+    def _glimpse(self) -> Glimpse:
+        return Glimpse(self.world, self.timeline.ticks)
+
+    def listen(self, listener: Listener) -> None:
+        """Calls a listener with every event of the trace from now on; not with those that `seek` repeats.
+
+        Raises:
+            ParameterError: If nothing is traced.
+        """
+
+        def listen_aside(event: TraceEvent) -> None:
+            with self._observers.only_looking():
+                listener(event)
+
+        self.event_log.listen(listen_aside)
+
+    def traced(self, level: str = "all") -> None:
+        """Sets the level of the trace to at least this one, and keeps its events: `trace` then has them all.
+
+        Raises:
+            SimulationError: If the run has begun already.
+            ParameterError: If the level is unknown.
+        """
+        if self.timeline.begun:
+            raise SimulationError("a trace holds a run from its start on, and this one has begun already")
+        self.event_log.raise_level(level, keep=True)
+
+    def measure(self, measure: Measure) -> None:
+        """Adds a measure, which reads every physics step from the start of the run on; it computes the run's result.
+
+        Raises:
+            SimulationError: If the run has begun already, or has a measure.
+            Exception: What the measure raises, if the world lacks what it measures.
+        """
+        if self.timeline.begun or self._measure is not None:
+            raise SimulationError("a run has one measure, which looks at it from its start on")
+        measure.begin(self.world)
+        self.world.watchers.append(measure.look)
+        self._measure = measure
+
+    def result(self) -> Any:
+        """Returns the result of the measure up to now; None without one."""
+        if self._measure is None:
+            return None
+        agents = self.timeline.lockstep.agents
+        return self._measure.result(over=agents.stopped or agents.done)
+
+    def conclude(self) -> Any:
+        """Returns the result, and traces it; the run must not continue."""
+        result = self.result()
+        if result is not None:
+            self.event_log.result(self.timeline.lockstep.agents.time, asdict(result))
+            self.event_log.check()
+        return result
+
+    def record(self, path: Path | str, **facts: Any) -> Recording:
+        """Records the whole run to a new file, with every event, state, command and answer; the caller closes it.
+
+        Args:
+            path: The file; it must not exist.
+            facts: More facts of the run: plain values by names that a recording does not use itself.
+
+        Raises:
+            SimulationError: If the run has begun already, or is being recorded.
+            RecordingError: If the file exists, or cannot be made, or a fact cannot be recorded.
+        """
+        if self.timeline.begun:
+            raise SimulationError("a recording holds a run from its start on, and this one has begun already")
+        if self.event_log.recorded:
+            raise SimulationError("this run is being recorded already; what records it holds everything")
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
+        recording = Recording(path, facts_of(own, facts, [*self._embodied.values(), *self._bodiless.values()]))
+        self.event_log.record(recording)
+        recording.ending = self._end_recording
+        return recording
+
+    def _end_recording(self) -> None:
+        self.event_log.end_recording(whole=self.timeline.begun and not self.timeline.lockstep.broken)

@@ -1,4 +1,4 @@
-"""How long it takes to encode what is attended to, and when the eye moves to it."""
+"""Time to encode an attended feature, and time of the eye movement to it."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ PREPARATION = 0.135
 PROGRAMMING = 0.05
 """From then until the eye begins to move [s]. Source: the same."""
 SACCADE, PER_DEGREE = 0.02, 0.002
-"""How long the eye moves: 20 ms and 2 ms for each degree [s] [s/degree]. Source: the same (human-data)."""
+"""Duration of an eye movement: 20 ms and 2 ms for each degree [s] [s/degree]. Source: the same (human-data)."""
 
 LONGEST = 1e6
-"""No encoding takes longer [s]: for what is far aside the equation tells of years, then of more than there are numbers."""
+"""Upper bound of encoding [s]: for large angles the equation gives years, and then overflows."""
 LARGEST = 700.0
-"""The greatest exponent of which the exponential is a number."""
+"""Greatest exponent without an overflow."""
 
 
 def saccade_time(angle: float) -> float:
-    """Returns how long the eye moves over an angle [rad], in seconds."""
+    """Returns the duration of an eye movement over an angle [rad], in seconds."""
     return SACCADE + PER_DEGREE * math.degrees(abs(angle))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Emma(Configuration):
-    """Encoding that takes the longer the farther from the line of sight something is: K (-ln f) exp(k e).
+    """Encoding whose time grows with the angle from the line of sight: K (-ln f) exp(k e).
 
     Source: EMMA, Salvucci (2001), Cognitive Systems Research 1: 201-220.
     """
@@ -42,18 +42,18 @@ class Emma(Configuration):
     """k [1/degree]. Source: human-data."""
 
     frequency: Annotated[float, Gt(0), Lt(1)] = 0.5
-    """f, how frequent such things are. Ours, as ACT-R's EMMA has for things of which it knows none."""
+    """f, frequency of such objects. Source: chosen, the value of ACT-R's EMMA for objects of unknown frequency."""
 
     def encoding(self, eccentricity: float) -> float:
-        """Returns how long encoding takes at an angle off the line of sight [rad], in seconds."""
+        """Returns the time of encoding at an angle off the line of sight [rad], in seconds."""
         exponent = min(LARGEST, self.exponent * math.degrees(eccentricity))
         return min(LONGEST, -self.factor * math.log(self.frequency) * math.exp(exponent))
 
     def course(self, eccentricity: float) -> tuple[float, float | None]:
-        """Returns when something is encoded, and when the eye begins to move to it, if it does [s from the shift of attention].
+        """Returns the end of encoding, and the start of the eye movement or None [s from the shift of attention].
 
-        Encoding and the preparation of an eye movement begin together. What is encoded before the movement is prepared needs none.
-        Where the eye arrives first, what is left of the encoding goes on as fast as in the line of sight.
+        Encoding and the preparation of an eye movement begin together. If encoding ends before the preparation, the eye does not move.
+        If the eye arrives first, the rest of the encoding continues at the speed of the line of sight.
         """
         alone = self.encoding(eccentricity)
         if alone <= PREPARATION:

@@ -18,34 +18,34 @@ from actr3d.vision.units import LABEL, Metres, MetresPerSecond, Radians, units_o
 
 @dataclass(frozen=True, kw_only=True)
 class Feature:
-    """One thing that was found; its fields become the slots of a chunk.
+    """A found feature; its fields become the slots of a chunk.
 
-    A subclass is a frozen dataclass whose fields say their units by their types (`Metres`, `Radians`, `Seconds`, `Label`, …); its
-    name, in small letters, is what requests call it. A field that is None, or a label of 0, is left out of the chunk.
+    A subclass is a frozen dataclass whose fields have their units in their types (`Metres`, `Radians`, `Seconds`, `Label`, …); its
+    name, in lower case, is its name in requests. A field that is None, or a label of 0, is left out of the chunk.
     """
 
     bare: ClassVar[Mapping[str, str]] = {"distance": "<="}
-    """What a bare number in a request means, by slot: `distance=2` is `distance='<=2'`. Slots that are not here need a sign."""
+    """The comparison of a bare number in a request, by slot: `distance=2` is `distance='<=2'`. Other slots need a sign."""
     aliases: ClassVar[Mapping[str, str]] = {}
-    """Other words that requests may use for slots."""
+    """Other names of slots in requests."""
 
     salience: ClassVar[str] = "equal"
-    """What makes it salient, unless the vision module says otherwise; see `actr3d.vision.salience`."""
+    """Its default salience; see `actr3d.vision.salience`."""
 
     distance: Metres
-    """How far away on the ground: heights do not count."""
+    """Distance on the ground: heights do not count."""
     direction: Radians
-    """From straight ahead of the body's base, to the left."""
+    """Direction from straight ahead of the body's base, to the left."""
     motion: MetresPerSecond | None = None
-    """How fast its place, as seen from the body, has changed since the last look; None where it was not seen then."""
+    """Speed of its place relative to the body since the last view; None if it was not visible then."""
 
     @classmethod
     def called(cls) -> str:
-        """Returns what requests call it."""
+        """Returns its name in requests."""
         return cls.__name__.lower()
 
     def shown(self, slot: str) -> Any:
-        """Returns what a chunk has in a slot, rounded and in the units that a person reads; None where it has no such slot."""
+        """Returns a slot's value in a chunk, rounded and in readable units; None if the chunk has no such slot."""
         value = getattr(self, slot)
         unit = units_of(type(self))[slot]
         if value is None or (unit is LABEL and value == 0):
@@ -53,40 +53,40 @@ class Feature:
         return unit.shown(value) if type(value) is float else value
 
     def slots(self) -> dict[str, Any]:
-        """Returns what a chunk has of it."""
+        """Returns the slots of its chunk."""
         shown = {name: self.shown(name) for name in slot_names(type(self))}
         return {"feature": self.called(), **{name: value for name, value in shown.items() if value is not None}}
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """What tells it apart from others of its kind, from look to look: its labels."""
+        """Its identity among features of its kind, from view to view: its labels."""
         units = units_of(type(self))
         return tuple(getattr(self, name) for name in slot_names(type(self)) if units[name] is LABEL)
 
     @property
     def size(self) -> float:
-        """How large it is [m²], for its salience: width times height, where it has them."""
+        """Size [m²], for its salience: width times height, if it has them."""
         return float(getattr(self, "width", 0.0)) * float(getattr(self, "height", 0.0))
 
     @property
     def elevation(self) -> float:
-        """How far above the level of the eye it is looked at [rad]: level, where it reaches there, else at its nearest end."""
+        """Angle above eye level at which the eye looks at it [rad]: 0 if it reaches eye level, otherwise that of its nearest end."""
         top, bottom = getattr(self, "top", 0.0), getattr(self, "bottom", 0.0)
         height = min(max(0.0, bottom), top) if bottom <= top else 0.0
         return math.atan2(height, self.distance)
 
     def at_most(self, slot: str, value: Any) -> Any:
-        """Returns what a slot's value may be at most, for comparisons with `>`; more than the value where not all of it is seen."""
+        """Returns the upper bound of a slot's value, for comparisons with `>`; greater than the value if it is partly hidden."""
         return value
 
     def since(self, before: Feature, elapsed: float) -> Self:
-        """Returns it with what is known from an earlier look, `elapsed` [s] ago."""
+        """Returns a copy with its change since an earlier view, `elapsed` [s] ago."""
         x = self.distance * math.cos(self.direction) - before.distance * math.cos(before.direction)
         y = self.distance * math.sin(self.direction) - before.distance * math.sin(before.direction)
-        return self._changed(motion=math.hypot(x, y) / elapsed)
+        return self.with_values(motion=math.hypot(x, y) / elapsed)
 
-    def _changed(self, **values: Any) -> Self:
-        """Returns a copy with other values; as `replace` does, in a tenth of its time, for this is done at every look."""
+    def with_values(self, **values: Any) -> Self:
+        """Returns a copy with other values; like `replace`, in a tenth of its time, because every view needs it."""
         copy = object.__new__(type(self))
         copy.__dict__.update(self.__dict__)
         copy.__dict__.update(values)
@@ -95,12 +95,12 @@ class Feature:
 
 @cache
 def slot_names(kind: type[Feature]) -> tuple[str, ...]:
-    """Returns the slots that a chunk of a kind of features may have, besides `feature`."""
+    """Returns the names of a kind's slots besides `feature`."""
     return tuple(field.name for field in fields(kind))
 
 
 def sound(feature: Any, kind: type[Feature]) -> Feature:
-    """Returns what a modeller's detector has found, with plain numbers: no text and no thing may reach a chunk by it.
+    """Returns a feature of a modeller's detector with plain numbers: no text and no object may enter a chunk this way.
 
     Raises:
         VisionError: If it is no feature of a kind, or a field is neither a number nor True or False, or is no distance or direction.
@@ -120,15 +120,15 @@ def sound(feature: Any, kind: type[Feature]) -> Feature:
             changed[slot] = float(cast("Any", value))
         elif isinstance(value, np.generic):
             changed[slot] = value.item()
-    return feature._changed(**changed) if changed else feature
+    return feature.with_values(**changed) if changed else feature
 
 
 def off_sight(axes: NDArray[np.float64], feature: Feature) -> tuple[float, float, float]:
-    """Returns how far the eye would have to turn to look at a feature, to the left and up, and the angle between [rad].
+    """Returns the turn of the eye towards a feature, to the left and up, and the angle between [rad].
 
     Args:
-        axes: Those of the view, see `View.axes`.
-        feature: Of the same view.
+        axes: The axes of the view, see `View.axes`.
+        feature: A feature of the same view.
     """
     sight = axes[2]
     left = math.remainder(feature.direction - math.atan2(sight[1], sight[0]), 2 * math.pi)

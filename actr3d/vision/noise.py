@@ -1,4 +1,4 @@
-"""Noise of seeing: where edges are, and how far away."""
+"""Noise of vision: in the directions of edges, and in distances."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from actr3d.camera import CameraParameters, View
 
 Floats = NDArray[np.float64]
 LEAST = 0.05
-"""No distance is seen as less than this part of it, however large the noise."""
+"""Least seen fraction of a distance, however large the noise."""
 
 
 def blurred(view: View, edges: float, distances: float, seed: int) -> View:
-    """Returns a view as it is misjudged: for each object, its left and its right edges on all rows alike; all distances alike.
+    """Returns a view with noise: one error for all left edges of an object, one for its right edges, and one for all distances.
 
-    So straight edges stay straight, what is measured over many rows gets no sharper for that, and the two sides of an opening
-    stay at the same depth: otherwise it would look the wider, the farther away it is, and never narrower.
+    So straight edges stay straight, measurements over many rows are no more exact, and the two sides of an opening stay at the
+    same depth: otherwise its apparent width would grow with distance.
 
     Args:
         view: The exact one.
         edges: The standard deviation of the directions of edges [rad].
-        distances: That of all distances in this view, as a part of these.
-        seed: What the noise comes from.
+        distances: That of all distances in this view, as a fraction.
+        seed: The seed of the noise.
     """
     if not len(view.extents):
         return view
@@ -44,7 +44,7 @@ def blurred(view: View, edges: float, distances: float, seed: int) -> View:
 
 
 def _moved(x: Floats, angle: Floats, parameters: CameraParameters) -> Floats:
-    """Returns places on the screen moved to the right by angles [rad]; what leaves the screen stays at its border."""
+    """Returns places on the screen moved to the right by angles [rad]; places beyond the screen stay at its border."""
     half, part = parameters.horizontal_fov / 2, 2 * x - 1
     if parameters.retinotopic:
         span = math.log1p(half / parameters.e2)

@@ -1,4 +1,4 @@
-"""Salience: which of several features draws attention."""
+"""Salience: the choice of one feature among several."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from actr3d.errors import VisionError, did_you_mean
 from actr3d.vision.feature import Feature
 
 NEARER = 0.1
-"""Nearer than this nothing gets more salient for it [m]. Ours: an arm's thickness."""
+"""Distance below which salience no longer grows [m]. Source: chosen, an arm's thickness."""
 
 HUGE = 1e290
 
@@ -25,14 +25,14 @@ KINDS: Mapping[str, Function] = {
     "motion": lambda feature: feature.motion or 0.0,
     "equal": lambda _: 1.0,
 }
-"""What may be said of salience in a word: width times height [m²]; 1 / distance [1/m]; how fast the place changes [m/s]; 1."""
+"""Kinds of salience by word: width times height [m²]; 1 / distance [1/m]; speed of the place [m/s]; 1."""
 
 RULES = ("share", "sos")
-"""How one is chosen: with probability s_i / sum(s); or each survives with probability s_i (at most 1), then one of those is drawn."""
+"""Rules of choice: with probability s_i / sum(s); or each survives with probability s_i (at most 1), then one of those is drawn."""
 
 
 def salience_of(given: Any, what: str) -> Function:
-    """Returns the function that a word stands for, or the modeller's own.
+    """Returns the function of a word, or the given function.
 
     Raises:
         VisionError: If it is neither.
@@ -49,7 +49,7 @@ def weigh(features: Sequence[Feature], function: Function, what: str) -> list[fl
     """Returns the salience of each feature.
 
     Raises:
-        VisionError: If the function gives what is no number, or one below 0.
+        VisionError: If the function returns no number, or one below 0.
     """
     weights: list[float] = []
     for feature in features:
@@ -61,18 +61,18 @@ def weigh(features: Sequence[Feature], function: Function, what: str) -> list[fl
 
 
 def survivors(weights: Sequence[float], random: Random) -> list[int]:
-    """Returns which of several things survive, each with its salience as probability; above 1 counts as 1."""
+    """Returns the indices that survive, each with its salience as probability; above 1 counts as 1."""
     return [i for i, weight in enumerate(weights) if random.random() < weight]
 
 
 def share(weights: Sequence[float], random: Random) -> int:
-    """Returns one of several things, drawn with the share of its salience in all; where none has any, each as likely."""
+    """Returns an index, drawn in proportion to its salience; if all are 0, with equal probability."""
     if len(weights) == 1:
         return 0
     most = max(weights)
     if most <= 0:
         return random.randrange(len(weights))
-    if most > HUGE:  # their sum might be more than there are numbers
+    if most > HUGE:  # their sum might overflow
         weights = [weight / most for weight in weights]
     total = math.fsum(weights)
     at = random.random() * total
@@ -80,4 +80,4 @@ def share(weights: Sequence[float], random: Random) -> int:
         at -= weight
         if at < 0:
             return i
-    return max(i for i, weight in enumerate(weights) if weight > 0)  # what rounding left over
+    return max(i for i, weight in enumerate(weights) if weight > 0)  # after rounding

@@ -1,4 +1,4 @@
-"""One request to vision, and what came of it."""
+"""One request to vision, and its result."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 from actr3d.actr.modules.port import Reading
 from actr3d.camera import View
 from actr3d.vision.feature import Feature
-from actr3d.vision.query import Query, Test, refusal
+from actr3d.vision.request_parser import Query, Test, refusal
 from actr3d.vision.salience import Function, share, survivors, weigh
 
 
 class Search(Reading):
-    """A request that is under way; `yield` it to wait until it is over."""
+    """A request in progress; `yield` it to wait until it is over."""
 
     __slots__ = (
         "again",
@@ -34,46 +34,46 @@ class Search(Reading):
         "why",
     )
     noticed: Sequence[Feature]
-    """What is as was asked for."""
+    """The features that pass all tests."""
     weights: Sequence[float]
-    """How salient each of these is."""
+    """The salience of each."""
     refused: list[tuple[Feature, Test]]
-    """What is not, and what it fails."""
+    """The other features, with the test that each fails."""
     chosen: int | None
-    """Which of those noticed is brought."""
+    """The index of the chosen feature in `noticed`."""
     why: str | None
-    """Why none is brought, though some are noticed."""
+    """Why none is chosen, although some are noticed."""
     outcome: str
-    """What came of it, in a word."""
+    """The result, in a word."""
     again: bool
-    """Whether it has looked, and waits for a second view, to see whether what it has chosen is still there."""
+    """Whether it waits for a second view, to check whether the chosen feature is still there."""
     noise: int | None
-    """What the noise of its views comes from, once it has one."""
+    """The seed of the noise in its views; None before the first."""
     view: View | None
-    """What was seen when it looked; for who looks on, no mind gets it."""
+    """The exact view; for observers only, not for agents."""
     perceived: View | None
-    """The same as it was misjudged, in which the features were found."""
+    """The view with noise, in which the features were found."""
 
     def __init__(self, query: Query, *, bottom_up: bool, begun: int, due: int) -> None:
         super().__init__("view")
         self.query = query
         self.bottom_up = bottom_up
         self.begun = begun
-        """When it was begun [us]."""
+        """Time of its start [us]."""
         self.due = due
-        """When it ends [us], unless the view comes later."""
+        """Time of its end [us], unless the view comes later."""
         self.seen = begun
-        """When its view was taken in [us]."""
+        """Time of its view [us]."""
         self.clear()
         self._value = None
 
     def clear(self) -> None:
-        """Forgets what it has found; it begins anew."""
+        """Resets its results, before it begins again."""
         self.noticed, self.weights, self.refused, self.chosen, self.why, self.outcome = (), (), [], None, None, "pending"
         self.again, self.noise, self.view, self.perceived = False, None, None, None
 
     def sift(self, features: Sequence[Feature], salience: Function) -> None:
-        """Notes what of the features is as was asked for and how salient it is, and what is not.
+        """Divides features into those that pass all tests, with their salience, and the others.
 
         Raises:
             VisionError: If a salience is no number from 0 on.
@@ -102,7 +102,7 @@ class Search(Reading):
             self.why = "none survived"
 
     def check(self, features: Sequence[Feature]) -> None:
-        """Takes what was chosen as it is now; nothing, if it is no longer among the features, or no longer as was asked for."""
+        """Updates the chosen feature from a second view; drops it if it is gone or fails a test now."""
         chosen = self.feature
         if chosen is None or self.chosen is None:
             return
@@ -115,15 +115,15 @@ class Search(Reading):
 
     @property
     def feature(self) -> Feature | None:
-        """What is brought; None where nothing was found."""
+        """The chosen feature; None if there is none."""
         return None if self.chosen is None else self.noticed[self.chosen]
 
     def describe(self) -> str:
-        """Names what was asked."""
+        """Returns a description of the request."""
         return f"search for '{self.query.asked}'"
 
     def to_data(self) -> dict[str, Any]:
-        """Returns all of it as plain values, for the trace."""
+        """Returns the search as plain values, for the trace."""
         return {
             "asked": self.query.asked,
             "bottom_up": self.bottom_up,

@@ -1,4 +1,4 @@
-"""Units: how numbers are inside, and how a person reads and writes them."""
+"""Units: conversion of numbers between internal values and chunks."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 @dataclass(frozen=True)
 class Unit:
-    """What a number stands for.
+    """The unit of a number.
 
     Args:
-        name: What a person calls the unit.
-        factor: How many of them 1 is inside.
-        digits: How many decimals a chunk has.
+        name: Its name in messages.
+        factor: Value in a chunk of an internal 1.
+        digits: Number of decimals in a chunk.
     """
 
     name: str
@@ -25,11 +25,11 @@ class Unit:
 
     @property
     def measures(self) -> bool:
-        """Whether it is of something measured, so that a whole number, too, is meant as one."""
+        """Whether it is a unit of measurement, so that integers become floats."""
         return self.name not in ("", "label", "True or False")
 
     def shown(self, value: float) -> float:
-        """Returns a number as chunks have it."""
+        """Returns a number for a chunk."""
         return round(value * self.factor, self.digits) + 0.0  # no -0.0
 
 
@@ -39,15 +39,15 @@ PLAIN = Unit("")
 FLAG = Unit("True or False")
 
 Metres = Annotated[float, METRE]
-"""A length; chunks have it in millimetres' precision."""
+"""A length; rounded to millimetres in chunks."""
 Radians = Annotated[float, DEGREE]
-"""An angle [rad]; chunks and requests have it in degrees, to a tenth."""
+"""An angle [rad]; in degrees, rounded to a tenth, in chunks and requests."""
 Seconds = Annotated[float, SECOND]
-"""A time; chunks have it to the millisecond."""
+"""A time; rounded to milliseconds in chunks."""
 MetresPerSecond = Annotated[float, SPEED]
-"""A speed; chunks have it to the millimetre a second."""
+"""A speed; rounded to millimetres per second in chunks."""
 Label = Annotated[int, LABEL]
-"""An opaque label of an object, as a view has it; 0 stands for no object, and is left out of chunks."""
+"""An opaque label of an object in a view; 0 means no object, and is left out of chunks."""
 
 
 @cache
@@ -58,7 +58,7 @@ def units_of(thing: type | Callable[..., Any]) -> dict[str, Unit]:
 
 @cache
 def bounds_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
-    """Returns what stands beside the units in the types of a detector's parameters, such as `Ge(0)`, by name."""
+    """Returns the bounds in the types of a detector's parameters, such as `Ge(0)`, by name."""
     hints = get_type_hints(function, include_extras=True)
     return {name: get_args(hint)[1:] if get_origin(hint) is Annotated else () for name, hint in hints.items()}
 

@@ -1,12 +1,13 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
+from actr3d.world import actuators, sensors
 from actr3d.world.bodies import Car, ImportedBody, Load, Mannequin
 from actr3d.world.body import Body, BodyState
 from actr3d.world.bounding_box import BoundingBox
 from actr3d.world.imported import Imported
 from actr3d.world.mesh import Mesh
-from actr3d.world.parts import Aperture, Floor, Loose, Track, Wall
 from actr3d.world.scene import Scene
+from actr3d.world.scene_objects import Aperture, Floor, Loose, Track, Wall
 from actr3d.world.world import World, WorldState
 
 __all__ = [
@@ -27,4 +28,6 @@ __all__ = [
     "Wall",
     "World",
     "WorldState",
+    "actuators",
+    "sensors",
 ]

@@ -1,9 +1,9 @@
-"""What the description of a body says of it beyond what the compiled model shows."""
+"""The description of a body beyond what the compiled model contains."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Protocol, runtime_checkable
+from typing import Annotated, Protocol, TypeVar, runtime_checkable
 
 from annotated_types import Gt
 
@@ -13,83 +13,98 @@ from actr3d.world.scene import Part
 
 @dataclass(frozen=True, kw_only=True)
 class Steering(Configuration):
-    """How a driver acts on a car."""
+    """How a driver controls a car."""
 
     ratio: Annotated[float, Gt(0)]
     """Turns of the steering wheel for one turn of the road wheel."""
 
     rate: Annotated[float, Gt(0)]
-    """How fast the steering wheel turns [rad/s]."""
+    """Greatest speed of the steering wheel [rad/s]."""
 
     drive: Annotated[float, Gt(0)]
-    """What the engine pushes with at full throttle [N]."""
+    """Force of the engine at full throttle [N]."""
 
     brake: Annotated[float, Gt(0)]
-    """What the brakes hold back with when fully pressed [N]."""
+    """Force of the brakes when fully pressed [N]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class NamedMovement(Configuration):
-    """A movement that a body has a name for: some joints that turn together."""
+    """A named movement of a body: some joints that turn together."""
 
     name: str
-    """What it is called: `extend_shoulder`."""
+    """Its name: `extend_shoulder`."""
 
     side: str | None = None
-    """On which side, where there is one movement of that name on each."""
+    """Its side, if there is one movement of that name on each side."""
 
     joints: tuple[tuple[str, float], ...]
-    """The joints, and which way each of them turns: 1 where a positive angle of the movement is one of the joint, or -1."""
+    """The joints and their directions: 1 if a positive angle of the movement is a positive angle of the joint, or -1."""
 
     to: float | None = None
-    """To which angle it always brings them [rad]; None where whoever moves says to which."""
+    """Its fixed target angle [rad]; None if each command gives the angle."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Anatomy:
-    """Names what a `Body` cannot find by looking at the compiled model. Names are those of MuJoCo's elements."""
+    """Describes what a `Body` cannot find in the compiled model. Names are those of MuJoCo's elements."""
 
     root: str
     """The MuJoCo body that carries all others."""
 
     prefix: str
-    """What the names of its elements begin with; left out in the names that a `Body` gives them."""
+    """The start of the names of its elements; a `Body` leaves it out in its own names."""
 
     base: str = "base"
-    """What the root segment is called."""
+    """The name of the root segment."""
 
     eye: str | None = None
-    """The site it sees from, which a camera of the same name shares; None has no eye."""
+    """The site of its eye, which a camera of the same name shares; None for no eye."""
 
     skin: tuple[str, ...] | None = None
     """The geoms that feel; None for all that can touch something."""
 
     servos: tuple[str, ...] = ()
-    """Actuators that hold a speed; their gains are fitted to the inertia they move."""
+    """Velocity servos; their gains are fitted to the inertia they move."""
 
     hands: tuple[str, ...] = ()
-    """Weld equalities, one a hand, that can hold an object."""
+    """Weld equalities, one for each hand, that can hold an object."""
 
     fastest: tuple[float, float, float] | None = None
-    """The fastest that it can be told to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None has no limits."""
+    """The greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None without limits."""
 
     push: tuple[str, str, str] | None = None
-    """The servos that walk forward, to the left and turn; None cannot walk."""
+    """The servos that walk forward, to the left and turn; None if it cannot walk."""
 
     movements: tuple[NamedMovement, ...] = ()
-    """Movements that have names."""
+    """Its named movements."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Of sensors that are never exact: the word and the standard deviation of every number it reads, in its unit."""
+    """Noise of sensors: the word and the standard deviation of every number of the reading, in its unit."""
 
     steering: Steering | None = None
-    """How it is driven; None cannot be driven."""
+    """How it is driven; None if it is no vehicle."""
+
+    shoulders: float | None = None
+    """Width across its shoulders [m]; None for a body without shoulders."""
 
 
 @runtime_checkable
 class Embodied(Part, Protocol):
-    """A part of a scene that is a body: a mind can live in it."""
+    """A part of a scene that is a body, for an agent to control."""
 
     def anatomy(self) -> Anatomy:
-        """Returns what a `Body` needs to know of it."""
+        """Returns its description for a `Body`."""
         ...
+
+
+K = TypeVar("K", bound=type[Embodied])
+
+BODY_KINDS: dict[str, type[Embodied]] = {}
+"""The kinds of bodies by class name."""
+
+
+def body_kind(kind: K) -> K:
+    """Registers a class as a kind of body."""
+    BODY_KINDS[kind.__name__] = kind
+    return kind

@@ -1,4 +1,4 @@
-"""The exact bounding box of a body: how far each of its shapes reaches along three axes."""
+"""The exact bounding box of a body, from the extent of each shape along three axes."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ class BoundingBox:
 class Extent:
     """Computes bounding boxes of some geoms.
 
-    A shape reaches from its centre along a unit vector u, given in its own frame, as far as its support function says:
+    The extent of a shape from its centre along a unit vector u, given in its own frame, is its support function:
     sphere r; capsule r + h|uz|; ellipsoid |S u|; cylinder r sqrt(ux^2 + uy^2) + h|uz|; box sx|ux| + sy|uy| + sz|uz|.
-    One formula covers them: round + |E u| + B.|u|. Meshes and height fields reach as far as their farthest vertex.
+    One formula covers them: round + |E u| + B.|u|. The extent of a mesh or height field is that of its farthest vertex.
 
     Args:
         model: The compiled scene.
-        data: Its state, whose geometry is up to date whenever it is asked.
-        geoms: Which.
+        data: Its state, whose geometry is up to date in each call.
+        geoms: The geoms.
     """
 
     def __init__(self, model: MjModel, data: MjData, geoms: NDArray[np.intp]) -> None:
@@ -68,20 +68,20 @@ class Extent:
         """Returns the box around the geoms, and some more, in a frame at `origin` with `axes` (3, 3) as columns.
 
         Raises:
-            WorldError: If there is nothing to be put in a box.
+            WorldError: If there is no geom.
         """
         lower, upper = self._geoms.reach(self._data, axes)
         if also:
             low, high = _Shapes(self._model, np.array(also, dtype=np.intp)).reach(self._data, axes)
             lower, upper = np.minimum(lower, low), np.maximum(upper, high)
         if not np.isfinite(lower).all():
-            raise WorldError("nothing that can be seen or touched has a bounding box here")
+            raise WorldError("no visible or touchable geom has a bounding box here")
         at = origin @ axes
         return BoundingBox(lower=tuple((lower - at).tolist()), upper=tuple((upper - at).tolist()))
 
 
 class _Shapes:
-    """Some geoms, with the numbers of the formula (n, 3) each, and those that are clouds of vertices."""
+    """The numbers of the formula of some geoms, (n, 3) each, and the vertices of meshes and height fields."""
 
     def __init__(self, model: MjModel, geoms: NDArray[np.intp]) -> None:
         there = [int(geom) for geom in geoms if _there(model, int(geom))]
@@ -107,7 +107,7 @@ class _Shapes:
         return lower, upper
 
     def _numbers(self) -> tuple[Any, Any, Any]:
-        """Returns the numbers of the formula, anew where a geom has been resized."""
+        """Returns the numbers of the formula; computes them again after a geom was resized."""
         sizes = self._model.geom_size[self._plain]
         if sizes.tobytes() != self._sizes:
             self._sizes = sizes.tobytes()
@@ -121,7 +121,7 @@ class _Shapes:
 
 
 def _there(model: MjModel, geom: int) -> bool:
-    """Returns whether a geom can be seen or touched, and has an end."""
+    """Returns whether a geom is visible or has contacts, and is finite."""
     material = int(model.geom_matid[geom])
     alpha = model.geom_rgba[geom, 3] if material < 0 else model.mat_rgba[material, 3]
     touches = model.geom_contype[geom] or model.geom_conaffinity[geom]

@@ -3,58 +3,58 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from actr3d.world.world import World
+from actr3d.world.physics import Physics
 
 REACH = 0.05
-"""How near an object must be to a hand to be held [m]. Ours, the length of a finger's grip."""
+"""Greatest distance between a hand and an object that it can hold [m]. Source: chosen, the length of a finger's grip."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Held:
-    """What a hand holds, and how."""
+    """An object in a hand, and its pose there."""
 
     object: int
-    """The MuJoCo body that it holds."""
+    """The MuJoCo body of the object."""
 
     pose: tuple[float, ...]
-    """Where the object is in the frame of the hand's segment: position (3,) [m] and quaternion (4,)."""
+    """Pose of the object in the frame of the hand's segment: position (3,) [m] and quaternion (4,)."""
 
 
 class Hand:
-    """One hand: a weld equality of the compiled model, which is inactive while it is empty.
+    """One hand: a weld equality of the compiled model, which is inactive while the hand is empty.
 
-    Whether it is active is part of the physics state; what it ties stands in the compiled model. See `World.state` for both.
+    Whether the weld is active is part of the physics state; the two objects that it joins are part of the compiled model. See
+    `World.state` for both.
 
     Args:
-        world: Where it is.
+        physics: The compiled scene and its state.
         name: Of the weld, and of the hand's geom.
     """
 
-    def __init__(self, world: World, name: str) -> None:
-        self._world = world
-        self._weld = int(world.mj_model.equality(name).id)
-        self._geom = int(world.mj_model.geom(name).id)
-        self._segment = int(world.mj_model.eq_obj1id[self._weld])
+    def __init__(self, physics: Physics, name: str) -> None:
+        self._physics = physics
+        self._weld = int(physics.mj_model.equality(name).id)
+        self._geom = int(physics.mj_model.geom(name).id)
+        self._segment = int(physics.mj_model.eq_obj1id[self._weld])
         self.held: Held | None = None
         self.geoms: tuple[int, ...] = ()
-        """The geoms of what it holds."""
+        """The geoms of the held object."""
 
     def reaches(self, object: int) -> bool:
         """Returns whether a MuJoCo body is near enough to be held; positions must be up to date."""
-        model, data = self._world.mj_model, self._world.mj_data
+        model, data = self._physics.mj_model, self._physics.mj_data
         geoms = _geoms_of(model, object)
         return any(mujoco.mj_geomDistance(model, data, self._geom, geom, 2 * REACH, None) <= REACH for geom in geoms)
 
     def grasp(self, object: int) -> None:
-        """Ties a MuJoCo body to the hand as it is now, and takes its weight; positions must be up to date."""
-        data = self._world.mj_data
+        """Welds a MuJoCo body to the hand in its present pose, and carries its weight; positions must be up to date."""
+        data = self._physics.mj_data
         turn = data.xmat[self._segment].reshape(3, 3)
         position = (data.xpos[object] - data.xpos[self._segment]) @ turn
         back, quaternion = np.zeros(4), np.zeros(4)
@@ -62,7 +62,7 @@ class Hand:
         mujoco.mju_mulQuat(quaternion, back, data.xquat[object])
         held = Held(object=object, pose=(*position.tolist(), *quaternion.tolist()))
         self.restore(held)
-        model: Any = self._world.mj_model
+        model: Any = self._physics.mj_model
         model.eq_obj2id[self._weld] = object
         model.eq_data[self._weld, :3] = 0
         model.eq_data[self._weld, 3:10] = held.pose
@@ -70,25 +70,27 @@ class Hand:
         data.xfrc_applied[object, :3] = -model.opt.gravity * model.body_mass[object]
 
     def release(self) -> None:
-        """Lets go of what it holds, if anything; another hand that holds it too goes on carrying it."""
-        others = {
-            hand.held.object for body in self._world.bodies.values() for hand in body.hands.values() if hand is not self and hand.held
-        }
-        if self.held is not None and self.held.object not in others:
-            self._world.mj_data.xfrc_applied[self.held.object, :3] = 0
-        self._world.mj_data.eq_active[self._weld] = 0
+        """Releases the held object, if any; another hand that holds it too still carries it."""
+        held = self.held
+        self._physics.mj_data.eq_active[self._weld] = 0
         self.restore(None)
+        if held is not None and held.object not in self._physics.grasped.values():
+            self._physics.mj_data.xfrc_applied[held.object, :3] = 0
 
     def restore(self, held: Held | None) -> None:
-        """Notes what is held; the weld itself is part of the world's state."""
+        """Notes the held object; the weld itself is part of the world's state."""
         self.held = held
-        self.geoms = () if held is None else _geoms_of(self._world.mj_model, held.object)
+        self.geoms = () if held is None else _geoms_of(self._physics.mj_model, held.object)
+        if held is None:
+            self._physics.grasped.pop(self._weld, None)
+        else:
+            self._physics.grasped[self._weld] = held.object
 
     def carry(self) -> None:
-        """Puts what it holds where the hand is, at rest, after the body was put elsewhere; positions must be up to date."""
+        """Puts the held object back in the hand, at rest, after the body was moved at once; positions must be up to date."""
         if self.held is None:
             return
-        model, data = self._world.mj_model, self._world.mj_data
+        model, data = self._physics.mj_model, self._physics.mj_data
         position, quaternion = np.array(self.held.pose[:3]), np.array(self.held.pose[3:])
         joint = int(model.body_jntadr[self.held.object])
         q, v = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])

@@ -16,24 +16,24 @@ from mujoco import MjSpec
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.saying import warn_modeller
-from actr3d.world.files import Files, Folder, digest, resolved
-from actr3d.world.imported_document import Document, read_imported
+from actr3d.world.asset_folder import Files, Folder, digest, resolved
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
-from actr3d.world.parts import Name
+from actr3d.world.mjcf_rewrite import Document, read_imported
+from actr3d.world.scene_objects import Name
 
 HIDDEN_GROUP = 3
-"""From this geom group on, MuJoCo's viewers draw nothing: files keep there what is only for contacts."""
+"""First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Imported(Configuration):
-    """What an MJCF or URDF file describes, put somewhere in a scene, all its names with `<name>_` before them.
+    """The content of an MJCF or URDF file at a place in a scene, with the prefix `<name>_` before all its names.
 
-    The file, with those it includes and mentions, is read once, when the part is described, and only from inside its folder.
-    Meshes may be of any format that `Mesh` reads, and are repaired as there. What speaks of the whole world (`option`, `size`,
-    `statistic`, `visual`, `keyframe`) is left out: the scene's holds, and a warning says so of `option` and `keyframe`. Skins and
-    soft things (flexes) are drawn and, soft things, touched; the Geometric Camera warns that it does not see them. Shapes that are
-    only for contacts are not seen: in MJCF those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
+    The file and the files that it mentions are read once, when the part is made, and only from inside its folder.
+    Meshes may have any format that `Mesh` reads, and are repaired as there. Elements about the whole world (`option`, `size`,
+    `statistic`, `visual`, `keyframe`) are left out: the scene's own apply, with a warning for `option` and `keyframe`. Skins and
+    soft objects (flexes) are drawn, and soft objects have contacts; the Geometric Camera warns that it does not see them. Shapes for
+    contacts only are invisible: in MJCF those of the groups 3 to 5, in URDF the `collision` of a link that has a `visual`.
     """
 
     name: Name
@@ -46,34 +46,34 @@ class Imported(Configuration):
     """MJCF or URDF itself, instead of a path."""
 
     folder: str | Path | None = None
-    """The folder that all its files lie in, for files that reach beyond their own folder; `None` is the folder of the file, for
+    """The folder of all its files, for files that refer to files outside their own folder; `None` is the folder of the file, for
     `package://NAME/…` the folder NAME above it. Without a path, files are read only with a folder."""
 
     files: Files | None = field(default=None, repr=False)
-    """Names and contents of the file and of those it mentions; `None` reads them now. Given, nothing is read from the disk."""
+    """Names and contents of the file and of those that it mentions; `None` reads them now. If given, nothing is read from the disk."""
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where its origin is at the start, (x, y, z) [m]."""
+    """Its origin at the start, (x, y, z) [m]."""
 
     heading: float = 0.0
-    """How it is turned about the vertical at the start [rad]."""
+    """Its rotation about the vertical at the start [rad]."""
 
     quaternion: Quaternion | None = None
-    """How it is turned at the start, (w, x, y, z), instead of a heading."""
+    """Its orientation at the start, (w, x, y, z), instead of a heading."""
 
     free: bool = False
-    """Whether its one root body gets a free joint, `<name>_free`; URDF cannot say that a robot is not fixed to the ground."""
+    """Whether its one root body gets a free joint, `<name>_free`; URDF cannot express that a robot is not fixed to the ground."""
 
     eye: str | None = None
-    """The site in the file that is its eye; `None` for what does not see."""
+    """The site in the file that is its eye; `None` for none."""
 
     def __post_init__(self) -> None:
-        """Checks the fields, reads the files and compiles what they describe, alone.
+        """Checks the fields, reads the files and compiles their content, alone.
 
         Raises:
             ConfigurationError: If a field is wrong.
-            WorldError: If the file, or one that it mentions, cannot be read or compiled; says the file and line.
-            ModelWarning: (a warning) Says what was repaired or left out.
+            WorldError: If the file, or one that it mentions, cannot be read or compiled; with file and line.
+            ModelWarning: (a warning) If something was repaired or left out.
         """
         super().__post_init__()
         orientation(f"Imported '{self.name}'", self.heading, self.quaternion)
@@ -93,18 +93,18 @@ class Imported(Configuration):
 
     @property
     def prefix(self) -> str:
-        """What stands before each name of the file in the scene."""
+        """The prefix of each name of the file in the scene."""
         return f"{self.name}_"
 
     def roots(self) -> tuple[str, ...]:
-        """Returns the names in the file of the bodies that stand in the world itself; empty for one without a name."""
+        """Returns the names in the file of the bodies directly in the world; empty for one without a name."""
         return tuple(body.name for body in _specification(_document(self.files or ()), self.free).worldbody.bodies)
 
     def add_to(self, mj_spec: MjSpec) -> None:
-        """Attaches it, turned and placed."""
+        """Attaches it at its place and orientation."""
         frame = mj_spec.worldbody.add_frame(pos=self.position, quat=orientation("", self.heading, self.quaternion))
         described = _specification(_document(self.files or ()), self.free)
-        _name_what_has_none(described)
+        _name_unnamed(described)
         mj_spec.attach(described, prefix=self.prefix, frame=frame)
 
     def _read(self) -> Files:
@@ -132,7 +132,7 @@ def _encoded(text: str) -> bytes:
 
 
 def _package_folder(path: Path) -> Path:
-    """Returns the folder of a file; of a file that names a ROS package that it lies in, that package's folder."""
+    """Returns the folder of a file; if the file names a ROS package that contains it, the folder of the package."""
     packages = set(re.findall(rb"(?:package|model)://([^/\"']+)/", path.read_bytes())) if path.is_file() else set[bytes]()
     above = [folder for folder in path.parents if folder.name.encode() in packages]
     return above[0] if above else path.parent
@@ -145,7 +145,7 @@ def _document(files: Files) -> Document:
 
 @lru_cache(maxsize=64)
 def _checked(files: Files, free: bool, eye: str | None) -> tuple[str, ...]:
-    """Compiles what files describe, alone, so that errors speak of them; returns what is to be said."""
+    """Compiles the content of files, alone, so that errors refer to them; returns remarks."""
     document = _document(files)
     mj_spec = _specification(document, free)
     sites = [site.name for site in mj_spec.sites]
@@ -180,8 +180,8 @@ def _specification(document: Document, free: bool) -> MjSpec:
     return mj_spec
 
 
-def _name_what_has_none(mj_spec: MjSpec) -> None:
-    """Names what stands in the world itself, so that who touches it can say what it is: `body_0`, `geom_0`, `geom_1`, …"""
+def _name_unnamed(mj_spec: MjSpec) -> None:
+    """Names unnamed elements directly in the world, so that contacts can name them: `body_0`, `geom_0`, `geom_1`, …"""
     for kind, things, all_things in (("body", mj_spec.worldbody.bodies, mj_spec.bodies), ("geom", mj_spec.worldbody.geoms, mj_spec.geoms)):
         taken = {thing.name for thing in all_things}
         free = (name for name in (f"{kind}_{number}" for number in count()) if name not in taken)
@@ -190,7 +190,7 @@ def _name_what_has_none(mj_spec: MjSpec) -> None:
 
 
 def _hide(geoms: list[Any], urdf: bool) -> None:
-    """Makes what is only for contacts invisible to rays and viewers."""
+    """Hides geoms for contacts only from rays and viewers."""
     seen = [geom for geom in geoms if geom.contype == 0 and geom.conaffinity == 0]
     for geom in geoms:
         if (urdf and seen and geom not in seen) or (not urdf and geom.group >= HIDDEN_GROUP):
@@ -200,7 +200,7 @@ def _hide(geoms: list[Any], urdf: bool) -> None:
 
 
 def _said(error: Exception, document: Document) -> str:
-    """Returns MuJoCo's message on one line, with the modeller's file and line in place of those of our text."""
+    """Returns MuJoCo's message on one line, with the modeller's file and line instead of those of the generated text."""
 
     def origin(found: re.Match[str]) -> str:
         number = int(found[1])

@@ -1,4 +1,4 @@
-"""A mesh from a file, as a part of a scene: seen as its true triangles, met as convex shapes."""
+"""A mesh from a file, as a part of a scene: visible with its true triangles, with contacts of convex shapes."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from numpy.typing import NDArray
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, MeshError
 from actr3d.saying import warn_modeller
-from actr3d.world.convex import convex_parts
-from actr3d.world.files import Files, Folder, digest
-from actr3d.world.mesh_files import Triangles, read_triangles
-from actr3d.world.parts import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
-from actr3d.world.surface import Surface, check_extent, surface
+from actr3d.world.asset_folder import Files, Folder, digest
+from actr3d.world.convex_decomposition import convex_parts
+from actr3d.world.mesh_loading import Triangles, read_triangles
+from actr3d.world.mesh_repair import Surface, check_extent, surface
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
 
 Quaternion = tuple[float, float, float, float]
 
 UNSEEN = {"rgba": (0.0, 0.0, 0.0, 0.0), "group": 3}
-"""What makes a geom for contacts invisible: rays pass what has alpha 0, MuJoCo's viewers do not draw group 3."""
+"""Options of an invisible geom for contacts: rays ignore alpha 0, MuJoCo's viewers do not draw group 3."""
 
 GREY = (0.6, 0.6, 0.6, 1.0)
-"""The colour of a mesh that has none of its own."""
+"""The default colour of a mesh."""
 
 
 def orientation(whose: str, heading: float, quaternion: Quaternion | None) -> Quaternion:
-    """Returns the unit quaternion (w, x, y, z) of a heading [rad] or of a quaternion, of which one may be given.
+    """Returns the unit quaternion (w, x, y, z) of a heading [rad] or of a quaternion; only one may be given.
 
     Raises:
         ConfigurationError: If both are given, or the quaternion is 0.
@@ -50,57 +50,57 @@ def orientation(whose: str, heading: float, quaternion: Quaternion | None) -> Qu
 class Mesh(Configuration):
     """A mesh from a file of any format that trimesh reads: STL, OBJ, PLY, OFF, GLB, glTF; 3MF and DAE with the extra `formats`.
 
-    The file, with those it mentions, is read once, when the mesh is described. What is wrong with it and can be repaired is
-    repaired, and a `ModelWarning` says how; anything else is a `MeshError`. Textures are not used: it has one colour.
+    The file and the files that it mentions are read once, when the mesh is made. Defects are repaired if possible, with a
+    `ModelWarning`; others raise a `MeshError`. Textures are not used: it has one colour.
     """
 
     name: Name
     """Its name in the scene. The shapes for contacts are `<name>_hull`, or `<name>_part_0`, `<name>_part_1`, …"""
 
     path: str | Path
-    """The file; a relative path is as seen from the working directory. What it mentions is read only from its folder."""
+    """The file; a relative path starts at the working directory. Files that it mentions are read only from its folder."""
 
     files: Files | None = field(default=None, repr=False)
-    """Names and contents of the file and of those that it mentions; `None` reads them now. Given, nothing is read from the disk."""
+    """Names and contents of the file and of those that it mentions; `None` reads them now. If given, nothing is read from the disk."""
 
     scale: Length | tuple[Length, Length, Length] = 1.0
-    """Metres for one unit of the file, the same for all axes or one each (x, y, z): 0.001 for a file in millimetres."""
+    """Metres per unit of the file, for all axes or for each (x, y, z): 0.001 for a file in millimetres."""
 
     up: Literal["y", "z"] | None = None
-    """Which axis of the file points up; `None` is y for glTF and GLB, which say so, and z for all others."""
+    """The axis of the file that points up; `None` is y for glTF and GLB, by their standard, and z for all others."""
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where the origin of the file is at the start, (x, y, z) [m]."""
+    """Position of the file's origin at the start, (x, y, z) [m]."""
 
     heading: float = 0.0
-    """How it is turned about the vertical at the start [rad]."""
+    """Its rotation about the vertical at the start [rad]."""
 
     quaternion: Quaternion | None = None
-    """How it is turned at the start, (w, x, y, z), instead of a heading."""
+    """Its orientation at the start, (w, x, y, z), instead of a heading."""
 
     mass: Length | None = None
-    """[kg], spread evenly over its volume (over its convex hull where it is not closed); `None` fixes it in its place."""
+    """[kg], spread evenly over its volume (over its convex hull if it is not closed); `None` fixes it in its place."""
 
     collision: Literal["hull", "parts", "none"] = "hull"
-    """What meets other bodies: its convex hull, convex parts that follow its hollows, or nothing.
-    Parts are slow to make, and then kept in the user's cache folder."""
+    """Its shape for contacts: its convex hull, convex parts that follow its hollows, or none.
+    Parts are slow to make, and then cached in the user's cache folder."""
 
     coarseness: Annotated[float, Ge(0.01), Le(1)] = 0.05
-    """For `parts`: how far they may differ from it, as a share of its size. Source of the default: CoACD."""
+    """For `parts`: their greatest difference from it, as a fraction of its size. Source of the default: CoACD."""
 
     seed: Annotated[int, Ge(0)] = 0
-    """For `parts`: of the search for good cuts."""
+    """For `parts`: the seed of the search for good cuts."""
 
     colour: Colour | None = None
     """Red, green, blue, alpha in 0 to 1; `None` is the colour of its largest piece in the file, grey if that has none."""
 
     def __post_init__(self) -> None:
-        """Checks the fields, reads the files and brings the triangles in order.
+        """Checks the fields, reads the files and repairs the triangles.
 
         Raises:
             ConfigurationError: If a field is wrong.
-            MeshError: If the file cannot be read, or is not fit for a world; says why.
-            ModelWarning: (a warning) Says what was repaired.
+            MeshError: If the file cannot be read, or is unfit for a world; with the reason.
+            ModelWarning: (a warning) If something was repaired.
         """
         super().__post_init__()
         orientation(f"Mesh '{self.name}'", self.heading, self.quaternion)
@@ -127,7 +127,7 @@ class Mesh(Configuration):
         return digest(self._source.files)
 
     def add_to(self, mj_spec: MjSpec) -> None:
-        """Adds a body with one geom that is seen and, unless there is no collision, others that are met."""
+        """Adds a body with one visible geom and, unless collision is none, others for contacts."""
         triangles, ordered = _read(self._source)
         body = mj_spec.worldbody.add_body(name=self.name, pos=self.position, quat=orientation("", self.heading, self.quaternion))
         if self.mass is not None:
@@ -145,12 +145,12 @@ class Mesh(Configuration):
             contype=0,
             conaffinity=0,
         )
-        met = {**UNSEEN, **({"solref": WALL_SOLREF} if self.mass is None else {})}
+        hidden = {**UNSEEN, **({"solref": WALL_SOLREF} if self.mass is None else {})}
         if self.collision == "hull":
-            body.add_geom(name=f"{self.name}_hull", type=mjtGeom.mjGEOM_MESH, meshname=self.name, mass=0, **met)
+            body.add_geom(name=f"{self.name}_hull", type=mjtGeom.mjGEOM_MESH, meshname=self.name, mass=0, **hidden)
         elif self.collision == "parts":
             for number, corners in enumerate(self._parts()):
-                _add_geom(mj_spec, body, f"{self.name}_part_{number}", corners, None, **met)
+                _add_geom(mj_spec, body, f"{self.name}_part_{number}", corners, None, **hidden)
 
     @property
     def _source(self) -> _Source:
@@ -166,7 +166,7 @@ class Mesh(Configuration):
 
 @dataclass(frozen=True, kw_only=True)
 class _Source:
-    """What the triangles depend on; the same mesh in several scenes, and several times in one, is worked out once."""
+    """All that the triangles depend on: the key of the cache for meshes that occur several times."""
 
     files: Files
     up: str | None
@@ -195,6 +195,6 @@ def _add_geom(mj_spec: MjSpec, body: Any, name: str, vertices: Any, faces: Any, 
     mesh.uservert = vertices.ravel()
     if faces is not None:
         mesh.userface = faces.ravel()
-    # The body has its mass already; of a surface, MuJoCo asks no volume.
+    # The body has its mass already; for a shell, MuJoCo needs no volume.
     mesh.inertia = mjtMeshInertia.mjMESH_INERTIA_SHELL
     body.add_geom(name=name, type=mjtGeom.mjGEOM_MESH, meshname=name, mass=0, **options)

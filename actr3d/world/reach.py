@@ -1,38 +1,46 @@
-"""How far points of a body can be from what carries them, and so how far they go when a joint moves; in any posture, at most."""
+"""Upper bounds, over all postures: distances of points of a body from the MuJoCo bodies that carry them, and their way per joint motion."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from mujoco import mjtJoint
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from actr3d.world.body import Body
+
+def radius(model: Any, root: int, geoms: NDArray[np.intp]) -> float:
+    """Returns the greatest distance of any point of a body's geoms from its root [m].
+
+    Args:
+        model: The compiled scene.
+        root: The MuJoCo body that carries all others of the body.
+        geoms: The geoms of the body that can touch something.
+    """
+    return max((_length(model, geom, root, np.zeros(3)) for geom in geoms.tolist()), default=0.0)
 
 
-def radius(body: Body) -> float:
-    """Returns how far the farthest point of a body's solid geoms is from its base [m]."""
-    return max((_length(body, geom, body.root, np.zeros(3)) for geom in body.feeling.tolist()), default=0.0)
+def reaches(model: Any, members: NDArray[np.bool_], geoms: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Returns by moving part and degree of freedom (n, nv) the way of the part's farthest point per unit of the joint [m].
 
-
-def reaches(body: Body) -> NDArray[np.float64]:
-    """Returns for its moving parts and each degree of freedom how far the farthest point goes for one of the joint's [m]."""
-    model = body.world.mj_model
-    found = np.zeros((len(body.feeling), model.nv))
-    joints = [joint for joint in range(model.njnt) if body.members[model.jnt_bodyid[joint]]]
-    for row, geom in enumerate(body.feeling.tolist()):
+    Args:
+        model: The compiled scene.
+        members: (nbody,) by MuJoCo body: whether it is part of the body.
+        geoms: The geoms of the body that can touch something.
+    """
+    found = np.zeros((len(geoms), model.nv))
+    joints = [joint for joint in range(model.njnt) if members[model.jnt_bodyid[joint]]]
+    for row, geom in enumerate(geoms.tolist()):
         for joint in joints:
             if _carries(model, int(model.jnt_bodyid[joint]), int(model.geom_bodyid[geom])):
-                far = _length(body, geom, int(model.jnt_bodyid[joint]), model.jnt_pos[joint])
+                far = _length(model, geom, int(model.jnt_bodyid[joint]), model.jnt_pos[joint])
                 first, each = int(model.jnt_dofadr[joint]), _freedoms(int(model.jnt_type[joint]), far)
                 found[row, first : first + len(each)] = each
     return np.unique(found, axis=0)
 
 
 def _freedoms(kind: int, far: float) -> list[float]:
-    """Returns for each degree of freedom of a joint how far a point goes for one of it that is so far away [m]."""
+    """Returns for each degree of freedom of a joint the way of a point at distance `far` per unit of it [m]."""
     match kind:
         case mjtJoint.mjJNT_FREE:
             return [1.0, 1.0, 1.0, far, far, far]
@@ -44,9 +52,8 @@ def _freedoms(kind: int, far: float) -> list[float]:
             return [far]
 
 
-def _length(body: Body, geom: int, start: int, at: NDArray[np.float64]) -> float:
-    """Returns how far a geom's farthest point is from a point on a MuJoCo body that carries it [m]."""
-    model = body.world.mj_model
+def _length(model: Any, geom: int, start: int, at: NDArray[np.float64]) -> float:
+    """Returns the greatest distance of a geom's points from a point on a MuJoCo body that carries it [m]."""
     carrier = int(model.geom_bodyid[geom])
     far = float(model.geom_rbound[geom])
     if carrier == start:
@@ -59,7 +66,7 @@ def _length(body: Body, geom: int, start: int, at: NDArray[np.float64]) -> float
 
 
 def _slide(model: Any, body: int) -> float:
-    """Returns how far the slides of a MuJoCo body can take it from its place, where they have limits [m]."""
+    """Returns the greatest way of a MuJoCo body along its slides that have limits [m]."""
     first = int(model.body_jntadr[body])
     slides = [n for n in range(first, first + int(model.body_jntnum[body])) if model.jnt_type[n] == int(mjtJoint.mjJNT_SLIDE)]
     return sum(float(np.abs(model.jnt_range[n]).max()) for n in slides if model.jnt_limited[n])

@@ -1,4 +1,4 @@
-"""What a world is made of: the description that a `World` compiles."""
+"""The description of a world, which a `World` compiles."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class Scene(Configuration):
     """
 
     parts: tuple[Any, ...] = ()
-    """What there is, in any order: see `parts.py` and `bodies/`; anything that is a `Part`."""
+    """What there is, in any order: see `scene_objects.py` and `bodies/`; anything that is a `Part`."""
 
     timestep: Annotated[float, Gt(0), Le(0.01)] = 0.002
-    """How far one physics step goes [s]; a whole number of microseconds. 2 ms keeps a limb at 3 m/s within 6 mm of contact."""
+    """Length of one physics step [s]; a whole number of microseconds. 2 ms keeps a limb at 3 m/s within 6 mm of contact."""
 
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
     """[m/s^2]; the default is the standard acceleration of free fall, to two digits."""
@@ -76,7 +76,7 @@ class Scene(Configuration):
         mj_spec.compiler.degree = False
         mj_spec.option.timestep = self.timestep
         mj_spec.option.gravity = self.gravity
-        # Velocity servos with a high gain, which make joints turn at the speed they are told, are stable only implicitly.
+        # Velocity servos with a high gain, which make joints turn at the commanded speed, are stable only implicitly.
         mj_spec.option.integrator = mjtIntegrator.mjINT_IMPLICITFAST
         # At MuJoCo's own tolerance, 1e-6, round shapes that hardly touch are now and then found 1 cm deep in each other, and flung away.
         mj_spec.option.ccd_tolerance = 1e-8

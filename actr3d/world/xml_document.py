@@ -1,4 +1,4 @@
-"""Reads XML files, with what they include, into plain elements that know their file and line."""
+"""Reads XML files and the files that they include into plain elements with file and line."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 from actr3d.errors import WorldError
-from actr3d.world.files import Folder
+from actr3d.world.asset_folder import Folder
 
 MAX_ELEMENTS = 100_000
-"""The most elements of a document with all that it includes; the largest public robots have some thousands."""
+"""Greatest number of elements of a document and the files that it includes; the largest public robots have some thousands."""
 
 MAX_DEPTH = 200
-"""The most elements inside one another. MuJoCo's own reader stops at 500."""
+"""Greatest nesting depth of elements. MuJoCo's own reader stops at 500."""
 
 
 @dataclass
 class Element:
-    """One XML element. Text between elements is not kept: neither MJCF nor URDF has any."""
+    """One XML element. Text between elements is dropped: neither MJCF nor URDF has any."""
 
     tag: str
     attributes: dict[str, str]
@@ -37,13 +37,13 @@ class Element:
 
 
 def read_document(folder: Folder, name: str) -> Element:
-    """Reads an XML file, puts in the place of each `<include file="…"/>` what is in that file, and returns the root.
+    """Reads an XML file, replaces each `<include file="…"/>` with the content of that file, and returns the root.
 
     An included name is relative to the folder of the first file, or else to that of the file that includes it.
 
     Raises:
         WorldError: If XML is not well formed, has a document type (entities), is too large or deep, includes itself, or
-            a file cannot be read; says the file and line.
+            a file cannot be read; with file and line.
     """
     root = _parsed(folder.read(name), name)
     _expand(root, folder, (name,), [0])
@@ -51,7 +51,7 @@ def read_document(folder: Folder, name: str) -> Element:
 
 
 def written(root: Element) -> tuple[str, list[str]]:
-    """Returns a document as text, and for each of its lines where that came from: MuJoCo's messages name lines."""
+    """Returns a document as text, and the origin of each line: MuJoCo's messages name lines."""
     lines: list[str] = []
     origins: list[str] = []
     _write(root, lines, origins)
@@ -59,7 +59,7 @@ def written(root: Element) -> tuple[str, list[str]]:
 
 
 class _Reader:
-    """Builds elements from what expat meets."""
+    """Builds elements from expat's events."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -108,7 +108,7 @@ def _parsed(content: bytes, name: str) -> Element:
 
 
 def _expand(element: Element, folder: Folder, inside: tuple[str, ...], count: list[int]) -> None:
-    """Replaces the includes below an element; `inside` are the files that are being included, `count` what there is by now."""
+    """Replaces the includes below an element; `inside` are the including files, `count` the number of elements up to now."""
     children: list[Element] = []
     for child in element.children:
         count[0] += 1

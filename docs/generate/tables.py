@@ -7,6 +7,7 @@ import inspect
 import io
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 from unittest import mock
 
 import actr3d.cli
@@ -17,9 +18,8 @@ from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportU
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
 from actr3d.world import Car, ImportedBody, Mannequin, Scene, World
-from actr3d.world.actuators import ACTUATORS
-from actr3d.world.sensors import SENSORS
-from actr3d.world.words import Word
+from actr3d.world.body import ACTUATORS, SENSORS
+from actr3d.world.command_registry import BodyWord
 
 ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
@@ -70,12 +70,12 @@ def _first_sentence(of: Callable[..., object]) -> str:
     return (inspect.getdoc(of) or "").partition("\n\n")[0].replace("\n", " ").partition(". ")[0].rstrip(".") + "."
 
 
-def _words(words: Mapping[str, Word]) -> str:
+def _words(words: Mapping[str, BodyWord[Any]]) -> str:
     parts = (Mannequin(), Car(position=(9, 0)), ImportedBody(name="imported", text=ROBOT, eye="eye", position=(0, 9, 0)))
     bodies = World(Scene(parts=parts)).bodies
     rows: list[Sequence[str]] = []
     for name, word in words.items():
-        has = [kind for kind, body in bodies.items() if word.fits(body)]
+        has = [kind for kind, body in bodies.items() if word.available(body)]
         rows.append((_code(name), _code(word.takes), "any" if len(has) == len(bodies) else ", ".join(has), word.meaning))
     return _rows(("Name", "Arguments", "Bodies", "Meaning"), rows)
 

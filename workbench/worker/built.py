@@ -150,7 +150,7 @@ class BuiltRun:
     def _conclude(self) -> None:
         """Tells the result, and what was printed last; in the order of a replay."""
         self._simulation.conclude()
-        self._simulation._journal.voice.finish()
+        self._simulation.event_log.stdout.finish()
 
     def _allowance(self) -> int:
         """Returns how many ticks to go before looking again what users want."""

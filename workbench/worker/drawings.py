@@ -58,7 +58,7 @@ class Drawings:
 
     def _edges(self, name: str, body: Body) -> dict[str, bytes]:
         lines, labels = contours_of(glance(body, self._eyesight(name)))
-        places = into_world(NEARER * lines, stand_of(body, body.world.mj_data))
+        places = into_world(NEARER * lines, stand_of(body, body.physics.mj_data))
         return {"lines": places.astype(np.float32).tobytes(), "labels": np.array(labels, dtype=np.int64).tobytes()}
 
     def _features(self) -> dict[str, Any]:
@@ -69,5 +69,5 @@ class Drawings:
 
 def _targets(body: Body) -> list[list[float]]:
     """Returns where joints are commanded to go, and are on their way: places in `qpos`, and positions [rad] or [m]."""
-    targets = body.running.targets
+    targets = body.motion.targets
     return [[int(joint.q), targets[name][0]] for name, joint in body.joints.items() if name in targets]

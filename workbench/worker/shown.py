@@ -68,7 +68,7 @@ class Shown:
         """A tick [us]."""
         self.kept = kept or Kept(self.period)
         self.kept.keep(0, simulation.world)
-        simulation._journal.keeper = self.kept
+        simulation.event_log.keeper = self.kept
         self.mj_model = saved(simulation.world.mj_model)
         """The compiled scene at the start, as MuJoCo saves it."""
         self.surroundings = surroundings(simulation.world)

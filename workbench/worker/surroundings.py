@@ -6,18 +6,17 @@ import math
 from typing import Any
 
 from actr3d.simulation.clearance import Wall
-from actr3d.world import Aperture, Floor, Mannequin, World
+from actr3d.world import Aperture, Floor, World
 
 
 def surroundings(world: World) -> dict[str, Any]:
     """Returns what is in a world, as plain values; it is the same at all times."""
-    people = {part.name: part.shoulder_width for part in world.scene.parts if isinstance(part, Mannequin)}
     bodies = {
         name: {
-            "shoulders": people.get(name),
+            "shoulders": body.anatomy.shoulders,
             "eye": body.eye,
             "root": body.root,
-            "feels": body.feeling.tolist(),
+            "feels": body.touch_geoms.tolist(),
             "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
         }
         for name, body in world.bodies.items()

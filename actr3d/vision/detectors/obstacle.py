@@ -1,4 +1,4 @@
-"""Obstacles: whatever is there, within a bearing."""
+"""Obstacles: all visible objects within a bearing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from actr3d.vision.units import Label, Metres, MetresPerSecond, Radians, Seconds
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle(Feature):
-    """An object, as far as it is seen. `distance` and `direction` are those of its nearest point within the bearing."""
+    """The visible part of an object. `distance` and `direction` are those of its nearest point within the bearing."""
 
     salience: ClassVar[str] = "nearness"
     bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "time_to_contact": "<=", "aside": "<=", "width": ">=", "height": ">="}
@@ -39,19 +39,19 @@ class Obstacle(Feature):
     rightmost: Radians
     """The direction of its rightmost visible point."""
     aside: Metres
-    """How far its nearest point is beside the line straight ahead: what is not as wide as twice that passes it."""
+    """Distance of its nearest point from the line straight ahead: a body narrower than twice this passes it."""
     object: Label
-    """Which object."""
+    """The label of the object."""
     time_to_contact: Seconds | None = None
-    """Its distance over how fast that shrinks, by the speed that was given or else since the last look; None where that is not
-    known, or it does not come nearer."""
+    """Its distance divided by the closing speed, from the given speed or since the last view; None if unknown, or if it
+    does not come nearer."""
 
     def since(self, before: Feature, elapsed: float) -> Self:
-        """Returns it with its motion, and the time to contact where no speed was given."""
+        """Returns a copy with its motion, and the time to contact if no speed was given."""
         moved = super().since(before, elapsed)
         nearer = (before.distance - self.distance) / elapsed
         if self.time_to_contact is None and nearer > 0:
-            return moved._changed(time_to_contact=self.distance / nearer)
+            return moved.with_values(time_to_contact=self.distance / nearer)
         return moved
 
 
@@ -59,13 +59,13 @@ class Obstacle(Feature):
 def obstacle(view: View, *, bearing: Annotated[Radians, Ge(0)] = math.pi, speed: MetresPerSecond | None = None) -> tuple[Obstacle, ...]:
     """Finds all objects within a bearing, in the order of their labels.
 
-    The nearest point is exact, but for what lies between two scan lines. Where that is outside the bearing, what is seen between it
-    and an edge on the same scan line is taken to be straight.
+    The nearest point is exact, except between two scan lines. If it is outside the bearing, the surface between it and an edge on the
+    same scan line is assumed to be straight.
 
     Args:
-        view: What is seen.
-        bearing: How far to the left and right of straight ahead.
-        speed: How fast the agent walks straight ahead, below 0 backwards; None where that is not known.
+        view: The view.
+        bearing: Greatest angle to the left and right of straight ahead.
+        speed: Walking speed of the agent, below 0 backwards; None if unknown.
     """
     extents = view.extents
     points, surfaces, find = np.empty((len(extents), 3, 4)), np.empty(32, SURFACE), detect.surfaces()

@@ -1,4 +1,4 @@
-"""Openings: doors, holes in walls, gaps between things; which of these, nobody tells."""
+"""Openings: doors, holes in walls and gaps between objects, without distinction."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from actr3d.vision.kernel.openings import OPENING
 from actr3d.vision.units import Label, Metres
 
 SHOWN = 11
-"""How many of the numbers of an opening are told; the others are the kernel's own."""
+"""Number of an opening's fields that are used; the kernel needs the others."""
 
 APART = 0.1
-"""How far the edges of one opening may be apart from one row to the next [m]: an edge that leans by 45 degrees, seen from 8 m
-on the default screen. Ours."""
+"""Greatest distance of an opening's edges from one row to the next [m]: an edge that leans by 45 degrees, seen from 8 m
+on the default screen. Source: chosen."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Opening(Feature):
     """A gap between two edges, over one or more scan lines, with nothing between them that is as near as they are.
 
-    It is as large as the largest upright rectangle in it (by area). `distance` and `direction` are those of the middle between its
+    Its size is that of the largest upright rectangle in it (by area). `distance` and `direction` are those of the middle between its
     two edges, of which one may be at the front of a wall and the other at its back.
     """
 
@@ -38,33 +38,33 @@ class Opening(Feature):
     bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "width": ">=", "height": ">=", "depth": ">="}
 
     width: Metres
-    """Free width on the ground, along what bounds it where that is in one line (a wall), else straight from edge to edge."""
+    """Free width on the ground, along its boundary if that is one line (a wall), otherwise straight from edge to edge."""
     height: Metres
-    """As many scan lines as it spans; exact to one of them. Where it is open above, as high as what bounds it at the sides."""
+    """Height of the scan lines that it spans; exact to one of them. If open above, the height of its sides."""
     depth: Metres
-    """How far it is free behind, square to its width, up to the nearest edge that is seen through it; infinite where nothing is."""
+    """Free depth behind it, perpendicular to its width, up to the nearest edge that is visible through it; infinite without one."""
     top: Metres
     """Its upper end, above the eye."""
     bottom: Metres
     """Its lower end, above the eye, mostly below 0."""
     left: Label
-    """What bounds it at the left."""
+    """The object at its left side."""
     right: Label
-    """What bounds it at the right; in a hole, the same."""
+    """The object at its right side; for a hole, the same."""
     above: Label = 0
-    """What bounds it above; 0 where it is open, or leaves the field of view."""
+    """The object above it; 0 if it is open, or leaves the field of view."""
     below: Label = 0
-    """What bounds it below, likewise; the ground is not told."""
+    """The object below it; 0 also for the ground."""
     cut: bool = False
-    """Whether it leaves the field of view above or below: then it is at least as high as `height`."""
+    """Whether it leaves the field of view above or below: then `height` is a lower bound."""
 
     @property
     def key(self) -> tuple[int, int]:
-        """What tells it apart from others, from look to look: what bounds it at the sides."""
+        """Its identity from view to view: the objects at its sides."""
         return self.left, self.right
 
     def at_most(self, slot: str, value: Any) -> Any:
-        """Returns infinity for the height of one that leaves the field of view: no bound was seen."""
+        """Returns infinity for the height of an opening that leaves the field of view: its end is not visible."""
         return math.inf if slot == "height" and self.cut else value
 
 
@@ -72,12 +72,12 @@ class Opening(Feature):
 def opening(view: View, *, step: Annotated[Metres, Ge(0)] = 0.02) -> tuple[Opening, ...]:
     """Finds openings: gaps on scan lines, joined over rows.
 
-    A gap is bounded at its left and right by edges that are nearer than all that is seen between them. What leaves the field of
-    view at the left or right is none: from inside a doorway, when its sides are no longer seen, there is nothing to find.
+    The left and right edges of a gap are nearer than everything visible between them. A gap that leaves the field of view at the
+    left or right does not count: inside a doorway, when its sides are no longer visible, there is no opening.
 
     Args:
-        view: What is seen.
-        step: How much farther than the edges of a gap everything between them must be.
+        view: The view.
+        step: Least distance of everything between the edges of a gap behind them.
     """
     extents = view.extents
     count = len(extents)

@@ -1,4 +1,4 @@
-"""All detectors by what they find; each file of this package adds its own, and so may a model's file."""
+"""The registry of detectors, by the features that they find."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ D = TypeVar("D", bound=Detect)
 
 @dataclass(frozen=True)
 class Detector:
-    """A detector as the registry has it."""
+    """A registered detector."""
 
     finds: type[Feature]
     """The kind of features."""
     detect: Detect
     """The function that finds them."""
     parameters: tuple[str, ...]
-    """What it takes besides the view."""
+    """The names of its parameters besides the view."""
     builtin: bool = False
     """Whether the library defines it, and not a model file."""
 
     @property
     def name(self) -> str:
-        """What requests call what it finds."""
+        """The name of its features in requests."""
         return self.finds.called()
 
     def unit(self, parameter: str) -> Unit:
@@ -42,11 +42,11 @@ class Detector:
         return units_of(self.detect).get(parameter, PLAIN)
 
     def bounds(self, parameter: str) -> tuple[Any, ...]:
-        """Returns the bounds that a parameter's type says, such as `Ge(0)`."""
+        """Returns the bounds of a parameter's type, such as `Ge(0)`."""
         return bounds_of(self.detect).get(parameter, ())
 
     def __call__(self, view: View, **parameters: Any) -> tuple[Feature, ...]:
-        """Returns what there is in a view, in an order that follows from what is seen where.
+        """Returns the features in a view, in an order that depends on the view only.
 
         Raises:
             VisionError: If a modeller's detector returns anything but features of its kind whose fields are numbers.
@@ -65,11 +65,11 @@ RESERVED = ("feature", "pattern", "bottom_up")
 """Words of a request that no slot or parameter can have."""
 
 DETECTORS: dict[str, Detector] = {}
-"""By name. A vision module knows those that there are when it is made."""
+"""By name. A vision module uses those that are registered when it is made."""
 
 
 def detector(finds: type[Feature]) -> Callable[[D], D]:
-    """Returns a decorator that adds a detector for a kind of features; a later one for the same kind takes its place.
+    """Returns a decorator that registers a detector for a kind of features; a later one for the same kind replaces it.
 
     Args:
         finds: The kind of features.
@@ -93,11 +93,11 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         _, *others = inspect.signature(detect).parameters.values() or (None,)
         wrong = [p.name for p in others if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]
         if wrong or not inspect.signature(detect).parameters:
-            raise VisionError(f"detector '{name}': must take a view, and after a * what has a default: def find(view, *, most=0.1)")
+            raise VisionError(f"detector '{name}': must take a view, and after a * parameters with defaults: def find(view, *, most=0.1)")
         taken = [word for word in (*slots, *(p.name for p in others)) if word in RESERVED]
         taken += [p.name for p in others if p.name in slots or p.name in finds.aliases]
         if taken:
-            raise VisionError(f"detector '{name}': '{taken[0]}' means something else in a request; call it otherwise")
+            raise VisionError(f"detector '{name}': '{taken[0]}' is reserved in requests; use another name")
         DETECTORS[name] = Detector(finds, detect, tuple(p.name for p in others), builtin)
         return detect
 

@@ -22,9 +22,9 @@ Surfaces: TypeAlias = Callable[[Records, Array, Array, float, Array, Records], i
 def gaps() -> Gaps:
     """Returns the function that finds openings; the first call of it in a new installation takes seconds.
 
-    It takes: the extents, an array of one optics, the eye's axes, the step behind a gap, how far apart the edges of one
-    opening may be from row to row, and room for points, gaps and openings. It returns how many gaps and openings there are;
-    what there is no room for is not written.
+    It takes: the extents, an array of one optics, the eye's axes, the step behind a gap, the greatest distance between the edges of one
+    opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings; those
+    without room are not written.
     """
     return _gaps_of(_digest())
 

@@ -11,17 +11,17 @@ from actr3d.camera.kernel.layout import Array, Record, Records
 from actr3d.camera.kernel.screen import row_tangent
 
 NARROWEST = 1e-6
-"""Parts of the screen's width below this are no gap: edges that touch."""
+"""Fraction of the screen's width below which there is no gap: edges that touch."""
 IN_LINE = 0.35
-"""How far the edges of a gap may lie off the line through the far ends of what bounds it, to be a gap in that line: the jambs of
-one wall, up to so thick [m]. Ours; walls of buildings are 0.1 to 0.3 m thick."""
+"""Greatest distance of a gap's edges from the line through the far ends of its boundary, for a gap in that line: the jambs of one
+wall of this thickness [m]. Source: chosen; walls of buildings are 0.1 to 0.3 m thick."""
 
 GAP = np.dtype(
     [
         ("row", "i8"),
         ("left", "i8"),  # the numbers of the extents that bound it
         ("right", "i8"),
-        ("before", "i8"),  # the gap that it goes on from, on the row above, or -1
+        ("before", "i8"),  # the gap on the row above that it continues, or -1
         ("number", "i8"),  # of the opening it is part of
         ("along", "f8", (2,)),  # the direction from left to right in which its width is meant (ahead, left)
         ("width", "f8"),  # [m]
@@ -37,7 +37,7 @@ GAP = np.dtype(
 
 @compiled
 def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: float, gaps: Records) -> int:
-    """Writes all gaps, by rows; returns how many there are, also those for which there is no room.
+    """Writes all gaps, by rows; returns their number, including those without room.
 
     A gap goes from the right edge of one extent to the left edge of another on the same row, if all between them is farther
     than both by `step` at least [m], or nothing is there. `up` is how upright the eye is, the cosine of its tilt.
@@ -115,7 +115,7 @@ def _set_levels(points: Array, gap: Record, optics: Record, up: float) -> None:
 
 @compiled
 def _is_front(start: Array, end: Array, one: Array, other: Array) -> bool:
-    """Tells whether, as seen from the eye, nothing of what bounds a gap lies before the line between two points of it."""
+    """Returns whether no part of a gap's boundary lies before the line between two of its points, as seen from the eye."""
     eye = start[0] * end[1] - start[1] * end[0]
     if abs(eye) < 1e-12:
         return False
@@ -175,7 +175,7 @@ def _apart(one: Array, other: Array) -> float:
 
 @compiled
 def _taken(gaps: Records, first: int, end: int, before: int) -> bool:
-    """Tells whether a gap of the row from `first` to `end` goes on from one above."""
+    """Returns whether a gap of the row from `first` to `end` continues one above."""
     for i in range(first, end):  # noqa: SIM110 - compiled
         if gaps[i].before == before:
             return True

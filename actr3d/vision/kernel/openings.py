@@ -1,4 +1,4 @@
-"""Openings: gaps that go on from scan line to scan line."""
+"""Openings: gaps that continue from scan line to scan line."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.layout import Array, Record, Records
 
 BESIDE = 0.35
-"""How much farther than a gap's edges something above or below it may be, to be what bounds it there [m]. Ours: a wall's thickness."""
+"""Greatest distance behind a gap's edges of an object above or below that bounds it there [m]. Source: chosen, a wall's thickness."""
 
 OPENING = np.dtype(
     [
@@ -24,7 +24,7 @@ OPENING = np.dtype(
         ("right", "i8"),
         ("above", "i8"),
         ("below", "i8"),
-        ("cut", "i8"),  # whether it goes on above or below the field of view
+        ("cut", "i8"),  # whether it continues above or below the field of view
         ("first", "i8"),  # the numbers of its uppermost and its lowest gap
         ("last", "i8"),
         ("area", "f8"),  # [m^2]

@@ -1,4 +1,4 @@
-"""Where the edges of a view are in space."""
+"""Positions of a view's edges in space."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from actr3d.camera.kernel.screen import row_tangent, tangent_at
 
 @compiled
 def set_points(extents: Records, optics: Record, axes: Array, points: Array) -> None:
-    """Writes where the edges of each extent are, and its nearest point: ahead, left, up and deep along the line of sight [m], `(n, 3, 4)`.
+    """Writes the positions of each extent's edges and nearest point: ahead, left, up and deep along the line of sight [m], `(n, 3, 4)`.
 
     Ahead, left and up are those of the upright frame that `View.axes` are given in, with the eye as origin.
     """

@@ -1,4 +1,4 @@
-"""Surfaces: of each object, how near it is and how far it reaches."""
+"""Surfaces: the distance and the extent of each object."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ SURFACE = np.dtype(
     ],
     align=True,
 )
-"""An object as far as it is seen."""
+"""The visible part of an object."""
 
 
 @compiled
 def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Records) -> int:
-    """Writes, at the place of its label, what is seen of each object; a distance is infinite where it is not in the bearing.
+    """Writes the visible part of each object at the index of its label; a distance is infinite outside the bearing.
 
     Returns the highest label; if there is no room for that, nothing is written.
 
-    Between an edge and the nearest point of a row an object is taken to be as near as the straight line between them.
+    Between an edge and the nearest point of a row, the object is assumed to follow the straight line between them.
 
     Args:
         extents: The view's.

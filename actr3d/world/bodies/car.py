@@ -11,24 +11,25 @@ from mujoco import MjSpec, mjtBias, mjtGain, mjtGeom, mjtJoint, mjtTrn
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
-from actr3d.world.anatomy import Anatomy, Steering
-from actr3d.world.bodies.base import add_base
-from actr3d.world.parts import WALL_SOLREF, Colour, Length, Name
-from actr3d.world.servo import add_servo
+from actr3d.world.anatomy import Anatomy, Steering, body_kind
+from actr3d.world.bodies.planar_base import add_planar_base
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name
+from actr3d.world.velocity_servo import add_servo
 
 GRAVITY = 9.81
-"""[m/s^2]; what the tyres carry."""
+"""[m/s^2]; determines the load of the tyres."""
 
 CLEARANCE = 0.15
-"""Below the car's floor [m]. Ours."""
+"""Below the car's floor [m]. Source: chosen for this library."""
 
 WAIST = 0.62
-"""Where the cabin begins, as a part of the height. Ours."""
+"""Height at which the cabin begins, as a fraction of the height. Source: chosen for this library."""
 
 
+@body_kind
 @dataclass(frozen=True, kw_only=True)
 class Car(Configuration):
-    """A car that moves as a bicycle does: its rear wheel rolls where it points, its front wheel where it is steered.
+    """A car that moves like a bicycle: its rear wheel rolls where it points, its front wheel where it is steered.
 
     Both hold sideways with the grip of their tyres, so within it the rear axle's middle drives a circle of radius
     wheelbase / tan(road wheel angle). Throttle and brake push along; the drag grows with the speed.
@@ -41,10 +42,10 @@ class Car(Configuration):
     """Its name in the scene."""
 
     position: tuple[float, float] = (0.0, 0.0)
-    """Where the middle of the rear axle is at the start, (x, y) [m]."""
+    """Position of the rear axle's middle at the start, (x, y) [m]."""
 
     heading: float = 0.0
-    """Where it points at the start [rad], 0 along x."""
+    """Its heading at the start [rad], 0 along x."""
 
     wheelbase: Length = 2.665
     """Between the axles [m]."""
@@ -53,37 +54,37 @@ class Car(Configuration):
     """From the rear axle to the centre of mass [m]."""
 
     size: tuple[Length, Length, Length] = (4.2, 1.7, 1.45)
-    """Length, width and height [m]. Source: ours, a compact car."""
+    """Length, width and height [m]. Source: chosen, a compact car."""
 
     mass: Length = 1175.0
     """[kg]"""
 
     ratio: Length = 16.0
-    """Turns of the steering wheel for one of the road wheels. Source: ours, passenger cars have 12 to 20."""
+    """Turns of the steering wheel for one of the road wheels. Source: chosen, passenger cars have 12 to 20."""
 
     lock: Annotated[float, Gt(0), Lt(1.4)] = math.radians(35)
-    """How far the road wheels turn to each side [rad]. Source: ours, usual."""
+    """Greatest angle of the road wheels to each side [rad]. Source: chosen, usual."""
 
     steering_rate: Length = 4 * math.pi
-    """How fast the steering wheel turns [rad/s]. Source: 720 degrees a second, as in NHTSA's fishhook manoeuvre."""
+    """Greatest speed of the steering wheel [rad/s]. Source: 720 degrees a second, as in NHTSA's fishhook manoeuvre."""
 
     drive: Length = 4000.0
-    """What the engine pushes with at full throttle [N]. Source: ours, 3.4 m/s^2."""
+    """Force of the engine at full throttle [N]. Source: chosen, 3.4 m/s^2."""
 
     top_speed: Length = 50.0
-    """Where drag equals the drive [m/s]. Source: ours, 180 km/h; it grows in proportion to the speed."""
+    """Speed at which drag equals the drive [m/s]; drag is proportional to speed. Source: chosen, 180 km/h."""
 
     brakes: Length = 9000.0
-    """What the brakes hold back with when fully pressed [N]. Source: ours, 0.78 of the weight, on dry asphalt."""
+    """Force of the brakes when fully pressed [N]. Source: chosen, 0.78 of the weight, on dry asphalt."""
 
     grip: Length = 0.9
-    """How much of their load the tyres hold sideways. Source: ours, dry asphalt."""
+    """Greatest sideways force of the tyres as a fraction of their load. Source: chosen, dry asphalt."""
 
     eye: tuple[float, float, float] = (1.2, 0.35, 1.2)
-    """The driver's eye against the rear axle's middle on the ground: forward, left, up [m]. Source: ours, a left-hand drive."""
+    """The driver's eye relative to the rear axle's middle on the ground: forward, left, up [m]. Source: chosen, a left-hand drive."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Of its sensors: the word and the standard deviation, in the reading's unit; what is not named is exact."""
+    """Noise of its sensors: the word and the standard deviation, in the reading's unit; sensors that are not named are exact."""
 
     colour: Colour = (0.70, 0.25, 0.22, 1.0)
     """Red, green, blue, alpha in 0 to 1."""
@@ -101,7 +102,7 @@ class Car(Configuration):
             raise ConfigurationError(f"Car.size: its height must be more than {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
 
     def anatomy(self) -> Anatomy:
-        """Returns what a `Body` needs to know of it."""
+        """Returns its description for a `Body`."""
         prefix = f"{self.name}_"
         return Anatomy(
             root=self.name,
@@ -115,7 +116,7 @@ class Car(Configuration):
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds chassis, wheels, steering and servos."""
-        body = add_base(mj_spec, self.name, self.position, self.heading)
+        body = add_planar_base(mj_spec, self.name, self.position, self.heading)
         self._chassis(body)
         body.add_site(name=self._name("rear"))
         body.add_site(name=self._name("eye"), pos=self.eye)
@@ -154,7 +155,7 @@ class Car(Configuration):
         )
         for side, y in (("left", wide / 2 - 0.09), ("right", 0.09 - wide / 2)):
             self._wheel(body, f"{side}_rear_wheel", y)
-        # As a plain box of the hull's outline, whose inertia about the vertical is near that of the source (2618 kg m^2).
+        # The inertia of a plain box of the hull's outline, whose inertia about the vertical is near that of the source (2618 kg m^2).
         body.mass = self.mass
         body.ipos = [self.rear, 0, high / 3]
         about = self.mass / 12
@@ -162,7 +163,7 @@ class Car(Configuration):
         body.explicitinertial = True
 
     def _wheel(self, body: Any, name: str, y: float) -> None:
-        """Adds a wheel that is seen and touches nothing: the grip of the tyres is the servos'."""
+        """Adds a visible wheel without contacts: servos model the grip of the tyres."""
         body.add_geom(
             name=self._name(name),
             type=mjtGeom.mjGEOM_CYLINDER,

@@ -1,4 +1,4 @@
-"""A body that is read from a file."""
+"""A body from an MJCF or URDF file."""
 
 from __future__ import annotations
 
@@ -7,41 +7,42 @@ from dataclasses import dataclass
 from mujoco import MjSpec
 
 from actr3d.errors import WorldError
-from actr3d.world.anatomy import Anatomy, NamedMovement
+from actr3d.world.anatomy import Anatomy, NamedMovement, body_kind
 from actr3d.world.imported import Imported
 
 AHEAD = (0, -1, 0, 0, 0, 1)
 """The axes of a camera that looks along x, with z up: its own x to the right and y up."""
 
 
+@body_kind
 @dataclass(frozen=True, kw_only=True)
 class ImportedBody(Imported):
-    """An imported file that is a body: a mind can live in it. It has one root body, from which its others hang.
+    """An imported file that is a body, for an agent to control. It has one root body, which carries the others.
 
-    Joints, actuators (`control`), parts and what it can touch are found in the file. It sees along the x axis of the site
+    Joints, actuators (`control`), parts and geoms with contacts are found in the file. It sees along the x axis of the site
     that is named as its eye, with z up.
     """
 
     movements: tuple[NamedMovement, ...] = ()
-    """Movements of it that have names, for a motor module's `move`."""
+    """Its named movements, for a motor module's `move`."""
 
     def __post_init__(self) -> None:
         """Checks the fields and reads the files, as `Imported` does.
 
         Raises:
             ConfigurationError: If a field is wrong.
-            WorldError: If the file cannot be read or compiled, or has not one root body that has a name.
+            WorldError: If the file cannot be read or compiled, or does not have exactly one root body, with a name.
         """
         super().__post_init__()
         self._root()
 
     def anatomy(self) -> Anatomy:
-        """Returns what a `Body` needs to know of it."""
+        """Returns its description for a `Body`."""
         eye = None if self.eye is None else self.prefix + self.eye
         return Anatomy(root=self.prefix + self._root(), prefix=self.prefix, eye=eye, movements=self.movements)
 
     def add_to(self, mj_spec: MjSpec) -> None:
-        """Attaches it, and puts a camera where its eye is."""
+        """Attaches it, and adds a camera at its eye."""
         super().add_to(mj_spec)
         if self.eye is not None:
             name = self.prefix + self.eye

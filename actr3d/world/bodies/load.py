@@ -1,4 +1,4 @@
-"""What a mannequin carries in both hands."""
+"""A load that a mannequin carries in both hands."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import Literal
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
-from actr3d.world.parts import Colour, Length
+from actr3d.world.scene_objects import Colour, Length
 
 _SIZES = {"bar": (2, "length and thickness"), "box": (3, "depth, width and height")}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Load(Configuration):
-    """A bar held crosswise, or a box, in front of the body with both hands; part of the body in all that touches it."""
+    """A bar held crosswise, or a box, in front of the body with both hands; it counts as part of the body in contacts."""
 
     shape: Literal["bar", "box"] = "bar"
     """A bar has round ends; its length counts them."""
 
     size: tuple[Length, ...] = (1.0, 0.03)
-    """Full sizes [m]: bar (length, thickness), box (depth, width, height) as seen by who holds it."""
+    """Full sizes [m]: bar (length, thickness), box (depth, width, height) as seen by the holder."""
 
     mass: Length = 1.0
     """[kg]; the arms carry its weight."""
@@ -39,19 +39,19 @@ class Load(Configuration):
         if len(self.size) != sizes:
             raise ConfigurationError(f"Load.size: a {self.shape} takes {meaning} (got {self.size!r})")
         if self.shape == "bar" and self.size[0] < self.size[1]:
-            raise ConfigurationError(f"Load.size: a bar is at least as long as it is thick (got {self.size!r})")
+            raise ConfigurationError(f"Load.size: the length of a bar must be at least its thickness (got {self.size!r})")
 
     @property
     def width(self) -> float:
-        """How wide it is across the body [m]."""
+        """Width across the body [m]."""
         return self.size[0] if self.shape == "bar" else self.size[1]
 
     @property
     def height(self) -> float:
-        """How high it is [m]."""
+        """Height [m]."""
         return self.size[1] if self.shape == "bar" else self.size[2]
 
     @property
     def depth(self) -> float:
-        """How deep it is [m]."""
+        """Depth [m]."""
         return self.size[1] if self.shape == "bar" else self.size[0]

@@ -1,6 +1,11 @@
-"""What a body can sense, one word each. All readings are of the present state."""
+"""The sensors of bodies, one function each; all readings are of the present state.
 
-from actr3d.world.sensors import anatomy, motion, picture, proprioception, ranging, touch
-from actr3d.world.sensors.registry import SENSORS
+A new sensor is a function with the decorator `@sensor`: in a file of this folder, or in any other module that is imported.
+"""
 
-__all__ = ["SENSORS", "anatomy", "motion", "picture", "proprioception", "ranging", "touch"]
+from actr3d.world.body import SENSORS
+from actr3d.world.command_registry import import_modules
+
+import_modules(__name__, __path__)
+
+__all__ = ["SENSORS"]

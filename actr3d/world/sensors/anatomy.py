@@ -1,21 +1,18 @@
-"""What a body consists of, as it tells its mind: parts, joints, limits, and what it can be told to do. It never changes."""
+"""What a body consists of, as its agent knows it: parts, joints, limits and commands. It never changes."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from actr3d.world.anatomy import NamedMovement
-from actr3d.world.sensors.registry import sensor
-
-if TYPE_CHECKING:
-    from actr3d.world.body import Body
-    from actr3d.world.joints import Joint
+from actr3d.world.body import Body, sensor
+from actr3d.world.joints import Joint
 
 HINGE_AXES = ("roll", "pitch", "yaw")
 SLIDE_AXES = ("x", "y", "z")
-"""What the axes of joints are called, by the axis of the part that they are nearest to."""
+"""Names of joint axes, by the nearest axis of the part."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,18 +22,18 @@ class JointPlan:
     name: str
     kind: Literal["hinge", "slide"]
     axis: str
-    """What it turns about, `yaw`, `pitch` or `roll`, or slides along, `x`, `y` or `z`: the nearest axis of its part."""
+    """The axis of a hinge, `yaw`, `pitch` or `roll`, or of a slide, `x`, `y` or `z`: the nearest axis of its part."""
     lower: float | None
     """Its least position [rad] or [m]; None without limit."""
     upper: float | None
     """Its greatest."""
     driven: bool
-    """Whether the body can be told to turn it."""
+    """Whether a command can move it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PartPlan:
-    """One part, and the joints by which it hangs on another."""
+    """One part, and the joints that attach it to another."""
 
     name: str
     on: str | None
@@ -52,17 +49,17 @@ class BodyPlan:
     parts: tuple[PartPlan, ...]
     """Each after the one that carries it; the base first."""
     movements: tuple[NamedMovement, ...]
-    """What it has names for."""
+    """Movements that have names."""
     actuators: tuple[str, ...]
-    """The words that it can be told."""
+    """The words of its commands."""
     fastest: tuple[float, float, float] | None
-    """The fastest that it can be told to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None has no limits."""
+    """The greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None without limits."""
 
 
 @sensor
 def anatomy(body: Body) -> BodyPlan:
     """Senses what the body consists of: its parts, with joints and limits, and its named movements."""
-    model = body.world.mj_model
+    model = body.physics.mj_model
     names = dict(zip((int(number) for number in body.members.nonzero()[0]), body.parts, strict=True))
     joints: dict[int, list[JointPlan]] = {number: [] for number in names}
     for joint in body.joints.values():

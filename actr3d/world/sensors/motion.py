@@ -1,14 +1,14 @@
-"""Where a body is and how it moves: pose, velocity, accelerometer, gyroscope, joints, and what its hands hold.
+"""Pose and motion of a body: pose, velocity, accelerometer, gyroscope, joints, and what its hands hold.
 
-Of the present state: positions and speeds are those after the last physics step. Accelerations are those of the physics
-step to come, contacts included; MuJoCo's own accelerometer would still say those of the step before.
+Readings are of the present state: positions and speeds are those after the last physics step. Accelerations are those of the
+coming physics step, contacts included; MuJoCo's own accelerometer would still report those of the step before.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -16,19 +16,15 @@ from mujoco import mjtObj
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
+from actr3d.world.body import Body, sensor
 from actr3d.world.joints import AT_LIMIT
-from actr3d.world.sensors.registry import SENSORS, sensor
-from actr3d.world.words import adder, known
-
-if TYPE_CHECKING:
-    from actr3d.world.body import Body
 
 Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
-    """Where a part is and how it is turned, in the world's frame: first by heading, then pitch, then roll."""
+    """Position and orientation of a part in the world's frame: rotated first by heading, then pitch, then roll."""
 
     x: float
     """[m]"""
@@ -46,7 +42,7 @@ class Pose:
 
 @dataclass(frozen=True, kw_only=True)
 class Velocity:
-    """How fast a part moves."""
+    """Velocity of a part."""
 
     linear: Vector
     """Along x, y, z [m/s]."""
@@ -56,7 +52,7 @@ class Velocity:
 
 @dataclass(frozen=True, kw_only=True)
 class JointReading:
-    """Where a joint is."""
+    """State of a joint."""
 
     position: float
     """[rad]"""
@@ -68,14 +64,14 @@ class JointReading:
 
 @sensor
 def pose(body: Body, part: str | None = None) -> Pose:
-    """Senses where a part is [m] and how it is turned [rad]; the base unless one is named.
+    """Senses position [m] and orientation [rad] of a part; the base by default.
 
     Raises:
         WorldError: If it has no such part.
     """
-    body.world.refresh()
-    number = _part(body, part)
-    data: Any = body.world.mj_data
+    body.physics.refresh()
+    number = body.part_number(part)
+    data: Any = body.physics.mj_data
     x, y, z = data.xpos[number].tolist()
     turn = data.xmat[number].reshape(3, 3)
     pitch = math.asin(max(-1.0, min(1.0, 0.0 - float(turn[2, 0]))))
@@ -85,26 +81,26 @@ def pose(body: Body, part: str | None = None) -> Pose:
 
 @sensor
 def velocity(body: Body, part: str | None = None, frame: Literal["part", "world"] = "part") -> Velocity:
-    """Senses how fast a part moves, the base unless one is named, along its own axes or the world's [m/s] [rad/s].
+    """Senses the velocity of a part, by default the base, along its own axes or the world's [m/s] [rad/s].
 
     Raises:
         WorldError: If it has no such part, or the frame is neither.
     """
     if frame not in ("part", "world"):
         raise WorldError(f"velocity: frame must be 'part' or 'world' (got {frame!r})")
-    body.world.refresh()
-    angular, linear = _velocity(body, _part(body, part), local=frame == "part")
+    body.physics.refresh()
+    angular, linear = _velocity(body, body.part_number(part), local=frame == "part")
     return Velocity(linear=linear, angular=angular)
 
 
 @sensor
 def gyroscope(body: Body, part: str | None = None) -> Vector:
-    """Senses how fast a part turns about its own axes [rad/s]: the head unless one is named, else the base.
+    """Senses the angular velocity of a part about its own axes [rad/s]: by default the head, or the base without a head.
 
     Raises:
         WorldError: If it has no such part.
     """
-    body.world.refresh()
+    body.physics.refresh()
     return _velocity(body, _head(body, part), local=True)[0]
 
 
@@ -112,28 +108,28 @@ def gyroscope(body: Body, part: str | None = None) -> Vector:
 def accelerometer(body: Body, part: str | None = None) -> Vector:
     """Senses the acceleration of a part's origin against free fall, along its own axes [m/s^2].
 
-    The part is the head unless one is named, or the base without a head. At rest it says about 9.81 upwards.
+    The part is by default the head, or the base without a head. At rest the reading is about 9.81 upwards.
 
     Raises:
         WorldError: If it has no such part.
     """
-    world = body.world
-    world.solve()
-    mj_data = world.mj_data
+    physics = body.physics
+    physics.solve()
+    mj_data = physics.mj_data
     solved = mj_data.qacc.copy()
-    mj_data.qacc[:] = world.accelerations()
-    mujoco.mj_rnePostConstraint(world.mj_model, mj_data)
+    mj_data.qacc[:] = physics.accelerations()
+    mujoco.mj_rnePostConstraint(physics.mj_model, mj_data)
     mj_data.qacc[:] = solved
     felt: NDArray[np.float64] = np.zeros(6)
-    mujoco.mj_objectAcceleration(world.mj_model, mj_data, mjtObj.mjOBJ_XBODY, _head(body, part), felt, 1)
+    mujoco.mj_objectAcceleration(physics.mj_model, mj_data, mjtObj.mjOBJ_XBODY, _head(body, part), felt, 1)
     x, y, z = felt[3:].tolist()
     return (x, y, z)
 
 
 @sensor
 def joints(body: Body) -> dict[str, JointReading]:
-    """Senses where all joints are [rad], how fast they turn [rad/s], and the limits that they have reached, by name."""
-    data = body.world.mj_data
+    """Senses positions [rad] and velocities [rad/s] of all joints, and the limits that they have reached, by name."""
+    data = body.physics.mj_data
     positions, velocities = data.qpos.tolist(), data.qvel.tolist()
     readings: dict[str, JointReading] = {}
     for name, joint in body.joints.items():
@@ -143,16 +139,16 @@ def joints(body: Body) -> dict[str, JointReading]:
     return readings
 
 
-@adder(SENSORS, lambda body: bool(body.hands))
+@sensor.if_body(lambda body: bool(body.hands))
 def grasp(body: Body) -> dict[str, str | None]:
     """Senses what each hand holds: an object's name, or None."""
-    model = body.world.mj_model
+    model = body.physics.mj_model
     return {side: None if hand.held is None else str(model.body(hand.held.object).name) for side, hand in body.hands.items()}
 
 
 def _velocity(body: Body, number: int, local: bool) -> tuple[Vector, Vector]:
-    """Returns how fast a MuJoCo body turns and moves; positions must be up to date."""
-    model, data = body.world.mj_model, body.world.mj_data
+    """Returns angular and linear velocity of a MuJoCo body; positions must be up to date."""
+    model, data = body.physics.mj_model, body.physics.mj_data
     mujoco.mj_comVel(model, data)
     moves: NDArray[np.float64] = np.zeros(6)
     mujoco.mj_objectVelocity(model, data, mjtObj.mjOBJ_XBODY, number, moves, int(local))
@@ -161,10 +157,4 @@ def _velocity(body: Body, number: int, local: bool) -> tuple[Vector, Vector]:
 
 
 def _head(body: Body, part: str | None) -> int:
-    return _part(body, "head" if part is None and "head" in body.parts else part)
-
-
-def _part(body: Body, part: str | None) -> int:
-    if part is None or part == body.anatomy.base:
-        return body.root
-    return body.part_number(known(part, body.parts, body.name, "part"))
+    return body.part_number("head" if part is None and "head" in body.parts else part)

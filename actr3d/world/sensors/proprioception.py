@@ -1,21 +1,18 @@
-"""What a body feels of its own posture and movement."""
+"""A body's sense of its own posture and movement."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from actr3d.errors import WorldError
 from actr3d.values import UNTOLD
-from actr3d.world.sensors.registry import sensor
-
-if TYPE_CHECKING:
-    from actr3d.world.body import Body
+from actr3d.world.body import Body, sensor
 
 
 @dataclass(frozen=True, kw_only=True)
 class Size:
-    """Of the smallest box around a body and what it holds."""
+    """Size of the smallest box around a body and what it holds."""
 
     width: float
     """To the left and right, along the frame's y [m]."""
@@ -27,18 +24,18 @@ class Size:
 
 @dataclass(frozen=True, kw_only=True)
 class Proprioception:
-    """How a body stands and moves, in as few numbers as a motor module needs each tick."""
+    """Posture and movement of a body, in as few numbers as a motor module needs each tick."""
 
     positions: tuple[float, ...] = field(metadata=UNTOLD)
-    """Of all joints, in the order of the word `anatomy` [rad] or [m]. A recording has them in the physics' state of the same tick."""
+    """Of all joints, in the order of the word `anatomy` [rad] or [m]. A recording has them in the physics state of the same tick."""
     moving: tuple[str, ...]
     """The joints that a command still moves, or tries to."""
     speed: tuple[float, float, float]
     """Of the base, forward and to the left [m/s], and turning to the left [rad/s]; 0 for one that cannot walk."""
     walking: bool
-    """Whether it is told to go or turn at some speed."""
+    """Whether it is commanded to walk or turn."""
     turning: float
-    """How far it still turns, of the angle that it was told to turn by [rad]."""
+    """Rest of a commanded turn by an angle [rad]."""
     width: float
     """To the left and right [m], of the smallest box around the body, upright and along its heading."""
     depth: float
@@ -47,7 +44,7 @@ class Proprioception:
     """Of that box [m]."""
 
     def with_noise(self, sd: Any, random: Any) -> Proprioception:
-        """Refuses noise: by these numbers a motor module knows when a movement is over, and it has parameters for noise of its own.
+        """Raises an error: a motor module needs these numbers to know when a movement is over, and has its own parameters for noise.
 
         Raises:
             WorldError: Always.
@@ -57,23 +54,23 @@ class Proprioception:
 
 @sensor
 def bounding_box(body: Body, frame: str = "body") -> Size:
-    """Senses how wide, deep and high the body is with what it holds, upright and along its heading, or in the frame of a part."""
+    """Senses width, depth and height of the body with what it holds, upright and along its heading, or in the frame of a part."""
     depth, width, height = body.bounding_box(frame).size
     return Size(width=width, depth=depth, height=height)
 
 
 @sensor
 def proprioception(body: Body) -> Proprioception:
-    """Senses at once how all joints stand, what still moves, and how wide, deep and high the body is in this posture."""
-    positions: list[float] = body.world.mj_data.qpos.tolist()
+    """Senses at once the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
+    positions: list[float] = body.physics.mj_data.qpos.tolist()
     walks = body.anatomy.push is not None
     depth, width, height = body.bounding_box("body").size
     return Proprioception(
         positions=tuple([positions[joint.q] for joint in body.joints.values()]),
         moving=body.moving(),
         speed=body.base.speed if walks else (0.0, 0.0, 0.0),
-        walking=walks and body.holding.commanded != (0.0, 0.0, 0.0),
-        turning=body.running.turning() if walks else 0.0,
+        walking=walks and body.hold.base_command != (0.0, 0.0, 0.0),
+        turning=body.motion.turning() if walks else 0.0,
         width=width,
         depth=depth,
         height=height,

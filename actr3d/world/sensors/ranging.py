@@ -1,25 +1,21 @@
-"""Distances: rangefinder, laser scan, proximity. A body's own parts, and what it holds, are never in the way."""
+"""Distances: rangefinder, laser scan, proximity. Rays pass through the body's own parts and what it holds."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mujoco
 import numpy as np
 from mujoco import mjtGeom
 from numpy.typing import NDArray
 
-from actr3d.world.frames import frame_of
-from actr3d.world.sensors.registry import sensor
-from actr3d.world.words import number, whole
-
-if TYPE_CHECKING:
-    from actr3d.world.body import Body
+from actr3d.world.body import Body, sensor
+from actr3d.world.command_registry import number, whole
 
 BEYOND = 1e-6
-"""How far behind a hit on the body itself a ray goes on [m]."""
+"""Distance behind a hit on the body itself at which a ray continues [m]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +27,7 @@ class Proximity:
     part: str
     """The part of the body that is nearest to it."""
     other: str
-    """What it is."""
+    """The name of the other object."""
 
 
 @sensor
@@ -39,11 +35,11 @@ def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: f
     """Senses the distance to the first surface in one direction [m], or None within reach.
 
     Args:
-        body: Whose.
+        body: The body.
         angle: Of the direction, to the left of straight ahead [rad].
         elevation: Of the direction, above straight ahead [rad].
-        reach: How far it reaches [m].
-        at: The part, site or frame where it sits and whose x points ahead; the eye unless one is named, else the base.
+        reach: Range [m].
+        at: The part, site or frame of the sensor, whose x axis points ahead; by default the eye, or the base without an eye.
 
     Raises:
         WorldError: If a value is not a number, the reach is negative, or there is no such frame.
@@ -77,8 +73,8 @@ def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
         WorldError: If the reach is not a number from 0 on.
     """
     reach = number(reach, "proximity: reach", 0)
-    body.world.refresh()
-    model, data = body.world.mj_model, body.world.mj_data
+    body.physics.refresh()
+    model, data = body.physics.mj_model, body.physics.mj_data
     nearest, found = reach, None
     for bound, mine, other in _candidates(body, reach):
         if bound > nearest:
@@ -88,16 +84,16 @@ def proximity(body: Body, reach: float = 1.0) -> Proximity | None:
             nearest, found = distance, (mine, other)
     if found is None:
         return None
-    return Proximity(distance=nearest, part=body.geom_name(found[0]), other=body.world.owners[found[1]])
+    return Proximity(distance=nearest, part=body.geom_name(found[0]), other=body.physics.owners[found[1]])
 
 
 def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
-    """Returns pairs of own and other geoms, the nearest first: (a distance that theirs is not below, own, other)."""
-    model, data = body.world.mj_model, body.world.mj_data
-    mine = body.feeling
+    """Returns pairs of own and other geoms, the nearest first: (lower bound of their distance, own, other)."""
+    model, data = body.physics.mj_model, body.physics.mj_data
+    mine = body.touch_geoms
     solid = (model.geom_contype | model.geom_conaffinity) != 0
     ground = (model.geom_type == int(mjtGeom.mjGEOM_PLANE)) | (model.geom_type == int(mjtGeom.mjGEOM_HFIELD))
-    solid &= ~ground & ~body.own()
+    solid &= ~ground & ~body.contacts.own_geoms()
     others = np.flatnonzero(solid)
     between = np.linalg.norm(data.geom_xpos[mine][:, None] - data.geom_xpos[others][None], axis=2)
     bounds = between - model.geom_rbound[mine][:, None] - model.geom_rbound[others][None]
@@ -106,24 +102,24 @@ def _candidates(body: Body, reach: float) -> list[tuple[float, int, int]]:
 
 
 def _cast(body: Body, at: str | None, angles: NDArray[np.float64], elevation: float, reach: float) -> tuple[float | None, ...]:
-    """Returns how far rays go, None beyond reach."""
-    body.world.refresh()
+    """Returns the lengths of rays, None beyond reach."""
+    body.physics.refresh()
     name = at if at is not None else body.eye if body.eye is not None else body.anatomy.base
-    origin, axes = frame_of(body, name)
+    origin, axes = body.frame(name)
     flat, up = math.cos(elevation), np.full(len(angles), math.sin(elevation))
     ways = np.stack([flat * np.cos(angles), flat * np.sin(angles), up], axis=1) @ axes.T
-    model, data = body.world.mj_model, body.world.mj_data
+    model, data = body.physics.mj_model, body.physics.mj_data
     hit: NDArray[np.int32] = np.full(len(ways), -1, dtype=np.int32)
     far: NDArray[np.float64] = np.zeros(len(ways))
     mujoco.mj_multiRay(model, data, origin, ways.ravel(), None, 1, -1, hit, far, None, len(ways), reach)
-    own = body.own()
+    own = body.contacts.own_geoms()
     for ray in np.flatnonzero((hit >= 0) & own[hit]).tolist():
         far[ray] = _past(model, data, origin, ways[ray], own, float(far[ray]))
     return tuple(distance if 0 <= distance <= reach else None for distance in far.tolist())
 
 
 def _past(model: Any, data: Any, origin: NDArray[np.float64], way: NDArray[np.float64], own: NDArray[np.bool_], gone: float) -> float:
-    """Returns how far a ray goes that has hit the body itself after `gone` [m]; -1 without end."""
+    """Returns the length of a ray that has hit the body itself after `gone` [m]; -1 without end."""
     hit: NDArray[np.int32] = np.zeros(1, dtype=np.int32)
     while True:
         gone += BEYOND

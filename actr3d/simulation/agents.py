@@ -1,0 +1,151 @@
+"""The agents of a simulation: in one environment, with one clock and one queue of events."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.actr.kernel.model import Model, attach_trace, ensure_converted, is_converted
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.kernel.tree import path_of
+from actr3d.actr.loading.global_seed import seed_shared
+from actr3d.actr.modules.port import Embodiment, Request
+from actr3d.clock import MICROSECONDS
+from actr3d.errors import SimulationError, did_you_mean
+from actr3d.trace import Trace
+
+Factory = Callable[[], Any]
+"""Makes an agent: its class, or a function without arguments."""
+
+
+_LATER = frozenset({"changes", "log", "parent", "random", "sch"})
+"""Attributes that an environment has as soon as it runs."""
+
+
+class Environment(Model):
+    """The environment of all agents of a simulation."""
+
+
+class Agents:
+    """The agents of one simulation, made from their factories; their requests to bodies wait in `outbox`.
+
+    All share one queue, so that simultaneous events of several agents have one order: by priority, then first come first
+    served. An agent holds generators, which cannot be copied; to return to an earlier moment, the agents are made again.
+
+    Args:
+        factories: By name, the factory of each agent.
+        bodies: The names of those agents that have bodies.
+        seed: The seed of all random choices, those of `random` and `numpy.random` included.
+        trace: Receives the events.
+
+    Raises:
+        SimulationError: If a factory makes no agent, or the same one twice, or a name is taken.
+    """
+
+    def __init__(self, factories: Mapping[str, Factory], bodies: frozenset[str], seed: int | str, trace: Trace | None) -> None:
+        self.outbox: list[Request] = []
+        self.stopped = False
+        """Whether an agent called `stop` in the last tick."""
+        outer = RunLimits.current()
+        seed_shared(seed)
+        with RunLimits(seed=seed):
+            self.environment = Environment()
+            for name, factory in factories.items():
+                agent = _made(name, factory)
+                if hasattr(self.environment, name) or name in _LATER:
+                    raise SimulationError(f"an agent cannot be named '{name}': every environment has something of that name")
+                if name in bodies:
+                    Embodiment(name, self.outbox).join(agent)
+                setattr(self.environment, name, agent)
+            ensure_converted(self.environment)
+        self._sch = self.environment.sch
+        self._sch.limits = outer
+        self._sch.in_lockstep = True
+        if outer is not None:
+            outer.clock = lambda: self._sch.now_us
+        if trace is not None:
+            attach_trace(self.environment, trace)
+
+    @property
+    def time(self) -> int:
+        """The agents' time [us]."""
+        return self._sch.now_us
+
+    @property
+    def done(self) -> bool:
+        """Whether no agent has anything left to do, now or ever."""
+        return not (self._sch.queue.heap or self._sch._incoming or self.outbox)
+
+    def may_run(self, end: int) -> bool:
+        """Returns whether the limits of the program leave time until `end` [us].
+
+        Raises:
+            EndOfRun: If an earlier run was cut short by them.
+        """
+        limits = self._sch.limits
+        last = None if limits is None else limits.clip()
+        return last is None or end <= last
+
+    def claim(self, end: int) -> None:
+        """Checks that the limits of the program leave time until `end` [us].
+
+        Raises:
+            EndOfRun: If they do not.
+        """
+        limits = self._sch.limits
+        if limits is not None and not self.may_run(end):
+            limits.refuse(end)
+
+    def cut(self, end: int) -> None:
+        """Notes that the limits of the program have cut the run short, because they leave no time until `end` [us]."""
+        if self._sch.limits is not None:
+            self._sch.limits.cut(end)
+
+    def run(self, period: float, end: int) -> None:
+        """Runs the agents for a period [s], until `end` [us]; to its end even where one of them calls `stop`."""
+        sch = self._sch
+        sch.run(period)
+        self.stopped = sch.stop_flag
+        while sch.stop_flag or sch.now_us < end:
+            sch.run((end - sch.now_us) / MICROSECONDS)
+
+    def take(self, request: Request, answer: Any) -> None:
+        """Gives an agent an answer, available from the next tick on."""
+        self._sch.call_after(0, request.port._take, (request, answer))
+
+    def trace_event(self, trace: Trace, kind: str, data: dict[str, Any]) -> None:
+        """Traces an event of the whole run."""
+        if trace.production:
+            trace.emit(self._sch.now_us, "top", kind, data)
+
+    def set_parameter(self, path: Any, value: Any) -> None:
+        """Sets a parameter of an agent that is a number, a text, True, False or None: `walker.memory.latency`.
+
+        Raises:
+            SimulationError: If there is no such parameter.
+        """
+        if not isinstance(path, str):
+            raise SimulationError(f"a parameter is named by a text such as 'walker.memory.latency' (got {path!r})")
+        *places, name = path.split(".")
+        part: Any = self.environment
+        for place in places:
+            inner = {child.name: child for child in part.get_children()}
+            if place not in inner:
+                raise SimulationError(f"no parameter '{path}': '{path_of(part)}' has no part '{place}'{did_you_mean(place, inner)}")
+            part = inner[place]
+        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
+        if name not in known:
+            raise SimulationError(f"no parameter '{path}': '{path_of(part)}' has no '{name}'{did_you_mean(name, known)}")
+        setattr(part, name, value)
+
+
+def _made(name: str, factory: Factory) -> Model:
+    if not callable(factory):
+        raise SimulationError(f"minds['{name}']: must be an agent's class, or a function without arguments (got {factory!r})")
+    agent = factory()
+    if not isinstance(agent, Model):
+        raise SimulationError(f"minds['{name}']: must make an agent (made {agent!r})")
+    if agent.__dict__.get("parent") is not None or (is_converted(agent) and agent.sch.now_us > 0):
+        raise SimulationError(f"minds['{name}']: must make a new agent each time it is called, because the run may go back to its start")
+    return agent

@@ -1,0 +1,35 @@
+"""Measures of a run: results that are computed from the world, not from the agents."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from actr3d.world import World
+
+
+class Measure(Protocol):
+    """Reads the world after every physics step of a run, and computes a result. It changes nothing.
+
+    When a run goes back, times occur again: new values of a time replace former ones, and values after the present
+    do not count.
+    """
+
+    def begin(self, world: World) -> None:
+        """Prepares for a world, at its start.
+
+        Raises:
+            WorldError: If the world lacks what it measures.
+        """
+        ...
+
+    def look(self) -> None:
+        """Reads the world after a physics step, or a part of one; see `World.watchers`."""
+        ...
+
+    def result(self, *, over: bool) -> Any:
+        """Returns the result up to now: a frozen dataclass of plain values, whose `str` is for people.
+
+        Args:
+            over: Whether the agents have ended the run; otherwise it was cut short, or continues.
+        """
+        ...

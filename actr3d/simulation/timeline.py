@@ -1,0 +1,226 @@
+"""The timeline of a run: forward, back, and forward again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from actr3d.simulation.commands import Command, command_of
+from actr3d.simulation.event_log import EventLog
+from actr3d.simulation.lockstep import Lockstep
+from actr3d.world import World, WorldState
+
+SPACING = 50
+"""Ticks between two stored states at first."""
+MOST_STATES = 256
+"""Greatest number of stored states; beyond it every second one is dropped, so that a long run needs no more memory than a short one."""
+MOST_ANSWERS = 10_000
+"""Greatest number of stored answers, from the start of the run on: 100 s with one view each 10 ms. Beyond them the physics is
+simulated again when a run goes back."""
+
+
+class History:
+    """Stores every command, the first answers of the bodies, and a state at intervals.
+
+    Args:
+        start: The state at the start.
+    """
+
+    def __init__(self, start: WorldState) -> None:
+        self.commands: list[Command] = []
+        self.ticks = 0
+        """Length of the run in ticks, including ticks that are only known from a recording."""
+        self.lived = 0
+        """Last tick that ran here; up to it states are stored."""
+        self.answered = 0
+        """Last tick up to which every answer is stored."""
+        self._answers: dict[int, tuple[Any, ...]] = {}
+        self._kept = 0
+        self._spacing = SPACING
+        self._states: dict[int, WorldState] = {0: start}
+
+    def wants(self, tick: int) -> bool:
+        """Returns whether to store the state at the end of a tick."""
+        return tick % self._spacing == 0
+
+    def keep(self, tick: int, state: WorldState) -> None:
+        """Stores the state at the end of a tick."""
+        self._states[tick] = state
+        if len(self._states) > MOST_STATES:
+            self._spacing *= 2
+            self._states = {tick: kept for tick, kept in self._states.items() if tick % self._spacing == 0}
+
+    def add_tick(self, tick: int, answers: tuple[Any, ...]) -> None:
+        """Adds a tick, with the answers of the bodies at its end."""
+        self.lived = tick
+        self.ticks = max(self.ticks, tick)
+        if self.answered == tick - 1 and self._kept + len(answers) <= MOST_ANSWERS:
+            self.answered = tick
+            if answers:
+                self._answers[tick] = answers
+                self._kept += len(answers)
+
+    def answers(self, tick: int) -> tuple[Any, ...]:
+        """Returns the answers of the bodies at the end of a tick up to `answered`."""
+        return self._answers.get(tick, ())
+
+    def before(self, tick: int) -> tuple[int, WorldState]:
+        """Returns the last stored state up to a tick that a run can reach without its physics, and its tick."""
+        last = max(known for known in self._states if known <= min(tick, self.answered))
+        return last, self._states[last]
+
+    def cut(self, tick: int, commands: int) -> None:
+        """Forgets what was after a tick, and all commands but the first few."""
+        del self.commands[commands:]
+        self.ticks = tick
+        self.lived = min(self.lived, tick)
+        self.answered = min(self.answered, tick)
+        self._states = {known: state for known, state in self._states.items() if known <= tick}
+        for known in [known for known in self._answers if known > tick]:
+            self._kept -= len(self._answers.pop(known))
+
+
+class Timeline:
+    """Moves a run through its time, stores what is needed to go back, and reports what is new to the event log.
+
+    After going back, known ticks run again with all their commands; a new command starts another future from there.
+
+    Args:
+        world: The world, at its start.
+        begin: Makes the agents, and connects them to the world.
+        log: Receives everything that happens.
+    """
+
+    def __init__(self, world: World, begin: Callable[[], Lockstep], log: EventLog) -> None:
+        self._world = world
+        self._begin = begin
+        self._log = log
+        self._history = History(world.state())
+        self._lockstep: Lockstep | None = None
+
+    @property
+    def begun(self) -> bool:
+        """Whether the agents have been made."""
+        return self._lockstep is not None
+
+    @property
+    def lockstep(self) -> Lockstep:
+        """The present; makes the agents if there are none yet.
+
+        Raises:
+            SimulationError: If an agent cannot be made.
+        """
+        if self._lockstep is None:
+            self._lockstep = self._begin()
+            self._log.state(0, self._world)
+        return self._lockstep
+
+    @property
+    def ticks(self) -> int:
+        """Number of completed ticks up to the present."""
+        return 0 if self._lockstep is None else self._lockstep.ticks
+
+    @property
+    def furthest(self) -> int:
+        """Length of the run in ticks, also after it went back."""
+        return self._history.ticks
+
+    # -- forward
+
+    def tick(self) -> None:
+        """Repeats the known commands of this moment, and runs the agents for one period.
+
+        Raises:
+            SimulationError: If the last tick has had no tock, or has failed.
+            Exception: What an agent raises.
+        """
+        lockstep = self._lockstep or self.lockstep
+        if lockstep.commands < len(self._history.commands):
+            lockstep.repeat_commands(self._history.commands)
+        lockstep.tick()
+
+    def tock(self) -> None:
+        """Simulates the physics of that tick, and stores what is new.
+
+        Raises:
+            SimulationError: If there has been no tick before, or something has failed.
+            Exception: What the world or a body raises.
+        """
+        lockstep, history = self.lockstep, self._history
+        answers = lockstep.tock()
+        ticks = lockstep.ticks
+        if ticks > history.lived:
+            history.add_tick(ticks, answers)
+            if history.wants(ticks):
+                history.keep(ticks, self._world.state())
+        self._log.state(ticks, self._world)
+
+    def command(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None) -> None:
+        """Carries out a new command of a user; after the run went back, its former future is forgotten.
+
+        Raises:
+            SimulationError: If there is no such command or body, or a tick waits for its tock.
+            Exception: What the world or the body raises; then nothing is forgotten.
+        """
+        lockstep, history = self.lockstep, self._history
+        command, before = command_of(lockstep.ticks, word, values, named, body, self._world), lockstep.commands
+        with self._log.holding():
+            lockstep.command(command)
+            if lockstep.ticks < history.ticks or before < len(history.commands):
+                history.cut(lockstep.ticks, before)
+                self._log.cut(lockstep.ticks, before)
+            history.commands.append(command)
+        lockstep.trace_command(command)
+        self._log.command(command)
+
+    # -- known commands
+
+    def plan(self, commands: Sequence[Command], ticks: int) -> None:
+        """Sets the commands of an earlier run, and its length in ticks; this run has not begun."""
+        self._history.commands[:] = commands
+        self._history.ticks = ticks
+
+    def forget_ahead(self) -> None:
+        """Forgets that the run has been further than it is now; planned commands stay."""
+        self._history.cut(self.ticks, len(self._history.commands))
+
+    def repeat_commands(self) -> None:
+        """Repeats the known commands of this moment, without a tick.
+
+        Raises:
+            Exception: What the world or a body raises.
+        """
+        self.lockstep.repeat_commands(self._history.commands)
+
+    # -- back
+
+    def seek(self, to: int) -> None:
+        """Goes to the end of a known tick, before the commands of that moment.
+
+        To go back, the agents are made again and repeat what was before, with the stored answers; the world comes from a stored
+        state.
+
+        Raises:
+            SimulationError: If the agents act differently than the first time.
+        """
+        present = self.lockstep
+        if present.broken or to <= present.ticks:
+            self._lockstep = None
+            self._world.restore(self._history.before(0)[1])
+        self._log.silent = True
+        try:
+            self._repeat(to)
+        finally:
+            self._log.silent = False
+
+    def _repeat(self, to: int) -> None:
+        history, lockstep = self._history, self.lockstep
+        kept, state = history.before(to)
+        if kept > lockstep.ticks:
+            while lockstep.ticks < kept:
+                lockstep.repeat_commands(history.commands, only_agents=True)
+                lockstep.remember(history.answers(lockstep.ticks + 1))
+            self._world.restore(state)
+        while lockstep.ticks < to:
+            self.tick()
+            self.tock()

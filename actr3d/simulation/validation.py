@@ -1,0 +1,136 @@
+"""Checks the arguments of a simulation, and converts them to plain values that can be recorded."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Collection, Mapping
+from numbers import Real
+from typing import Any, cast
+
+from actr3d.clock import microseconds, seconds
+from actr3d.errors import SimulationError, did_you_mean
+from actr3d.world import Scene, World
+
+
+def world_of(scene: Any, seed: int) -> World:
+    """Returns the given world, or a new one from a scene.
+
+    Raises:
+        SimulationError: If it is neither, or the world is not at its start.
+        WorldError: If the scene cannot be compiled.
+    """
+    if isinstance(scene, World):
+        if scene.time:
+            now = seconds(scene.time)
+            raise SimulationError(f"Simulation.scene: the world must be at its start, as the agents are (it has come to {now:g} s)")
+        return scene
+    if not isinstance(scene, Scene):
+        raise SimulationError(f"Simulation.scene: must be a Scene or a World (got {scene!r})")
+    return World(scene, seed)
+
+
+def seed_of(seed: Any) -> int | str:
+    """Returns a seed as a whole number or a text.
+
+    Raises:
+        SimulationError: If it is neither.
+    """
+    if isinstance(seed, str) and seed.isprintable():
+        return str(seed)
+    return _whole(seed, "Simulation.seed: must be a whole number or a text of printable characters")
+
+
+def count_of(n: Any, what: str) -> int:
+    """Returns a count as an integer.
+
+    Raises:
+        SimulationError: If it is no whole number, or negative.
+    """
+    message = f"{what}: must be a whole number, at least 0"
+    count = _whole(n, message)
+    if count < 0:
+        raise SimulationError(f"{message} (got {n!r})")
+    return count
+
+
+def factor_of(factor: Any, what: str) -> float | None:
+    """Returns a factor of real time; None for as fast as possible.
+
+    Raises:
+        SimulationError: If it is no finite number above 0.
+    """
+    if factor is None:
+        return None
+    if not isinstance(factor, Real) or not 0 < cast("Any", factor) < float("inf"):
+        raise SimulationError(f"{what}: must be a finite number above 0 (got {factor!r})")
+    return float(factor)
+
+
+def _whole(value: Any, message: str) -> int:
+    try:
+        return int(operator.index(value))
+    except TypeError:
+        raise SimulationError(f"{message} (got {value!r})") from None
+
+
+# -- times
+
+
+def steps_of(period: float, world: World) -> int:
+    """Returns the number of physics steps in a period.
+
+    Raises:
+        SimulationError: If it is no whole number of them.
+    """
+    step = world.scene.timestep_us
+    steps, rest = divmod(microseconds(period, "Simulation.period"), step)
+    if rest or steps < 1:
+        raise SimulationError(f"Simulation.period: must be a whole multiple of the physics step of {seconds(step):g} s (got {period!r})")
+    return steps
+
+
+def whole_ticks(time: float, period: int, what: str) -> int:
+    """Returns the number of ticks of a period [us] in a time [s].
+
+    Raises:
+        SimulationError: If it is no whole number of them, or negative.
+    """
+    ticks, rest = divmod(microseconds(time, f"the time of {what}"), period)
+    if rest or ticks < 0:
+        raise SimulationError(f"{what}: must be a whole number of ticks of {seconds(period):g} s, at least 0 (got {time!r})")
+    return ticks
+
+
+# -- agents
+
+
+def named_factories(given: Any, what: str) -> dict[str, Any]:
+    """Returns the factories of agents by name.
+
+    Raises:
+        SimulationError: If it is no mapping, or a name is invalid.
+    """
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise SimulationError(f"{what}: must name what makes each agent, as in {{'walker': Walker}} (got {given!r})")
+    named = dict(cast("Mapping[Any, Any]", given))
+    for name in named:
+        if not isinstance(name, str) or not name.isprintable() or name[:1] in ("", "_"):
+            raise SimulationError(f"{what}: an agent's name must be a text that does not begin with '_' (got {name!r})")
+    return named
+
+
+def check_names(minds: Collection[str], bodiless: Collection[str], bodies: Collection[str]) -> None:
+    """Checks that agents have the bodies that they should have.
+
+    Raises:
+        SimulationError: If a named body does not exist, or a bodiless agent has the name of a body.
+    """
+    for name in minds:
+        if name not in bodies:
+            hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
+            raise SimulationError(f"minds: no body '{name}' in the scene{hint} (an agent without a body goes into `bodiless`)")
+    for name in bodiless:
+        if name in bodies:
+            raise SimulationError(f"bodiless: '{name}' is the name of a body")

@@ -1,0 +1,137 @@
+"""The degrees of freedom that servos of a body drive: their positions, speeds and controls."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from mujoco import mjtEq, mjtObj
+from numpy.typing import NDArray
+
+from actr3d.world.anatomy import Anatomy
+from actr3d.world.base import Base
+from actr3d.world.joints import Joint
+from actr3d.world.physics import Physics
+from actr3d.world.reach import reaches
+
+Row = NDArray[np.float64]
+
+
+class ActuatedDofs:
+    """The base and the joints of one body that have a velocity servo, as rows of arrays (n,).
+
+    The first three rows of a body that walks are its base: places x, y and heading, speeds forward, left and turn. Then follow
+    its joints. Callers may change the returned arrays.
+
+    Args:
+        physics: The compiled scene and its state.
+        anatomy: Names the servos of the body.
+        base: The base of the body.
+        joints: The joints of the body.
+        members: (nbody,) by MuJoCo body: whether it is part of the body.
+        geoms: The geoms of the body that can touch something.
+    """
+
+    def __init__(
+        self,
+        physics: Physics,
+        anatomy: Anatomy,
+        base: Base,
+        joints: Iterable[Joint],
+        members: NDArray[np.bool_],
+        geoms: NDArray[np.intp],
+    ) -> None:
+        data = physics.mj_data
+        model: Any = physics.mj_model
+        names, walks = anatomy.servos, anatomy.push or ()
+        acts = [int(model.actuator(name).id) for name in names]
+        joints = [joint for joint in joints if joint.servo in acts]
+        servos = [int(model.actuator(name).id) for name in walks] + [int(joint.servo or 0) for joint in joints]
+        self._base = base
+        self._qpos, self._qvel, self._ctrl = data.qpos, data.qvel, data.ctrl
+        self.base = len(walks)
+        """Number of rows of the base: three or none."""
+        self.joints = {joint.name: self.base + row for row, joint in enumerate(joints)}
+        """By joint: its row."""
+        self.q = _rows([base.q + n for n in range(self.base)] + [joint.q for joint in joints])
+        self.v = _rows([base.v + n for n in range(self.base)] + [joint.v for joint in joints])
+        self.c = _rows([model.actuator_ctrladr[servo] for servo in servos])
+        """Their indices in MuJoCo's `qpos`, `qvel` and `ctrl`."""
+        self.lower = np.array([-math.inf] * self.base + [joint.lower for joint in joints])
+        self.upper = np.array([math.inf] * self.base + [joint.upper for joint in joints])
+        self.band: Row = model.actuator_forcerange[servos, 1] / model.actuator_gainprm[servos, 0]
+        """Difference between control and speed from which the servo applies its full force."""
+        self.faces = base.faces
+        """Heading of the base when the third number of its place is 0 [rad]."""
+        self._farthest: Row = reaches(model, members, geoms).max(axis=0, initial=0.0)
+        self.looped: NDArray[np.bool_] = _in_loop(model, members, self.v)
+        """Those in a closed loop (both hands hold one load), which cannot all move independently."""
+
+    @property
+    def places(self) -> Row:
+        """Their positions [m] [rad]."""
+        return self._qpos[self.q]
+
+    @property
+    def speeds(self) -> Row:
+        """Their speeds [m/s] [rad/s]."""
+        return self.along_base(self._qvel[self.v])
+
+    def set_speeds(self, speeds: Row, which: NDArray[np.bool_]) -> None:
+        """Sets the speeds of some of them at once."""
+        self._qvel[self.v] = np.where(which, self.along_base(speeds, -1), self._qvel[self.v])
+
+    @property
+    def controls(self) -> Row:
+        """The speeds that their servos are set to keep."""
+        return self._ctrl[self.c]
+
+    def set_controls(self, speeds: Row | float | tuple[float, ...], rows: slice = slice(None)) -> None:
+        """Sets the servos of some rows to keep other speeds."""
+        self._ctrl[self.c[rows]] = speeds
+
+    def rest(self, which: NDArray[np.bool_]) -> None:
+        """Stops some of them at once."""
+        self._ctrl[self.c[which]] = 0
+        self._qvel[self.v[which]] = 0
+
+    def along_base(self, values: Row, way: int = 1) -> Row:
+        """Rotates the first two values, in place, from the world's axes to those of the base, or with -1 the other way."""
+        if self.base:
+            heading = self._base.heading
+            c, s = math.cos(heading), way * math.sin(heading)
+            x, y = values.item(0), values.item(1)
+            values[0], values[1] = c * x + s * y, c * y - s * x
+        return values
+
+    def fastest(self, speeds: Row) -> float:
+        """Returns an upper bound of the speed of any point of the body [m/s]; infinite if not all that moves it is actuated."""
+        others = np.delete(self._farthest, self.v)
+        return float(speeds @ self._farthest[self.v]) if not others.any() else math.inf
+
+
+def _rows(numbers: list[Any]) -> NDArray[np.intp]:
+    return np.array(numbers, dtype=np.intp)
+
+
+def _in_loop(model: Any, members: NDArray[np.bool_], dofs: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Returns which degrees of freedom are in a loop that an equality between two parts of a body closes."""
+    found = np.zeros(len(dofs), dtype=bool)
+    for number in range(int(model.neq)):
+        ends = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
+        kind = model.eq_type[number] == int(mjtEq.mjEQ_CONNECT) and model.eq_objtype[number] == int(mjtObj.mjOBJ_BODY)
+        if kind and members[ends[0]] and members[ends[1]]:
+            one, other = (_carriers(model, end) for end in ends)
+            found |= np.isin(model.dof_bodyid[dofs], list(one ^ other))
+    return found
+
+
+def _carriers(model: Any, number: int) -> set[int]:
+    """Returns a MuJoCo body and all that carry it."""
+    found = {number}
+    while number:
+        number = int(model.body_parentid[number])
+        found.add(number)
+    return found

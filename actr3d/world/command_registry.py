@@ -1,0 +1,155 @@
+"""Registries of what bodies can do and sense: words, each with the function that carries it out."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import pkgutil
+import re
+from collections.abc import Callable, Collection
+from importlib import import_module
+from typing import Any, Generic, TypeVar
+
+from actr3d.errors import WorldError, did_you_mean
+
+B = TypeVar("B")
+"""What the words are for: `Body`."""
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class BodyWord(Generic[B]):
+    """One actuator or sensor of a body.
+
+    Args:
+        name: The word.
+        function: Carries it out, with the body as its first argument.
+        available: Returns whether a body has it.
+    """
+
+    def __init__(self, name: str, function: Callable[..., Any], available: Callable[[B], bool]) -> None:
+        self.name = name
+        self.available = available
+        self._function = function
+        self._signature = inspect.signature(function)
+        self._optional = all(of.default is not of.empty for of in [*self._signature.parameters.values()][1:])
+        """Whether it can be called without values."""
+
+    def __call__(self, body: Any, *values: Any, **named: Any) -> Any:
+        """Carries it out.
+
+        Raises:
+            WorldError: If it does not take these values; with the values that it takes.
+        """
+        if values or named or not self._optional:
+            try:
+                self._signature.bind(body, *values, **named)
+            except TypeError as error:
+                raise WorldError(f"{body.name}: {self.name} takes ({self.takes}): {error}") from error
+        return self._function(body, *values, **named)
+
+    @property
+    def takes(self) -> str:
+        """Its parameters, as Python writes them."""
+        parameters = list(self._signature.parameters.values())[1:]
+        return ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in parameters)
+
+    @property
+    def meaning(self) -> str:
+        """Its effect, in one sentence."""
+        return re.split(r"(?<=\.)\s", inspect.getdoc(self._function) or "")[0]
+
+
+class CommandRegistry(dict[str, BodyWord[B]], Generic[B]):
+    """All words of one kind, by name; a decorator that registers a function under its own name.
+
+    Use it as `@sensor`, or as `@sensor.if_body(condition)` for a word that only some bodies have.
+    """
+
+    def __call__(self, function: F) -> F:
+        """Registers a function for all bodies."""
+        return self.if_body(lambda _: True)(function)
+
+    def if_body(self, available: Callable[[B], bool]) -> Callable[[F], F]:
+        """Returns a decorator that registers a function for the bodies that fulfil a condition."""
+
+        def register(function: F) -> F:
+            self[function.__name__] = BodyWord(function.__name__, function, available)
+            return function
+
+        return register
+
+    def of(self, body: B) -> tuple[str, ...]:
+        """Returns the words that a body has, in the order of their registration."""
+        return tuple(name for name, word in self.items() if word.available(body))
+
+
+def import_modules(package: str, path: Collection[str]) -> None:
+    """Imports all modules of a package, in the order of their names, so that they register what they define.
+
+    Args:
+        package: Its `__name__`.
+        path: Its `__path__`.
+    """
+    for module in pkgutil.iter_modules(path):
+        import_module(f"{package}.{module.name}")
+
+
+# -- checks of values
+
+
+def known(word: Any, words: Collection[str], whose: str, kind: str) -> str:
+    """Returns a word if it is one of those that exist; the agent's code chooses it, so it may be anything.
+
+    Args:
+        word: The given word.
+        words: Those that exist.
+        whose: The owner of the words, for the message.
+        kind: What they are called, for the message.
+
+    Raises:
+        WorldError: If it is none of them; with a list of them.
+    """
+    if isinstance(word, str) and word in words:
+        return word
+    has = f"it has {', '.join(words)}" if words else f"it has no {kind}s"
+    near = did_you_mean(word, words) if isinstance(word, str) else ""
+    raise WorldError(f"{whose} has no {kind} {_quoted(word)}{near}; {has}")
+
+
+def _quoted(word: Any) -> str:
+    return f"'{word}'" if isinstance(word, str) else repr(word)
+
+
+def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
+    """Returns a finite number within bounds; accepts text such as "1.5", because patterns bind text.
+
+    Raises:
+        WorldError: If it is none.
+    """
+    if isinstance(value, bool):
+        raise WorldError(f"{what}: must be a number (got {value!r})")
+    try:
+        given = float(value)
+    except OverflowError:  # an integer beyond what floats hold
+        given = math.inf
+    except (TypeError, ValueError) as error:
+        raise WorldError(f"{what}: must be a number (got {value!r})") from error
+    if not math.isfinite(given):
+        raise WorldError(f"{what}: must be a finite number (got {value!r})")
+    if not least <= given <= most:
+        bounds = f"{least:g} to {most:g}" if most < math.inf else f"at least {least:g}"
+        raise WorldError(f"{what}: must be {bounds} (got {value!r})")
+    return given
+
+
+def whole(value: Any, what: str, least: int, most: int) -> int:
+    """Returns an integer within bounds; accepts text such as "3".
+
+    Raises:
+        WorldError: If it is none.
+    """
+    given = number(value, what, least, most)
+    if not given.is_integer():
+        raise WorldError(f"{what}: must be a whole number (got {value!r})")
+    return int(given)

@@ -1,0 +1,180 @@
+"""Commands that take a while: they choose the speeds of each tick until they are done."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from actr3d.world.anatomy import Steering
+from actr3d.world.base import Base
+from actr3d.world.joints import Joint
+from actr3d.world.physics import Physics
+from actr3d.world.posture_hold import PostureHold
+
+THERE = 3e-4
+"""Distance from its target below which a joint or the base is put there exactly after a tick [m] or [rad]: more than the error that
+the pull of other limbs causes in that tick, and less than anyone sees."""
+
+ASTRAY = 0.1
+"""Direction error above which a body that walks to a point stops and turns first [rad]. Source: chosen for this library."""
+
+HEADING = "heading"
+"""Key of the base's turn to a heading among targets."""
+
+TURN = "(turn)"
+"""Key of the base's turn by an angle among targets: to a heading too, but by the full angle, not the shorter way."""
+
+
+class MotionCommands:
+    """Holds the unfinished commands of one body: joints to positions, a walk to a point, a brake.
+
+    Once before each tick they set the speeds for all of it. The speed is constant, and in the last tick it is the rest of
+    the way over the tick, so that the end is reached exactly at a tick's end.
+
+    Args:
+        physics: The compiled scene and its state.
+        root: The MuJoCo body that carries all others of the body.
+        base: The base of the body.
+        joints: The joints of the body by name.
+        hold: Keeps the speeds that these commands choose.
+        steering: How it is driven; None if it is no vehicle.
+        brake_control: Where the brake's control is in MuJoCo's `ctrl`; None without a brake.
+    """
+
+    def __init__(
+        self,
+        physics: Physics,
+        root: int,
+        base: Base,
+        joints: Mapping[str, Joint],
+        hold: PostureHold,
+        steering: Steering | None,
+        brake_control: slice | None,
+    ) -> None:
+        self._physics = physics
+        self._root = root
+        self._base = base
+        self._joints = joints
+        self._hold = hold
+        self._steering = steering
+        self._brake_control = brake_control
+        self.targets: dict[str, tuple[float, float]] = {}
+        """By joint, or `HEADING` or `TURN`: its target position and its speed, [rad] [rad/s]."""
+        self.waypoint: tuple[float, float, float, float] | None = None
+        """Where the body walks to: x, y, speed, speed of turning, [m] [m] [m/s] [rad/s]."""
+        self.brake = 0.0
+        """Position of the brake pedal, 0 to 1."""
+
+    def __bool__(self) -> bool:
+        return bool(self.targets) or self.waypoint is not None or self.brake > 0
+
+    def before_step(self, duration: float) -> None:
+        """Sets the speeds for the next `duration` [s]."""
+        for name in tuple(self.targets):
+            if name in (HEADING, TURN):
+                self._turn(name, duration)
+            else:
+                self._move(name, duration)
+        if self.waypoint is not None:
+            self._walk(*self.waypoint, duration)
+        if self.brake > 0:
+            self._brake(duration)
+
+    def after_step(self) -> None:
+        """Ends the commands that have reached their targets: moves the body to them exactly, and stops it.
+
+        A joint at its target keeps the target until all are at theirs: those that still move would push it away.
+        """
+        base = self._base
+        there = [name for name in self.targets if self._arrived(name)]
+        if len(there) == len(self.targets):
+            self.targets.clear()
+        if self.waypoint is not None and math.dist(self.waypoint[:2], base.place[:2]) <= THERE:
+            x, y, _, _ = self.waypoint
+            self.waypoint = None
+            base.place = (x, y, base.place[2])
+            self._hold.stand()
+            self._hold.drive_base((0.0, 0.0, 0.0))
+
+    def forget_course(self) -> None:
+        """Ends the walk to a point and the turns of the base, because another command moves it now."""
+        self.waypoint = None
+        self.targets.pop(HEADING, None)
+        self.targets.pop(TURN, None)
+
+    def turning(self) -> float:
+        """Returns the rest of a turn by an angle [rad]; 0 if there is none."""
+        rest = self._rest(TURN) if TURN in self.targets else 0.0
+        return rest if abs(rest) > THERE else 0.0
+
+    def state(self) -> tuple[Any, ...]:
+        """Returns all commands as plain values."""
+        return (tuple(self.targets.items()), self.waypoint, self.brake)
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Restores commands that `state` returned."""
+        targets, self.waypoint, self.brake = state
+        self.targets = dict(targets)
+
+    def _arrived(self, name: str) -> bool:
+        """Returns whether a joint or the heading is at its target; then moves it there exactly and stops it."""
+        base, hold = self._base, self._hold
+        target, _ = self.targets[name]
+        if name in (HEADING, TURN):
+            x, y, heading = base.place
+            rest = self._rest(name)
+            if abs(rest) <= THERE:
+                base.place = (x, y, heading + rest)
+                hold.stand()
+                hold.drive_base((*hold.base_command[:2], 0.0))
+                return True
+        elif abs(target - self._joints[name].position) <= THERE:
+            self._joints[name].put(target)
+            hold.stand(name)
+            hold.drive_joint(self._joints[name], 0.0)
+            return True
+        return False
+
+    def _move(self, name: str, duration: float) -> None:
+        """Sets the speed of one joint."""
+        joint = self._joints[name]
+        target, speed = self.targets[name]
+        self._hold.drive_joint(joint, _bounded((target - joint.position) / duration, speed))
+
+    def _turn(self, name: str, duration: float) -> None:
+        """Sets the turning speed of the base."""
+        forward, left, _ = self._hold.base_command
+        self._hold.drive_base((forward, left, _bounded(self._rest(name) / duration, self.targets[name][1])))
+
+    def _rest(self, name: str) -> float:
+        """Returns the rest of a turn of the base [rad]."""
+        rest = self.targets[name][0] - self._base.place[2]
+        return rest if name == TURN else _wrapped(rest)
+
+    def _walk(self, x: float, y: float, speed: float, turn: float, duration: float) -> None:
+        """Turns towards the point and walks straight to it."""
+        at_x, at_y, heading = self._base.place
+        way = math.dist((x, y), (at_x, at_y))
+        off = _wrapped(math.atan2(y - at_y, x - at_x) - heading)
+        # Near the point its direction means little, and turning to it would only swing the body.
+        spin = _bounded(off / duration, turn) if way > speed * duration else 0.0
+        pace = min(speed, way / duration) if spin == 0 or abs(off) < ASTRAY else 0.0
+        self._hold.drive_base((pace * math.cos(off), pace * math.sin(off), spin))
+
+    def _brake(self, duration: float) -> None:
+        """Brakes with the force of the pressed pedal, and with no more than stops the car in this tick."""
+        assert self._steering is not None
+        speed = self._base.speed[0]
+        most = self.brake * self._steering.brake
+        mass = float(self._physics.mj_model.body_subtreemass[self._root])
+        self._physics.mj_data.ctrl[self._brake_control] = -_bounded(mass * speed / duration, most)
+
+
+def _bounded(value: float, bound: float) -> float:
+    return max(-bound, min(bound, value))
+
+
+def _wrapped(angle: float) -> float:
+    """Returns the same direction in -pi to pi [rad]."""
+    return math.remainder(angle, 2 * math.pi)

@@ -1,0 +1,158 @@
+"""The compiled scene, its state, and what follows from the state: computed once for each state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import MjData, MjModel, mjtState
+from numpy.typing import NDArray
+
+from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.scene import Scene
+
+INTEGRATION = mjtState.mjSTATE_INTEGRATION
+"""The part of MuJoCo's data from which a run continues exactly; less than that drifts (platform-facts)."""
+
+_DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
+"""MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
+
+
+class Physics:
+    """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and updates derived quantities at most once per state.
+
+    Args:
+        scene: What to compile.
+
+    Raises:
+        WorldError: If MuJoCo cannot compile the scene; with MuJoCo's message.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        try:
+            self.mj_model: MjModel = scene.specification().compile()
+        except ValueError as error:
+            raise WorldError(f"the scene cannot be compiled: {error}") from error
+        self.mj_data = MjData(self.mj_model)
+        self.timestep = scene.timestep
+        """The whole physics step [s]; `mj_model.opt.timestep` is shorter while a step is divided."""
+        self.timestep_us = scene.timestep_us
+        """The same [us]."""
+        self.steps = 0
+        """Physics steps since the start."""
+        self.moment = 0
+        """Number of the current state; a reading made at an earlier number is out of date."""
+        self._refreshed = False
+        self._solved = False
+        self._scratch: MjData | None = None
+        self._numbers = np.empty(mujoco.mj_stateSize(self.mj_model, INTEGRATION))
+        self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
+        mujoco.mj_forward(self.mj_model, self.mj_data)
+        self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
+        """By geom: the name of the object that it belongs to; a geom of the world itself has its own name."""
+        self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
+        """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
+        self.grasped: dict[int, int] = {}
+        """By weld of a hand: the MuJoCo body that the hand holds."""
+        self.renderer: Any = None
+        """Draws pictures; None before the first picture."""
+
+    @property
+    def time(self) -> int:
+        """Time since the start [us], counted in whole steps: it cannot drift."""
+        return self.steps * self.timestep_us
+
+    def changed(self) -> None:
+        """Marks derived quantities as out of date, after positions, speeds or commands have changed."""
+        self._refreshed = self._solved = False
+        self.moment += 1
+
+    def refresh(self) -> None:
+        """Updates positions, contacts and rays to the state, once per state.
+
+        After a step, MuJoCo's geometry (`xpos`, contacts) is that of the positions before it.
+        """
+        if not self._refreshed:
+            mujoco.mj_fwdPosition(self.mj_model, self.mj_data)
+            self._refreshed = True
+
+    def solve(self) -> None:
+        """Updates forces and accelerations to the state too, once per state, without an effect on later steps."""
+        self.refresh()
+        if not self._solved:
+            start = self.mj_data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
+            mujoco.mj_forwardSkip(self.mj_model, self.mj_data, mujoco.mjtStage.mjSTAGE_POS, 1)
+            self.mj_data.qacc_warmstart[:] = start
+            self._solved = True
+
+    def accelerations(self) -> NDArray[np.float64]:
+        """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2, rad/s^2].
+
+        MuJoCo's `qacc` leaves out that the integrator is implicit: with stiff servos it is not what happens.
+        """
+        if self._scratch is None:
+            self._scratch = MjData(self.mj_model)
+        mujoco.mj_setState(self.mj_model, self._scratch, self.integration_state(), INTEGRATION)
+        mujoco.mj_step(self.mj_model, self._scratch)
+        return (self._scratch.qvel - self.mj_data.qvel) / self.mj_model.opt.timestep
+
+    # -- the state
+
+    def integration_state(self) -> NDArray[np.float64]:
+        """Returns a copy of the numbers from which the physics continues exactly."""
+        numbers = np.empty_like(self._numbers)
+        mujoco.mj_getState(self.mj_model, self.mj_data, numbers, INTEGRATION)
+        return numbers
+
+    def state_bytes(self) -> bytes:
+        """Returns the same numbers as bytes."""
+        mujoco.mj_getState(self.mj_model, self.mj_data, self._numbers, INTEGRATION)
+        return self._numbers.tobytes()
+
+    def restore(self, numbers: NDArray[np.float64]) -> None:
+        """Sets the state to numbers of `integration_state`, and clears warnings of divergence."""
+        mujoco.mj_setState(self.mj_model, self.mj_data, numbers, INTEGRATION)
+        self._warnings[:] = 0
+
+    @property
+    def diverged(self) -> bool:
+        """Whether MuJoCo has found NaN or huge values since the last `restore`."""
+        return bool(np.count_nonzero(self._warnings))
+
+    def diverged_object(self) -> str:
+        """Returns the name of the object in which MuJoCo found NaN or a huge value."""
+        model: Any = self.mj_model
+        kind = int(np.argmax(self._warnings))
+        number = int(self.mj_data.warning.lastinfo[_DIVERGED][kind])
+        # MuJoCo counts the first kind, bad positions, by position, the others by degree of freedom.
+        joint = int(np.searchsorted(model.jnt_qposadr, number, side="right")) - 1 if kind == 0 else int(model.dof_jntid[number])
+        return self._root_name(int(model.jnt_bodyid[joint]))
+
+    # -- objects
+
+    def loose(self, name: str) -> int:
+        """Returns the MuJoCo body of a loose object.
+
+        Raises:
+            WorldError: If there is no such object, or it is fixed.
+        """
+        model = self.mj_model
+        free = {
+            str(model.body(int(model.jnt_bodyid[n])).name): int(model.jnt_bodyid[n]) for n in range(model.njnt) if model.jnt_type[n] == 0
+        }
+        if str(name) not in free:
+            raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
+        return free[name]
+
+    def other_side(self, contact: int, side: int) -> str:
+        """Returns the name of the object on one side (0 or 1) of a contact."""
+        geom = int(self.mj_data.contact.geom[contact, side])
+        return self.owners[geom] if geom >= 0 else self._root_name(int(self.soft[self.mj_data.contact.flex[contact, side]]))
+
+    def _root_name(self, body: int) -> str:
+        return str(self.mj_model.body(int(self.mj_model.body_rootid[body])).name)
+
+    def _owner(self, geom: int) -> str:
+        body = int(self.mj_model.geom_bodyid[geom])
+        return self._root_name(body) if body else str(self.mj_model.geom(geom).name)

@@ -1,0 +1,324 @@
+"""Holds what a body is commanded to keep: speeds while it moves, its place and joint angles while it stands."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import mjtState
+from numpy.typing import NDArray
+
+from actr3d.errors import WorldError
+from actr3d.world.actuated_dofs import ActuatedDofs, Row
+from actr3d.world.base import Base
+from actr3d.world.contacts import BodyContacts
+from actr3d.world.joints import Joint
+from actr3d.world.physics import Physics
+
+SLIGHT_WAY, SLIGHT_SPEED = 1e-5, 1e-2
+"""Deviations that need no correction: of position [m] [rad] and of speed [m/s] [rad/s]. Source: chosen for this library."""
+
+YIELD = 1e-3
+"""Distance by which contacts can push the base before it stays where it was pushed [m] [rad]. Source: chosen for this library."""
+
+UNHINDERED, HINDERED = (0.02, 2.0), (0.1, 0.5)
+"""Time constant of corrections [s] and their greatest speed [m/s] [rad/s], while nothing touches the body and while something does:
+a fast correction against a wall would bounce off it. Source: chosen for this library."""
+
+CLOSE = 1e-6
+"""Greatest distance of all numbers together from the steady state [m] [rad] [m/s] [rad/s]: less than anything is corrected.
+Source: chosen for this library."""
+
+_PARTS = int(mjtState.mjSTATE_QPOS | mjtState.mjSTATE_QVEL | mjtState.mjSTATE_CTRL)
+
+
+class SteadyState:
+    """The numbers of a body without any deviation: held places, and commanded speeds and controls. Comparing with them is fast.
+
+    Args:
+        physics: The compiled scene and its state.
+        dofs: The actuated degrees of freedom of the body.
+        commanded: The commanded speeds.
+        held: The places to hold; NaN where it is commanded to move.
+    """
+
+    def __init__(self, physics: Physics, dofs: ActuatedDofs, commanded: Row, held: Row) -> None:
+        model: Any = physics.mj_model
+        stands = np.isfinite(held)
+        self._model, self._data = model, physics.mj_data
+        self._state: Row = np.zeros(mujoco.mj_stateSize(model, _PARTS))
+        self._rows = np.concatenate([dofs.q[stands], model.nq + dofs.v, model.nq + model.nv + dofs.c])
+        self._numbers: list[float] = [*held[stands].tolist(), *commanded.tolist(), *commanded.tolist()]
+        self._walks = bool(dofs.base and commanded[:2].any())
+        if self._walks:
+            self._first = int(np.count_nonzero(stands))
+            self._heading = int(dofs.q[2])
+            self._speed = math.hypot(*commanded[:2])
+            self._direction = math.atan2(commanded[1], commanded[0]) + dofs.faces
+        self.fastest = dofs.fastest(np.abs(commanded) + CLOSE)
+        """Upper bound of the speed of any point of the body in this state [m/s]; infinite if not all of it is actuated."""
+
+    def met(self) -> bool:
+        """Returns True if the state is near enough that nothing needs a correction; after False, something may."""
+        state, numbers = self._state, self._numbers
+        mujoco.mj_getState(self._model, self._data, state, _PARTS)
+        if self._walks:  # MuJoCo's speeds are along the world's axes
+            direction = self._direction + state.item(self._heading)
+            numbers[self._first] = self._speed * math.cos(direction)
+            numbers[self._first + 1] = self._speed * math.sin(direction)
+        return math.dist(state[self._rows].tolist(), numbers) < CLOSE
+
+
+class PostureHold:
+    """Keeps one body's base and joints at their commands, once before each tick.
+
+    It corrects the effects of the body's own limbs: while nothing touches the body, speeds are as commanded, and joints that are
+    commanded to stand return to where they stood. Against contacts there are only the servos, whose force is bounded: what is
+    pushed harder yields. Limbs return when they can; the base stays where it was pushed.
+
+    Args:
+        physics: The compiled scene and its state.
+        members: (nbody,) by MuJoCo body: whether it is part of the body.
+        dofs: The actuated degrees of freedom of the body.
+        base: The base of the body.
+        contacts: The contacts of the body.
+    """
+
+    def __init__(self, physics: Physics, members: NDArray[np.bool_], dofs: ActuatedDofs, base: Base, contacts: BodyContacts) -> None:
+        self._physics = physics
+        self._members = members
+        self._dofs = dofs
+        self._base = base
+        self._contacts = contacts
+        self._rows = dofs.base
+        self.commanded: Row = np.zeros(len(dofs.q))
+        """The commanded speeds of base and joints, in the rows of `ActuatedDofs`."""
+        self.held: Row = dofs.places
+        """The places to hold; NaN where it is commanded to move."""
+        self.calm = True
+        """Whether nothing has touched it since its base last had the commanded speed."""
+        self._struck = False
+        """Whether something has touched it since the last tick began."""
+        self._pulls = False
+        """Whether the last tick made a correction."""
+        self._moves = False
+        """Whether any joint is commanded to move."""
+        self._steady: SteadyState | None = None
+        """The state without deviations; None while anything moves, deviates or has a new command."""
+        self._new = True
+        """Whether there has been a command since the last tick began."""
+
+    def row(self, joint: str) -> int | None:
+        """Returns the row of a joint; None if it has no servo that this class controls."""
+        return self._dofs.joints.get(joint)
+
+    # -- commands
+
+    def joint_speed(self, joint: Joint) -> float:
+        """Returns the commanded speed of a joint [rad/s]; 0 if it is not actuated."""
+        row = self.row(joint.name)
+        return joint.control if row is None else float(self.commanded[row])
+
+    def drive_joint(self, joint: Joint, speed: float) -> None:
+        """Commands a joint to keep a speed [rad/s].
+
+        It stops at once. It starts at once if nothing touches the body and both hands do not hold one load with it; otherwise its
+        servo accelerates it, so that no command can press a limb into a wall, or throw the body about.
+
+        Raises:
+            WorldError: If no servo moves it.
+        """
+        if joint.servo is None:
+            raise WorldError(f"joint '{joint.name}' has no servo that could move it")
+        if self.joint_speed(joint) == speed:
+            return
+        row = self.row(joint.name)
+        if row is None:
+            joint.control = speed
+        else:
+            self._command(slice(row, row + 1), speed)
+            self.held[row] = self._dofs.places[row] if speed == 0 else math.nan
+            self._moves = bool(self.commanded[self._rows :].any())
+        if speed == 0:
+            self._halt([joint.v])
+        elif self._may_start(row):
+            joint.velocity = speed
+
+    @property
+    def base_command(self) -> tuple[float, float, float]:
+        """The commanded speed of the base: forward, left, turn [m/s] [m/s] [rad/s]."""
+        forward, left, turn = self.commanded[:3].tolist()
+        return (forward, left, turn)
+
+    def drive_base(self, speed: tuple[float, float, float]) -> None:
+        """Commands the base to keep a speed (forward, left, turn), with the rules of `drive_joint`.
+
+        When it stops, the joints that are commanded to stand stop with it: a contact may just have turned them as fast as the base
+        moved, and a limb that moves on would strike it.
+        """
+        if speed == self.base_command:
+            return
+        self._command(slice(3), speed)
+        if speed == (0, 0, 0):
+            self._end_correction()
+        here = self._dofs.places
+        self.held[:2] = here[:2] if speed == (0, 0, 0) else math.nan
+        if speed[2] != 0:
+            self.held[2] = math.nan
+        elif math.isnan(self.held[2]):
+            self.held[2] = here[2]
+        if speed == (0, 0, 0):
+            v = self._base.v
+            self._halt([v, v + 1, v + 2, *self._dofs.v[3:][self.commanded[3:] == 0].tolist()])
+        elif self._may_start():
+            self._base.speed = speed
+
+    def stand(self, joint: str | None = None) -> None:
+        """Holds the base, or a joint, at its present place if it is commanded to stand; used after it was moved at once."""
+        row = None if joint is None else self.row(joint)
+        if joint is not None and row is None:
+            return
+        self._forget_steady()
+        rows = slice(self._rows) if row is None else slice(row, row + 1)
+        self.held[rows] = np.where(np.isfinite(self.held[rows]), self._dofs.places[rows], math.nan)
+
+    def _command(self, rows: slice, speed: float | tuple[float, ...]) -> None:
+        self._forget_steady()
+        self.commanded[rows] = speed
+        self._dofs.set_controls(speed, rows)
+
+    def _forget_steady(self) -> None:
+        self._new, self._steady = True, None
+
+    def _may_start(self, row: int | None = None) -> bool:
+        """Returns whether the base, or the joint in a row, may reach its commanded speed at once: nothing touches the body or has
+        just pushed it, and the joint is in no loop."""
+        return self.calm and (row is None or not self._dofs.looped[row]) and self._contacts.none()
+
+    def _halt(self, dofs: list[int]) -> None:
+        """Stops degrees of freedom at once.
+
+        While others move, that alone could speed up limbs that they carry; then all slow down, so that none of it adds energy.
+        """
+        model, data = self._physics.mj_model, self._physics.mj_data
+        product = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, product, data.qvel)
+        before = float(data.qvel @ product)
+        data.qvel[dofs] = 0
+        mujoco.mj_mulM(model, data, product, data.qvel)
+        after = float(data.qvel @ product)
+        if after > before > 0:
+            own = self._members[model.dof_bodyid]
+            data.qvel[own] *= np.sqrt(before / after)
+
+    # -- once a tick
+
+    def before_step(self, duration: float) -> float:
+        """Corrects deviations, for the next `duration` [s].
+
+        Returns:
+            An upper bound of the speed of any point of the body [m/s], where it is known quickly; else infinity.
+        """
+        if self._steady is not None and self._steady.met():
+            self._without_deviation()
+            return self._steady.fastest
+        if self._moves:
+            self._follow_loop()
+        ways, off = self.held - self._dofs.places, self._dofs.speeds - self._dofs.controls
+        wanted = self._wanted(duration) if self._moves else self.commanded
+        # NaN, of what moves, is no deviation.
+        if wanted is not self.commanded or (np.abs(ways) > SLIGHT_WAY).any() or (np.abs(off) > SLIGHT_SPEED).any():
+            self._correct(ways, off, wanted)
+        else:
+            self._without_deviation()
+            if not (self._new or self._moves):
+                self._steady = SteadyState(self._physics, self._dofs, self.commanded, self.held)
+            self._new = False
+        return math.inf
+
+    def after_part(self) -> None:
+        """Notes whether anything touches the body in the physics step just made, which had contacts."""
+        if not self._struck:
+            self._struck = self._contacts.any_in_step()
+
+    def _without_deviation(self) -> None:
+        """Ends a correction, if there was one."""
+        self.calm, self._struck = not self._struck, False
+        if self.calm and self._pulls:
+            self._end_correction()
+
+    def _correct(self, ways: Row, off: Row, wanted: Row) -> None:
+        """Corrects deviations of position and speed."""
+        self._pulls = True
+        self._steady = None
+        free = not self._struck and self._contacts.none()
+        self.calm = free and (self.calm or float(np.abs(off[: self._rows]).max(initial=0.0)) <= SLIGHT_SPEED)
+        self._struck = False
+        if not self.calm:
+            self._yield(ways)
+        time, most = UNHINDERED if self.calm else HINDERED
+        back = self._dofs.along_base(np.clip(ways / time, -most, most))
+        if self.calm:
+            self._set(np.where(np.isfinite(back), back, wanted))
+        else:
+            self._push(back, wanted)
+
+    def _set(self, wanted: Row) -> None:
+        """Sets the needed speeds of base and joints at once."""
+        dofs = self._dofs
+        dofs.set_controls(wanted)
+        # Small differences are left to the servo: a small lag is how it carries what turns.
+        wrong = np.abs(wanted - dofs.speeds) > SLIGHT_SPEED
+        wrong[: self._rows] = wrong[: self._rows].any()
+        if self._loop_moves():  # speeds that do not agree with its closing would throw the base about: its servos find some that do
+            wrong &= ~dofs.looped
+        dofs.set_speeds(wanted, wrong)
+
+    def _push(self, back: Row, wanted: Row) -> None:
+        """Sets the servos to push towards the needed speeds: adds what the load has taken off a speed, up to the servos' limits."""
+        dofs = self._dofs
+        speeds, band = dofs.speeds, dofs.band
+        more = np.clip(dofs.controls - speeds + back - speeds, -band, band)
+        dofs.set_controls(np.where(np.isfinite(back), speeds + more, wanted))
+
+    def _yield(self, ways: Row) -> None:
+        """Accepts the place to which the base was pushed, except for slight deviations."""
+        ways[: self._rows] = np.clip(ways[: self._rows], -YIELD, YIELD)
+        self.held[: self._rows] = self._dofs.places[: self._rows] + ways[: self._rows]
+
+    def _follow_loop(self) -> None:
+        """Holds standing joints at their present places, while another joint in the same loop moves and moves them too."""
+        if self._loop_moves():
+            stand = self._dofs.looped & np.isfinite(self.held)
+            self.held[stand] = self._dofs.places[stand]
+
+    def _loop_moves(self) -> bool:
+        return bool(np.isnan(self.held[self._dofs.looped]).any())
+
+    def _wanted(self, duration: float) -> Row:
+        """Returns the commanded speeds; for joints that would pass a limit, the speed that reaches it just at the end."""
+        at = self._dofs.places
+        wanted = np.clip(self.commanded, (self._dofs.lower - at) / duration, (self._dofs.upper - at) / duration)
+        return self.commanded if (wanted == self.commanded).all() else wanted
+
+    def _end_correction(self) -> None:
+        """Stops what has returned to its place."""
+        self._dofs.rest(np.isfinite(self.held))
+        self._pulls = False
+
+    # -- the state
+
+    def state(self) -> tuple[Any, ...]:
+        """Returns the commands and the correction in progress as plain values."""
+        held = (None if at != at else at for at in self.held.tolist())
+        return (tuple(self.commanded.tolist()), tuple(held), self.calm, self._struck, self._pulls)
+
+    def restore(self, state: tuple[Any, ...]) -> None:
+        """Restores a state that `state` returned."""
+        self._forget_steady()
+        commanded, held, self.calm, self._struck, self._pulls = state
+        self.commanded = np.array(commanded, dtype=np.float64)
+        self.held = np.array([math.nan if at is None else at for at in held], dtype=np.float64)
+        self._moves = bool(self.commanded[self._rows :].any())

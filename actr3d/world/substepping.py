@@ -1,0 +1,148 @@
+"""Divides physics steps into shorter parts where a body moves fast near something that it could pass through."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, cast
+
+import mujoco
+import numpy as np
+from mujoco import mjtGeom
+from numpy.typing import NDArray
+
+from actr3d.clock import seconds
+from actr3d.errors import WorldError
+from actr3d.world.body import Body
+from actr3d.world.physics import Physics
+from actr3d.world.reach import radius, reaches
+
+STRIDE = 0.006
+"""The most that any point of a body may move in one physics step when something is near [m]: walking at 3 m/s with steps of 2 ms.
+Contacts get stiffer with shorter steps (see `WALL_SOLREF`), so this limit is valid at any speed. Source: chosen for this library."""
+
+MOST = 500
+"""Greatest number of parts of one physics step; more would mean a speed of 1,500 m/s: the physics has diverged. Source: chosen."""
+
+TICK = 0.01
+"""Time between two checks of bodies for deviations from their commands [s]."""
+
+
+class Substepping:
+    """Steps the physics of a world, and chooses the number of parts of each step from its state alone.
+
+    Args:
+        physics: The compiled scene and its state.
+        bodies: Those that must not pass through anything.
+    """
+
+    def __init__(self, physics: Physics, bodies: list[Body]) -> None:
+        model = physics.mj_model
+        self._physics = physics
+        self._bodies = bodies
+        self._holds = [body.hold for body in bodies]
+        self._hands = [hand for body in bodies for hand in body.hands.values()]
+        self._whole = physics.timestep
+        self._tick = max(1, round(TICK / self._whole))
+        self._qvel = physics.mj_data.qvel
+        self._reaches = np.vstack([np.zeros((1, model.nv)), *(reaches(model, body.members, body.touch_geoms) for body in bodies)])
+        """By moving part and degree of freedom: the greatest way of its farthest point per unit of the degree of freedom [m]."""
+        self._farthest = self._reaches.max(axis=0)
+        """The same for the part that moves farthest."""
+        planar = [slice(body.base.v, body.base.v + 2) for body in bodies if body.base.planar]
+        free = [slice(body.base.v + n, body.base.v + n + 3) for body in bodies if body.base.free for n in (0, 3)]
+        self._together = planar + free
+        """Degrees of freedom whose speeds add as vectors do."""
+        self._others = [_others(body) for body in bodies]
+        self._radii = [radius(model, body.root, body.touch_geoms) for body in bodies]
+
+    def stretches(self, steps: int) -> Iterator[int]:
+        """Divides a number of steps into stretches of 10 ms, or the rest; between them bodies check for deviations."""
+        for start in range(0, steps, self._tick):
+            yield min(self._tick, steps - start)
+
+    def steps(self, steps: int) -> Iterator[None]:
+        """Advances the physics by whole steps, divided into parts where a body is fast; yields after each part.
+
+        Raises:
+            WorldError: If a body is faster than the greatest number of parts permits: the physics has diverged.
+        """
+        model, data = cast("Any", self._physics.mj_model), self._physics.mj_data
+        for count in self.stretches(steps):
+            fine = self._prepare(count)
+            for _ in range(count):
+                parts = self._needed() if fine else 1
+                try:
+                    if parts > 1:
+                        model.opt.timestep = self._whole / parts
+                    for _ in range(parts):
+                        mujoco.mj_step(model, data)
+                        if data.ncon:
+                            for hold in self._holds:
+                                hold.after_part()
+                        yield
+                finally:
+                    if parts > 1:
+                        model.opt.timestep = self._whole
+
+    def _prepare(self, count: int) -> bool:
+        """Corrects the bodies for some steps; returns whether these need parts: a body may move farther than its stride in one of
+        them, and something is near enough for a collision in any of them."""
+        self._physics.changed()
+        duration, fastest = count * self._whole, 0.0
+        for hold in self._holds:
+            fastest = max(fastest, hold.before_step(duration))
+        held = self._held()
+        if not held and (fastest * self._whole <= STRIDE or self._bound() * self._whole <= STRIDE):
+            return False
+        fastest = self._fastest(held)
+        return fastest * self._whole > STRIDE and self._near(held + fastest * duration)
+
+    def _bound(self) -> float:
+        """Returns a fast upper bound of the speed of any point of any body [m/s]; without held objects."""
+        return float(np.abs(self._qvel).dot(self._farthest))
+
+    def _needed(self) -> int:
+        """Returns the number of parts of the next step.
+
+        Raises:
+            WorldError: If there would be too many.
+        """
+        way = self._fastest(self._held()) * self._whole
+        if not way <= STRIDE * MOST:
+            raise WorldError(f"the physics diverged near {seconds(self._physics.time)} s: forces or speeds without bounds")
+        return max(1, math.ceil(way / STRIDE))
+
+    def _fastest(self, held: float) -> float:
+        """Returns an upper bound of the speed of any point of any body, or of what it holds [m/s]."""
+        speeds = np.abs(self._qvel)
+        for together in self._together:
+            speeds[together.start] = math.hypot(*speeds[together].tolist())
+            speeds[together.start + 1 : together.stop] = 0
+        fastest = float((self._reaches @ speeds).max())
+        return fastest + held * float(speeds.sum()) if held else fastest
+
+    def _held(self) -> float:
+        """Returns an upper bound of the extent of held objects beyond the hands [m]."""
+        geoms = [geom for hand in self._hands for geom in hand.geoms]
+        return 2 * float(self._physics.mj_model.geom_rbound[geoms].max()) if geoms else 0.0
+
+    def _near(self, beyond: float) -> bool:
+        """Returns whether any other object is within a distance [m] beyond the reach of a body."""
+        self._physics.refresh()
+        model, data = self._physics.mj_model, self._physics.mj_data
+        for body, others, far in zip(self._bodies, self._others, self._radii, strict=True):
+            from_it = data.xpos[body.root] - data.geom_xpos[others]
+            within = np.einsum("nij,ni->nj", data.geom_xmat[others].reshape(-1, 3, 3), from_it) - model.geom_aabb[others, :3]
+            gaps = np.maximum(np.abs(within) - model.geom_aabb[others, 3:], 0)
+            if (np.einsum("ij,ij->i", gaps, gaps) < (far + beyond) ** 2).any():
+                return True
+        return False
+
+
+def _others(body: Body) -> NDArray[np.intp]:
+    """Returns the geoms that a body could pass through: planes have no other side."""
+    model = body.physics.mj_model
+    solid = (model.geom_contype | model.geom_conaffinity) != 0
+    solid &= (model.geom_type != int(mjtGeom.mjGEOM_PLANE)) & ~body.members[model.geom_bodyid]
+    return np.flatnonzero(solid)

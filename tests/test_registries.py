@@ -1,0 +1,114 @@
+"""Sensors, actuators and bodies are registered where they are defined, in one file each; each registered one keeps the common rules."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mujoco import MjSpec
+
+import actr3d.camera  # pyright: ignore[reportUnusedImport] # it registers `view`
+import actr3d.world
+from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
+from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
+from actr3d.world.body import ACTUATORS, SENSORS, actuator, sensor
+
+ARM = """<mujoco><worldbody><body name="arm"><joint name="elbow" axis="0 0 1"/><geom size="0.1"/><site name="eye"/></body></worldbody>
+  <actuator><motor name="turn" joint="elbow"/></actuator></mujoco>"""
+REQUIRED: dict[str, dict[str, Any]] = {"ImportedBody": {"name": "arm", "text": ARM, "eye": "eye"}}
+"""By kind of body: the fields that have no default."""
+
+
+def example(kind: str) -> Embodied:
+    return BODY_KINDS[kind](**REQUIRED.get(kind, {}))
+
+
+@pytest.fixture
+def registered() -> Iterator[None]:
+    """Forgets after a test what it has registered."""
+    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS)]
+    yield
+    for registry, known in before:
+        registry.clear()
+        registry.update(known)  # pyright: ignore[reportArgumentType, reportCallIssue]
+
+
+@pytest.mark.parametrize("kind", BODY_KINDS)
+def test_each_kind_of_body_describes_itself_and_steps_and_senses(kind: str) -> None:
+    description = example(kind)
+    assert isinstance(description, Embodied)
+    world = World(Scene(parts=(Floor(), description)))
+    body = world.bodies[description.name]
+    world.step(5)
+    for word in set(body.sensors) - {"image", "depth"}:  # these need EGL
+        body.get(word)
+    state = world.state()
+    world.step(5)
+    later = world.state_bytes()
+    world.restore(state)
+    world.step(5)
+    assert world.state_bytes() == later
+
+
+@pytest.mark.parametrize("word", [*ACTUATORS, *SENSORS])
+def test_each_word_explains_itself_and_some_body_has_it(word: str) -> None:
+    registry = ACTUATORS if word in ACTUATORS else SENSORS
+    assert registry[word].meaning.endswith(".")
+    bodies = [World(Scene(parts=(example(kind),))).bodies.popitem()[1] for kind in BODY_KINDS]
+    assert any(word in (body.actuators if word in ACTUATORS else body.sensors) for body in bodies)
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_new_sensor_and_a_new_actuator_are_there_at_once_also_for_bodies_that_exist() -> None:
+    world = World(Scene(parts=(Floor(), Car())))
+    body = world.bodies["car"]
+
+    @sensor.if_body(lambda body: body.anatomy.steering is not None)
+    def height(body: Body) -> float:
+        """Senses the height of the body's top [m]."""
+        return body.bounding_box().upper[2]
+
+    @actuator
+    def honk(body: Body, times: int = 1) -> None:
+        """Sounds the horn."""
+        honks.append((body.name, times))
+
+    honks: list[tuple[str, int]] = []
+    assert body.get("height") == pytest.approx(1.45)
+    body.set("honk", 2)
+    assert honks == [("car", 2)]
+    assert (height(body), honk.__name__) == (body.get("height"), "honk")
+    assert {"height", "honk"} <= {*body.sensors, *body.actuators}
+    assert "height" not in World(Scene(parts=(ImportedBody(**REQUIRED["ImportedBody"]),))).bodies["arm"].sensors
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_new_kind_of_body_lives_in_a_scene_without_any_other_change() -> None:
+    @body_kind
+    class Ball:
+        name = "ball"
+
+        def add_to(self, mj_spec: MjSpec) -> None:
+            mj_spec.worldbody.add_body(name="ball", pos=[0, 0, 1]).add_geom(size=[0.1, 0, 0])
+            mj_spec.body("ball").add_freejoint()
+
+        def anatomy(self) -> Anatomy:
+            return Anatomy(root="ball", prefix="ball_", shoulders=0.2)
+
+    assert BODY_KINDS["Ball"] is Ball
+    body = World(Scene(parts=(Floor(), Ball()))).bodies["ball"]
+    assert body.anatomy.shoulders == 0.2
+    assert body.get("pose").z == 1
+
+
+def test_no_part_of_the_library_asks_for_a_kind_of_body() -> None:
+    root = Path(inspect.getfile(actr3d.world)).parents[2]
+    for path in [*root.glob("actr3d/**/*.py"), *root.glob("workbench/**/*.py")]:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
+                asked = {name.id for name in ast.walk(node.args[1]) if isinstance(name, ast.Name)}
+                assert not asked & BODY_KINDS.keys(), f"{path.name}:{node.lineno}"
