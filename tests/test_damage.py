@@ -31,7 +31,7 @@ def original_(tmp_path_factory: pytest.TempPathFactory) -> Path:
             simulation.run(0.1)
             recording._writer.flush()
             simulation.command("aperture", 0.5 + turn / 10)
-        recording.fact("ended", {"by": "stop"})
+        recording.fact("ended", {"by": "seconds"})
     return path
 
 
