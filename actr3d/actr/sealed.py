@@ -17,10 +17,13 @@ from types import ModuleType
 from typing import Any
 
 from actr3d.actr.helper_texts import HelperTexts
+from actr3d.errors import RecordingError
 
 _LOCK = RLock()  # all of this is of the whole process
 OWN = ("actr3d", "workbench", "__main__")
 """Modules that are in use whatever is replayed, wherever they come from."""
+_IN_USE = frozenset(sys.modules) & sys.stdlib_module_names
+"""Modules of Python that this library has loaded before any program runs: none of a program's own modules takes their place."""
 
 
 @contextmanager
@@ -37,7 +40,13 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Gene
 
     Yields:
         The helper modules, for whoever loads or runs the program.
+
+    Raises:
+        RecordingError: If one of them cannot have been loaded by a program, as the module of Python of its name is in use.
     """
+    foreign = sorted(_IN_USE & {name.partition(".")[0] for name in helpers})
+    if foreign:
+        raise RecordingError(f"the recording holds modules that no program can have loaded: Python's own are in use ({', '.join(foreign)})")
     with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-") as name:
         folder, folders = Path(name), installed_folders()
         _lay_out(folder, [(Path(file).name, source), *helpers.values()])

@@ -60,7 +60,8 @@ def replay(
     check_replayable(recorded, trust=trust or make is not None, any_version=any_version)
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
-            return _replay_program(recorded, progress)
+            with _sealed(recorded) as helpers:
+                return _replay_program(recorded, helpers, progress)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
         seed = recorded.facts.get("program_seed", recorded.facts["seed"])
@@ -95,20 +96,9 @@ def _sealed(recorded: Recorded) -> AbstractContextManager[HelperTexts]:
     return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}))
 
 
-def _run_source(recorded: Recorded, limits: RunLimits) -> None:
-    """Runs the source of a program.
-
-    Raises:
-        Exception: Whatever it raises.
-    """
+def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress) -> Comparison:
     facts = recorded.facts
     file = facts["file"]
-    with _sealed(recorded) as helpers:
-        run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=helpers)
-
-
-def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
-    facts = recorded.facts
     beside = Beside(recorded, open_end=not (recorded.over or _failed(recorded)))
     trace = Trace("all", keep=False)
     trace.listen(beside.event)
@@ -119,7 +109,7 @@ def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
     try:
         with ProgramOutput(limits) as output:
             try:
-                _run_source(recorded, limits)
+                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=helpers)
             except SystemExit as error:
                 trouble, ended = f" ({failure(error)})", "exit"
             if recorded.over:
