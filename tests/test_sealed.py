@@ -179,7 +179,7 @@ def test_a_module_that_python_has_loaded_itself_is_none_of_a_recording(
     text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = recorded(tmp_path / "own", text)
-    forge(path, "INSERT OR REPLACE INTO facts VALUES ('helpers', '{\"random\": [\"random.py\", \"x = 1\"]}')")
+    forge(path, 'INSERT OR REPLACE INTO facts VALUES (\'helpers\', \'{"random": ["random.py", "x = 1"]}\')')
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
     assert "modules that no program can have loaded: Python's own are in use (random)" in capsys.readouterr().err

@@ -27,7 +27,7 @@ _IN_USE = frozenset(sys.modules) & sys.stdlib_module_names
 
 
 @contextmanager
-def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
+def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]], within: Path | None = None) -> Generator[HelperTexts]:
     """Lets nothing be imported inside the block but the recorded modules, the standard library and installed packages.
 
     The texts also lie in a new temporary folder, which stands first on the path, for processes that the program starts. The
@@ -37,6 +37,7 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Gene
         file: The recorded name of the program's file.
         source: Its text.
         helpers: Its helper modules, as `HelperTexts.loaded` has them.
+        within: Where the temporary folder is made; None for where the system has such.
 
     Yields:
         The helper modules, for whoever loads or runs the program.
@@ -47,7 +48,7 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Gene
     foreign = sorted(_IN_USE & {name.partition(".")[0] for name in helpers})
     if foreign:
         raise RecordingError(f"the recording holds modules that no program can have loaded: Python's own are in use ({', '.join(foreign)})")
-    with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-") as name:
+    with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-", dir=within) as name:
         folder, folders = Path(name), installed_folders()
         _lay_out(folder, [(Path(file).name, source), *helpers.values()])
         texts = HelperTexts(helpers, folder)

@@ -37,6 +37,7 @@ def replay(
     trust: bool = False,
     any_version: bool = False,
     progress: Progress = lambda _: None,
+    within: Path | None = None,
 ) -> Comparison:
     """Runs again what a recording holds, and compares every event, and every state at the end of a tick.
 
@@ -50,6 +51,8 @@ def replay(
         trust: Whether code may be run of a recording that this installation did not make; see `Recorded.made_here`.
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
         progress: Is told again and again which share has been run: of the ticks, or of a program's events.
+        within: A folder for what is laid out as files meanwhile, which a program that ends the process leaves there; None for
+            where the system has temporary ones.
 
     Raises:
         UntrustedError: If the recording was made elsewhere, and is not to be trusted.
@@ -60,7 +63,7 @@ def replay(
     check_replayable(recorded, trust=trust or make is not None, any_version=any_version)
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
-            with _sealed(recorded) as helpers:
+            with _sealed(recorded, within) as helpers:
                 return _replay_program(recorded, helpers, progress)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
@@ -68,7 +71,7 @@ def replay(
         with RunLimits(seed=seed), shared_random(seed):
             if make is not None:
                 return _replay_simulation(recorded, make(), progress)
-            with _sealed(recorded) as helpers, BuiltOutput() as output:
+            with _sealed(recorded, within) as helpers, BuiltOutput() as output:
                 simulation = _built(recorded, helpers)
                 output.lead_to(simulation)
                 return _replay_simulation(recorded, simulation, progress)
@@ -90,10 +93,10 @@ def _built(recorded: Recorded, helpers: HelperTexts) -> Simulation:
     return simulation
 
 
-def _sealed(recorded: Recorded) -> AbstractContextManager[HelperTexts]:
+def _sealed(recorded: Recorded, within: Path | None) -> AbstractContextManager[HelperTexts]:
     """Lets nothing be imported but what the recording holds, the standard library and installed packages."""
     facts = recorded.facts
-    return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}))
+    return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}), within)
 
 
 def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress) -> Comparison:
