@@ -173,7 +173,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Pro
 
 def _ending(recorded: Recorded, simulation: Simulation) -> str:
     """Says what has ended a simulation whose recorded ticks are over; `limits` where it could go on."""
-    then = recorded.facts.get("ended") or {}
+    then: dict[str, Any] = recorded.facts.get("ended") or {}
     if then.get("by") in ("seconds", "until") and not recorded.facts.get("built"):
         return str(then["by"])  # it was not run to its end by this library, but by a program that says so
     return "stop" if simulation._course.lockstep.minds.stopped else "done" if simulation.done else "limits"
