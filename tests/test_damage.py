@@ -31,7 +31,7 @@ def original_(tmp_path_factory: pytest.TempPathFactory) -> Path:
             simulation.run(0.1)
             recording._writer.flush()
             simulation.command("aperture", 0.5 + turn / 10)
-        recording.fact("ended", {"by": "stop"})
+        recording.fact("ended", {"by": "seconds"})
     return path
 
 
@@ -40,6 +40,12 @@ def content(path: Path) -> list[Any]:
     with closing(sqlite3.connect(path)) as file:
         tables = [file.execute(f"SELECT * FROM {table} ORDER BY 1").fetchall() for table in COLUMNS]
         return [file.execute("SELECT * FROM facts ORDER BY 1").fetchall(), *([row[:-1] for row in rows] for rows in tables)]
+
+
+def sealed(path: Path) -> list[Any]:
+    """Returns what says that a recording was made by this installation."""
+    with closing(sqlite3.connect(path)) as file:
+        return file.execute("SELECT * FROM seal").fetchall()
 
 
 def altered(value: Any, choose: random.Random) -> Any:
@@ -55,16 +61,16 @@ def altered(value: Any, choose: random.Random) -> Any:
 
 def edit(file: sqlite3.Connection, choose: random.Random) -> None:
     """Changes something, as with an editor for databases."""
-    table = choose.choice(["facts", "facts", *COLUMNS])
+    table = choose.choice(["facts", "facts", "seal", *COLUMNS])
     key = "name" if table == "facts" else "first"
     rows = file.execute(f"SELECT * FROM {table}").fetchall()
     columns = [column[1] for column in file.execute(f"PRAGMA table_info({table})")]
-    row, other = choose.sample(rows, 2)
-    column = choose.randrange(len(columns) - (table != "facts"))
+    row, other = choose.sample(rows, 2) if len(rows) > 1 else rows * 2
+    column = choose.randrange(len(columns) - (table in COLUMNS))  # of the seal, its checksum, too
     match choose.randrange(5):
         case 0:
             file.execute(f"DELETE FROM {table} WHERE {key} = ?", (row[0],))
-        case 1:  # two rows change places
+        case 1 if row is not other:  # two rows change places
             for here, there in ((row, other), (other, row)):
                 assigned = ", ".join(f"{name} = ?" for name in columns[1:])
                 file.execute(f"UPDATE {table} SET {assigned} WHERE {key} = ?", (*there[1:], here[0]))
@@ -78,7 +84,8 @@ def edit(file: sqlite3.Connection, choose: random.Random) -> None:
 
 def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path: Path) -> None:
     whole, said = original.read_bytes(), content(original)
-    found = {"damaged": 0, "the same": 0}
+    found = {"damaged": 0, "foreign": 0, "the same": 0}
+    seal = sealed(original)
     path = tmp_path / "run"
     for number in range(EDITS):
         choose = random.Random(number)
@@ -94,13 +101,15 @@ def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path:
                 edit(file, choose)
         try:
             with Recorded(path) as recorded:
-                recorded.check()  # a replay begins with it
+                made_here = recorded.made_here  # a replay begins with it
         except RecordingError:
             found["damaged"] += 1
             continue
         assert content(path) == said, number
-        found["the same"] += 1
+        assert made_here == (sealed(path) == seal), number
+        found["the same" if made_here else "foreign"] += 1
     assert found["damaged"] > EDITS / 2
+    assert found["foreign"] > 0
     with Recorded(original) as recorded:
         assert str(replay(recorded, driving)).startswith("every byte agrees: 40 ticks, ")
 

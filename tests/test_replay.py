@@ -6,6 +6,7 @@ import re
 import sqlite3
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -258,7 +259,7 @@ def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> No
 def test_a_recording_that_was_killed_before_anything_was_written_cannot_be_compared(file: Path) -> None:
     path = recorded_run(file)
     forge(path, "DELETE FROM events", "DELETE FROM states", "DELETE FROM facts WHERE name IN ('ended', 'whole')")
-    message = "holds nothing to compare: its run was broken off before anything was written"
+    message = "holds nothing to compare: its run was left or broken off before anything was written"
     with Recorded(path) as recorded, pytest.raises(RecordingError, match=message):
         replay(recorded)
 
@@ -323,8 +324,7 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     assert main(["replay", str(path)]) == 0
     out = capsys.readouterr().out
     assert re.fullmatch(
-        r"agrees as far as it goes: 14 ticks, \d+ events \(\d+ more events of a tick that did not end\); "
-        r"the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
+        r"agrees as far as it goes: 14 ticks, \d+ events; the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
         out,
     )
 
@@ -490,3 +490,49 @@ def test_shown_events_hold_each_printed_line_once(file: Path, capsys: pytest.Cap
     shown = capsys.readouterr().out.splitlines()
     assert sum("left" in line.split()[:1] or "right" in line.split()[:1] for line in shown) == 3
     assert not any(" output " in line for line in shown)
+
+
+ENDS = [
+    ("print(1)\n", "ended", "end", "exit"),
+    ("import sys\nprint(1, end='')\nsys.exit(3)\n", "ended", "exit", "end"),
+    ("print(1)\nraise ValueError('too far')\n", "failed", "ValueError: too far", "ValueError: too near"),
+    (BUILT, "ended", "stop", "done"),
+    (BUILT.replace("self.stop()", "self.goal.clear()"), "ended", "done", "limits"),
+    (BUILT.replace("self.stop()", "1 / 0"), "failed", "ZeroDivisionError: division by zero", "ZeroDivisionError: another"),
+    (BUILT.replace("self.stop()", "raise SystemExit(3)"), "failed", "SystemExit: 3", "SystemExit: 4"),
+]
+
+
+@pytest.mark.parametrize(("text", "name", "then", "other"), ENDS)
+def test_a_replay_compares_how_the_run_ended(
+    text: str, name: str, then: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, path = tmp_path / "model.py", tmp_path / "run"
+    file.write_text(text, encoding="utf-8")
+    with suppress(SystemExit):
+        main(["run", str(file), "--seed", "1", "--record", str(path)])
+    with Recorded(path) as recorded:
+        assert recorded.facts[name] == (then if name == "failed" else {"by": then})
+        assert ("ended" in recorded.facts) != ("failed" in recorded.facts)
+        events = recorded.event_count
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 0
+    assert f"{events} events" in (agrees := capsys.readouterr().out)
+    assert agrees.startswith("every byte agrees" if name == "ended" else "agrees as far as it goes")
+    forge(path, in_fact(name, then, other))
+    assert main(["replay", str(path)]) == 1
+    assert f"differs: the fact '{name}'; recorded: " in (differs := capsys.readouterr().out)
+    assert then in differs
+    assert other in differs
+
+
+def test_a_run_that_failed_then_and_does_not_now_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for text in (BUILT, "print(1)\n"):
+        file = tmp_path / "model.py"
+        file.write_text(text, encoding="utf-8")
+        path = recorded_run(file)
+        forge(path, "UPDATE facts SET name = 'failed', value = '\"ValueError: no\"' WHERE name = 'ended'")
+        capsys.readouterr()
+        assert main(["replay", str(path)]) == 1
+        assert capsys.readouterr().out == "differs: the fact 'failed'; recorded: \"ValueError: no\"; now: null\n"
+        path.unlink()

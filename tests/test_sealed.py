@@ -116,7 +116,7 @@ def test_a_file_fact_that_points_into_a_folder_does_not_open_it(tmp_path: Path, 
 
 def test_modules_with_names_that_lead_elsewhere_write_nothing_there(tmp_path: Path) -> None:
     path = recorded(tmp_path / "own", "import helper\nprint(1)\n")
-    for name in ("../../evil.py", str(tmp_path / "evil.py"), "a\\u0000b", "x" * 5000, ".", ""):
+    for name in ("../../evil.py", str(tmp_path / "evil.py"), "x" * 5000, ".", ""):
         forge(path, f"""UPDATE facts SET value = '{{"helper": ["{name}", "print(2)"]}}' WHERE name = 'helpers'""")
         with Recorded(path) as read:
             assert str(replay(read)).startswith("differs: ")
@@ -172,3 +172,23 @@ def test_a_file_with_an_impossible_name_ends_in_no_traceback(name: str, tmp_path
     capsys.readouterr()
     assert main(["replay", str(path)]) in (0, 2)
     assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["import random\nprint(1)\n", BUILT])
+def test_a_module_that_python_has_loaded_itself_is_none_of_a_recording(
+    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = recorded(tmp_path / "own", text)
+    forge(path, 'INSERT OR REPLACE INTO facts VALUES (\'helpers\', \'{"random": ["random.py", "x = 1"]}\')')
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert "modules that no program can have loaded: Python's own are in use (random)" in capsys.readouterr().err
+
+
+def test_a_module_with_the_name_of_one_of_python_that_is_not_in_use_is_replayed(tmp_path: Path) -> None:
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "this.py").write_text("value = 3\n", encoding="utf-8")
+    path = recorded(tmp_path / "own", "import this\nprint(this.value)\n")
+    with Recorded(path) as read:
+        assert read.facts["helpers"] == {"this": ["this.py", "value = 3\n"]}
+    assert main(["replay", str(path)]) == 0

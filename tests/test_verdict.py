@@ -63,8 +63,13 @@ def test_a_program_that_ends_the_process_leaves_no_verdict(
 ) -> None:
     record(path, **{where: does})
     monkeypatch.setenv("AGAIN", "1")
+    temporary = path.with_name("temporary")
+    temporary.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(temporary))
+    monkeypatch.setenv("TMPDIR", str(temporary))
     capfd.readouterr()
     assert main(["replay", str(path)]) == 2
+    assert not list(temporary.iterdir())
     told = capfd.readouterr()
     assert told.err.startswith("error: no verdict: ")
     assert how in told.err

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import AsyncGenerator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncGenerator, Callable
+from contextlib import asynccontextmanager, suppress
 
+from actr3d.errors import Actr3dError
 from workbench.attendant import Attendant, subject_of
 from workbench.feed import MOST_NOTICES
 from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
 from workbench.worker.workers import Worker, Workers
+
+PATIENCE = 120.0
+"""A worker that comes no further for so long is given up [s]."""
+LOOK = 0.25
+"""How often it is looked how far it has come [s]."""
+
+
+class StuckError(Actr3dError):
+    """A worker comes no further."""
+
+    status = 409
 
 
 class Job:
@@ -28,6 +40,27 @@ class Job:
         self.ending = ""
         """How the worker ended, where that was not in good order."""
         self.over = asyncio.Event()
+
+    async def stages(self, stage: Callable[[], float]) -> AsyncGenerator[float]:
+        """Yields again and again how far the worker has come, until it is over.
+
+        Args:
+            stage: Tells how far it has come.
+
+        Raises:
+            StuckError: If it comes no further.
+        """
+        loop = asyncio.get_running_loop()
+        furthest, since = stage(), loop.time()
+        while not self.over.is_set():
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self.over.wait(), LOOK)
+            now = stage()
+            if now > furthest:
+                furthest, since = now, loop.time()
+            elif loop.time() - since > PATIENCE:
+                raise StuckError(f"it came no further for {PATIENCE:g} s")
+            yield furthest
 
     @property
     def problem(self) -> str:

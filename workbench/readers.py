@@ -6,14 +6,13 @@ import asyncio
 import shutil
 import tempfile
 from collections.abc import Awaitable, Callable
-from contextlib import suppress
 from io import FileIO
 from pathlib import Path
 from typing import Any, TypeVar
 from weakref import WeakValueDictionary
 
 from actr3d.errors import Actr3dError
-from workbench.jobs import Job, doing
+from workbench.jobs import Job, StuckError, doing
 from workbench.recordings import NoSuchRecordingError
 from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
@@ -21,10 +20,6 @@ from workbench.worker.workers import Workers
 T = TypeVar("T")
 MEMORY = 2_000
 """How much memory reading a recording may take [MB]."""
-PATIENCE = 120.0
-"""Making a file is given up when nothing more has been written for so long [s]."""
-LOOK = 0.25
-"""How often it is looked whether more has been written [s]."""
 MOST = 8
 """So many files are made at once; others wait for their turn."""
 MOST_OF_ONE = 2
@@ -77,17 +72,13 @@ class Readers:
                 shutil.rmtree(folder, ignore_errors=True)
 
     async def _made(self, start: Start) -> None:
-        job, loop = Job(), asyncio.get_running_loop()
+        job = Job()
         async with doing(self._workers, start, job, memory=MEMORY):
-            size, since = 0, loop.time()
-            while not job.over.is_set():
-                with suppress(TimeoutError):
-                    await asyncio.wait_for(job.over.wait(), LOOK)
-                now = _size(start.to)
-                if now > size:
-                    size, since = now, loop.time()
-                elif loop.time() - since > PATIENCE:
-                    raise ReadingError(f"it was given up, as nothing came of it for {PATIENCE:g} s")
+            try:
+                async for _ in job.stages(lambda: _size(start.to)):
+                    pass
+            except StuckError as error:
+                raise ReadingError(str(error)) from None
         if job.result is None:
             raise ReadingError(job.problem)
 

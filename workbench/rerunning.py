@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
+import tempfile
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -10,16 +10,12 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench.jobs import Job, doing
+from workbench.jobs import Job, StuckError, doing
 from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
-PATIENCE = 120.0
-"""One that comes no further for so long is given up [s]."""
 MOST = 2
 """So many are run again at once; each takes a processor."""
-LOOK = 0.25
-"""How often it is looked whether anyone waits still [s]."""
 
 
 class BusyError(Actr3dError):
@@ -59,24 +55,18 @@ class Reruns:
         job = Job()
         self._going_on.append((path, job))
         try:
-            async with doing(self._workers, Start(job="replay", path=str(path)), job):
-                return await _outcome(job, left)
+            with tempfile.TemporaryDirectory(prefix="actr3d-replay-", ignore_cleanup_errors=True) as folder:  # a model may end its worker
+                async with doing(self._workers, Start(job="replay", path=str(path), to=folder), job):
+                    return await _outcome(job, left)
         finally:
             self._going_on.remove((path, job))
 
 
 async def _outcome(job: Job, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
-    loop = asyncio.get_running_loop()
-    share, since = 0.0, loop.time()
-    over = asyncio.create_task(job.over.wait())
     try:
-        while not (await asyncio.wait([over], timeout=LOOK))[0]:
-            if await left():
+        async for _ in job.stages(lambda: job.share):
+            if not job.over.is_set() and await left():
                 return {"agrees": None, "text": "cancelled"}
-            if job.share != share:
-                share, since = job.share, loop.time()
-            elif loop.time() - since > PATIENCE:
-                return {"agrees": None, "text": f"it came no further for {PATIENCE:g} s"}
-    finally:
-        over.cancel()
+    except StuckError as error:
+        return {"agrees": None, "text": str(error)}
     return {"agrees": None, "text": f"no verdict: {job.problem}"} if job.result is None else msgspec.json.decode(job.result)

@@ -13,7 +13,9 @@ OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
 """Facts that every recording tells by itself."""
 
 LEFT = "left"
-"""What the fact `ended` says of a run that its user left before it was over; all other words are of runs that came to their end."""
+"""What the fact `ended` says of a run that its user left before it was over. All other words are of runs that came to their end:
+`end` and `exit` (`SystemExit`) of programs; `stop`, `done` and `limits` of a simulation that a file builds, see `RunReport`. A
+run that raised anything else has the fact `failed` instead; one that was broken off has neither."""
 
 SCHEMA = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",

@@ -12,7 +12,7 @@ from typing import Any, Self
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.recording.facts import check_fact
-from actr3d.recording.form import FORM, versions
+from actr3d.recording.form import FORM, LEFT, versions
 from actr3d.recording.writer import Answer, Command, State, Writer
 from actr3d.trace import TraceEvent
 
@@ -45,6 +45,8 @@ class Recording:
         self._ticks_a_second = max(1, MICROSECONDS // told.get("period_us", USUAL_PERIOD))
         self.events = self.answers = self.commands = self.states = 0
         """How many of each it has been given."""
+        self._over = {"ended": False, "failed": False}
+        """Whether these facts have been told, and hold."""
         self.ending: Callable[[], None] | None = None
         """Called before it is closed, to tell the rest; what is told later is not recorded."""
 
@@ -55,6 +57,13 @@ class Recording:
             RecordingError: If they are not plain.
         """
         self._writer.facts.append((name, _plain(name, value)))
+        if name in self._over:
+            self._over[name] = value is not None
+
+    def leave(self) -> None:
+        """Writes that the user left the run where it is now, unless it was over, or had failed."""
+        if not any(self._over.values()):
+            self.fact("ended", {"by": LEFT})
 
     def event(self, event: TraceEvent) -> None:
         """Writes an event."""

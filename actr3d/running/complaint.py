@@ -56,6 +56,15 @@ def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
     return Complaint(message=message, text=text, file=file, line=line)
 
 
+def failure(error: BaseException) -> str:
+    """Returns what a recording is told of an error that ends its run; a replay compares it."""
+    try:
+        words = str(error)
+    except Exception:  # noqa: BLE001 - the words are the model's own, too
+        words = "<exception str() failed>"
+    return f"{type(error).__name__}: {words}".encode("utf-8", "replace").decode()
+
+
 def _place(error: BaseException, report: traceback.TracebackException) -> tuple[str | None, int | None]:
     named = re.match(r"(.+?):(\d+): ", str(error)) if isinstance(error, ModelFileError) else None
     if named is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -17,6 +18,7 @@ from actr3d.errors import Actr3dError, RecordingError
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.running.comparison import Beside, Comparison, Differs
+from actr3d.running.complaint import failure
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.running.replayable import check_replayable
 from actr3d.trace import Trace
@@ -35,6 +37,7 @@ def replay(
     trust: bool = False,
     any_version: bool = False,
     progress: Progress = lambda _: None,
+    within: Path | None = None,
 ) -> Comparison:
     """Runs again what a recording holds, and compares every event, and every state at the end of a tick.
 
@@ -48,6 +51,8 @@ def replay(
         trust: Whether code may be run of a recording that this installation did not make; see `Recorded.made_here`.
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
         progress: Is told again and again which share has been run: of the ticks, or of a program's events.
+        within: A folder for what is laid out as files meanwhile, which a program that ends the process leaves there; None for
+            where the system has temporary ones.
 
     Raises:
         UntrustedError: If the recording was made elsewhere, and is not to be trusted.
@@ -58,14 +63,15 @@ def replay(
     check_replayable(recorded, trust=trust or make is not None, any_version=any_version)
     with printing_to(ModelOutput(lambda _: None)):  # the lines are among the events
         if recorded.facts["kind"] == "program":
-            return _replay_program(recorded, progress)
+            with _sealed(recorded, within) as helpers:
+                return _replay_program(recorded, helpers, progress)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
         seed = recorded.facts.get("program_seed", recorded.facts["seed"])
         with RunLimits(seed=seed), shared_random(seed):
             if make is not None:
                 return _replay_simulation(recorded, make(), progress)
-            with _sealed(recorded) as helpers, BuiltOutput() as output:
+            with _sealed(recorded, within) as helpers, BuiltOutput() as output:
                 simulation = _built(recorded, helpers)
                 output.lead_to(simulation)
                 return _replay_simulation(recorded, simulation, progress)
@@ -83,43 +89,32 @@ def _built(recorded: Recorded, helpers: HelperTexts) -> Simulation:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # it did build something when it was recorded
-        raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {_told(error)}") from error
+        raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {failure(error)}") from error
     return simulation
 
 
-def _sealed(recorded: Recorded) -> AbstractContextManager[HelperTexts]:
+def _sealed(recorded: Recorded, within: Path | None) -> AbstractContextManager[HelperTexts]:
     """Lets nothing be imported but what the recording holds, the standard library and installed packages."""
     facts = recorded.facts
-    return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}))
+    return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}), within)
 
 
-def _run_source(recorded: Recorded, limits: RunLimits) -> None:
-    """Runs the source of a program.
-
-    Raises:
-        Exception: Whatever it raises.
-    """
+def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress) -> Comparison:
     facts = recorded.facts
     file = facts["file"]
-    with _sealed(recorded) as helpers:
-        run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=helpers)
-
-
-def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
-    facts = recorded.facts
-    beside = Beside(recorded, open_end=not recorded.over)
+    beside = Beside(recorded, open_end=not (recorded.over or _failed(recorded)))
     trace = Trace("all", keep=False)
     trace.listen(beside.event)
     whole = max(1, recorded.event_count)
     trace.listen(lambda _: progress(min(1.0, beside.events / whole)))
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace, recorder=beside)
-    trouble = ""
+    trouble, ended, failed = "", "end", None
     try:
         with ProgramOutput(limits) as output:
             try:
-                _run_source(recorded, limits)
+                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=helpers)
             except SystemExit as error:
-                trouble = f" ({_told(error)})"
+                trouble, ended = f" ({failure(error)})", "exit"
             if recorded.over:
                 output.finish()
     except Differs:  # in the last line of a log, when the program itself was over
@@ -127,8 +122,9 @@ def _replay_program(recorded: Recorded, progress: Progress) -> Comparison:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - the recorded run may have ended so, too
-        trouble = f" ({_told(error)})"
-    return _compared(recorded, beside, f"the run ended{trouble}")
+        failed = failure(error)
+        trouble, ended = f" ({failed})", None
+    return _compared(recorded, beside, f"the run ended{trouble}", ended, failed)
 
 
 def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Progress) -> Comparison:
@@ -144,14 +140,18 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Pro
     journal.record(cast("Any", beside))
     commands = [Command.from_data(command.tick, command.data) for command in recorded.commands()]
     simulation.plan(commands)
-    ticks, trouble = recorded.ticks, "the run ended"
+    ticks, ended, failed = recorded.ticks, None, None
     try:
         for tick in range(1, ticks + 1):
             simulation.step()
             progress(tick / ticks)
-        simulation.timeline.repeat_commands()
-        if recorded.over:
-            simulation.conclude()
+        ended = _ending(recorded, simulation)
+        try:
+            _end(recorded, simulation, ended)
+        except (Differs, KeyboardInterrupt):
+            raise
+        except BaseException as error:  # noqa: BLE001 - the recorded run may have failed so, too
+            failed = failure(error)
         if recorded.closed:
             journal.stdout.finish()
         journal.check()
@@ -162,30 +162,78 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Pro
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - what is recorded went on beyond that
-        beside.difference = f"the run failed after {seconds(simulation.ticks * facts['period_us']):g} s ({_told(error)})"
+        beside.difference = f"the run failed after {seconds(simulation.ticks * facts['period_us']):g} s ({failure(error)})"
     if world.fingerprint != facts["scene"]:
         if beside.difference is None:
             beside.difference = "the scene compiles to another than then, though the physics agrees"
         elif beside.difference.startswith("the physics"):
             beside.difference += "; it compiles to another scene than then"
-    return _compared(recorded, beside, trouble)
+    return _compared(recorded, beside, "the run ended", ended, failed)
+
+
+def _ending(recorded: Recorded, simulation: Simulation) -> str:
+    """Says what has ended a simulation whose recorded ticks are over; `limits` where it could go on."""
+    then: dict[str, Any] = recorded.facts.get("ended") or {}
+    if then.get("by") in ("seconds", "until") and not recorded.facts.get("built"):
+        return str(then["by"])  # it was not run to its end by this library, but by a program that says so
+    return "stop" if simulation.timeline.lockstep.agents.stopped else "done" if simulation.done else "limits"
+
+
+def _end(recorded: Recorded, simulation: Simulation, ended: str) -> None:
+    """Does what the recorded run did after its last whole tick.
+
+    Raises:
+        BaseException: What the model raises.
+    """
+    if _failed(recorded) and ended == "limits":
+        simulation.step()
+        return
+    simulation.timeline.repeat_commands()
+    if recorded.over or _failed(recorded):
+        simulation.conclude()
 
 
 def _beginning(period: int, timestep: int, seed: Any) -> str:
     return f"period {seconds(period):g} s, timestep {seconds(timestep):g} s, seed {seed}"
 
 
-def _compared(recorded: Recorded, beside: Beside, ended: str) -> Comparison:
-    """Returns what came of a comparison whose run is over; what is recorded beyond that is a difference, unless it was broken off there."""
+def _compared(recorded: Recorded, beside: Beside, trouble: str, ended: str | None, failed: str | None) -> Comparison:
+    """Returns what came of a comparison whose run is over; what is recorded beyond that is a difference, unless it was broken off there.
+
+    Args:
+        recorded: The recording.
+        beside: What was compared.
+        trouble: Says that the run has ended, where the recorded one went on.
+        ended: What has ended it.
+        failed: What it failed with; None where it did not.
+    """
     left, difference, broken_off, unfinished = beside.rest(), beside.difference, None, 0
-    if not recorded.closed:
+    if _failed(recorded):
+        broken_off = _broken_off(recorded)
+    elif not recorded.closed:
         broken_off = _broken_off(recorded)
         unfinished = left.pop("event", 0)
         left = {kind: count for kind, count in left.items() if kind == "state"}  # the rest may be of the tick that did not end
     if difference is None and left:
         more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
-        difference = f"{ended} after {beside.events:,} events; the recording holds {more} more"
+        difference = f"{trouble} after {beside.events:,} events; the recording holds {more} more"
+    if difference is None and (recorded.over or _failed(recorded)):
+        now = {"failed": failed, "ended": None if failed else {"by": ended}}
+        difference = _other_end({name: recorded.facts.get(name) for name in now}, now)
     return Comparison(ticks=beside.ticks, events=beside.events, difference=difference, broken_off=broken_off, unfinished=unfinished)
+
+
+def _failed(recorded: Recorded) -> bool:
+    """Returns whether the recorded run failed: then it holds all until that."""
+    return recorded.facts.get("failed") is not None
+
+
+def _other_end(then: dict[str, Any], now: dict[str, Any]) -> str | None:
+    """Says in which fact the end of a run is another than it was; None in none."""
+    for name in now:
+        if then[name] != now[name]:
+            return f"the fact '{name}'; recorded: {json.dumps(then[name])}; now: {json.dumps(now[name])}"
+    return None
 
 
 def _broken_off(recorded: Recorded) -> str:
@@ -198,7 +246,3 @@ def _broken_off(recorded: Recorded) -> str:
     at = seconds(last if period is None else recorded.ticks * period)
     failed = recorded.facts.get("failed")
     return f"the run was broken off at {at:g} s" if failed is None else f"the run failed after {at:g} s ({failed})"
-
-
-def _told(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"

@@ -30,9 +30,9 @@ def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> N
     _check_facts(recorded)
     if not any_version:
         _check_versions(recorded.facts["versions"])
-    if not (recorded.closed or recorded.state_count or recorded.event_count):
+    if not (recorded.over or recorded.state_count or recorded.event_count):
         raise RecordingError(
-            f"the recording '{recorded.path}' holds nothing to compare: its run was broken off before anything was written"
+            f"the recording '{recorded.path}' holds nothing to compare: its run was left or broken off before anything was written"
         )
     if not (trust or recorded.made_here):
         raise UntrustedError(

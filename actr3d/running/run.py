@@ -16,6 +16,7 @@ from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
 from actr3d.recording import Recording
+from actr3d.running.complaint import failure
 from actr3d.running.declared import check_build, has_build
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.trace import Trace
@@ -107,15 +108,16 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         helpers.heard = partial(recording.fact, "helpers")
         limits.recorder = recording
         limits.trace.listen(recording.event_alone)
+        left: SystemExit | None = None
         with _telling_failure(recording), ProgramOutput(limits) as output:
             try:
                 run_text(source, str(path), limits=limits, folder=path.parent, helpers=helpers)
-            except SystemExit:
-                output.finish()
-                recording.fact("ended", {"by": "exit"})
-                raise
+            except SystemExit as error:
+                left = error
             output.finish()
-        recording.fact("ended", {"by": "end"})
+        recording.fact("ended", {"by": "end" if left is None else "exit"})
+        if left is not None:
+            raise left
 
 
 @contextmanager
@@ -123,8 +125,8 @@ def _telling_failure(recording: Recording) -> Generator[None]:
     """Writes into a recording what its run fails with, where it does."""
     try:
         yield
-    except (EndOfRun, SystemExit, KeyboardInterrupt):
+    except (EndOfRun, KeyboardInterrupt):
         raise
     except BaseException as error:
-        recording.fact("failed", f"{type(error).__name__}: {error}")
+        recording.fact("failed", failure(error))
         raise

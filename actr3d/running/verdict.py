@@ -79,7 +79,7 @@ def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
 def give_verdict(*, file: str, to: str, trust: bool, any_version: bool) -> None:
     """Runs a recording again in this process, and writes the verdict to a file."""
     process = os.getpid()
-    verdict = _answered(file, partial(_compare, file, trust, any_version))
+    verdict = _answered(file, partial(_compare, file, trust, any_version, Path(to).parent))
     if os.getpid() == process:  # else the program has made a copy of the process
         Path(to).write_text(json.dumps(asdict(verdict)), encoding="utf-8")
 
@@ -89,11 +89,11 @@ def _check(file: str, trust: bool, any_version: bool) -> None:
         check_replayable(recorded, trust=trust, any_version=any_version)
 
 
-def _compare(file: str, trust: bool, any_version: bool) -> Verdict:
+def _compare(file: str, trust: bool, any_version: bool, within: Path) -> Verdict:
     from actr3d.running.replay import replay
 
     with Recorded(file) as recorded:
-        comparison = replay(recorded, trust=trust, any_version=any_version)
+        comparison = replay(recorded, trust=trust, any_version=any_version, within=within)
     return Verdict(code=AGREES if comparison.difference is None else DIFFERS, text=f"{comparison}\n")
 
 

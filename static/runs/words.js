@@ -7,8 +7,8 @@ const ENDED = {
   done: "no mind had anything left to do",
   end: "the program was over",
   exit: "the program ended itself",
-  left: "kept where it had come to",
-  time: "its time was over",
+  left: "left before its end",
+  limits: "its time was over",
 };
 
 const DAY = new Intl.DateTimeFormat(undefined, { day: "numeric", month: "short" });
@@ -60,7 +60,7 @@ export function outcomeText(run) {
   if (run.result?.outcome) return String(run.result.outcome);
   const first = Object.entries(run.result ?? {})[0];
   if (first) return `${labelOf(first[0])} ${measureText(...first)}`;
-  if (run.ended) return "ended";
+  if (run.ended && run.ended !== "left") return "ended";
   return run.session ? "not over" : "not finished";
 }
 

@@ -88,13 +88,18 @@ def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, sour
         ("os.path.exists({mark!r}) and os.write(1, b'x' * 10**7)", True, "every byte agrees"),
     ],
 )
-def test_whatever_a_model_does_the_second_time_is_told(desk: Desk, tmp_path: Path, does: str, agrees: bool | None, text: str) -> None:
+def test_whatever_a_model_does_the_second_time_is_told(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, agrees: bool | None, text: str
+) -> None:
     mark = tmp_path / "mark"
     path = recorded(desk, tmp_path, BUILT.format(does=does.format(mark=str(mark))))
     mark.touch()
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
     told = desk.do(Reruns(desk.workers).run(path, waits))
     assert told["agrees"] is agrees
     assert text in told["text"]
+    assert not list((tmp_path / "temporary").iterdir())
 
 
 def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) -> None:
@@ -123,6 +128,6 @@ def test_it_ends_when_nobody_waits_any_more_and_when_it_comes_no_further(
     first, second, third = desk.do(three())
     assert first == second == {"agrees": None, "text": "cancelled"}
     assert isinstance(third, BusyError)
-    monkeypatch.setattr("workbench.rerunning.PATIENCE", 0.5)
+    monkeypatch.setattr("workbench.jobs.PATIENCE", 0.5)
     assert desk.do(reruns.run(path, waits)) == {"agrees": None, "text": "it came no further for 0.5 s"}
     assert reruns.share(path) is None

@@ -17,6 +17,7 @@ from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
 from actr3d.running.building import build
+from actr3d.running.complaint import failure
 from actr3d.running.printed import BuiltOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
@@ -92,6 +93,8 @@ class BuiltRun:
                     self._go_on()
             finally:
                 if self._recording is not None:
+                    if self._conductor.leaving:
+                        self._recording.leave()
                     self._recording.close()
 
     def _prepare(self, limits: RunLimits, parameters: dict[str, Any], helpers: HelperTexts) -> None:
@@ -134,7 +137,7 @@ class BuiltRun:
             if conductor.link.left:
                 raise  # in a copy of the process that the model has made, which ends with it
             conductor.link.post(notice_of(error))
-            self._tell_failure(told_of(error))
+            self._tell_failure(failure(error))
             conductor.end("failed", told_of(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, report.ticks)

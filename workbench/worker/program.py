@@ -17,6 +17,7 @@ from actr3d.actr.loading.sweep import with_values
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
+from actr3d.running.complaint import failure
 from actr3d.running.printed import ProgramOutput
 from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
@@ -108,6 +109,8 @@ class ProgramRun:
             pass
         finally:
             if self._recording is not None:
+                if conductor.leaving:
+                    self._recording.leave()
                 self._recording.close()
 
     def _foresee(self) -> None:
@@ -153,15 +156,16 @@ class ProgramRun:
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = again = RecordedOnce(self._recording)
+            limits.recorder = again = RecordedOnce(self._recording, lambda: self._left)
             trace.listen(again.event)
         if not self._listing.simulates:  # else it goes on to where its simulation stands at its start
             self._hold_at_start()
+        exited: SystemExit | None = None
         try:
             with helpers_of(conductor.link, self._helpers) as helpers, ProgramOutput(limits) as output:
                 helpers.heard = self._keep_helpers
                 if not self._again:
-                    self._run_text(limits, helpers)
+                    exited = self._run_text(limits, helpers)
                 if not self._left:
                     output.finish()
         except _Again:
@@ -174,13 +178,19 @@ class ProgramRun:
             self._introduce()
             conductor.link.post(notice_of(error))
             if self._recording is not None:
-                self._recording.fact("failed", told_of(error))
+                self._recording.fact("failed", failure(error))
             self._end("failed", told_of(error))
             return
-        if not self._left:
-            if self._recording is not None:
-                self._recording.fact("ended", {"by": "end"})
+        if self._left:
+            return
+        if self._recording is not None:
+            self._recording.fact("ended", {"by": "end" if exited is None else "exit"})
+        if exited is None or not exited.code:
             self._end("ended", "the program is over")
+        else:
+            self._introduce()
+            conductor.link.post(notice_of(exited))
+            self._end("failed", told_of(exited))
 
     def _hold_at_start(self) -> None:
         """Waits before the program begins, where nothing says that it is to go on."""
@@ -194,13 +204,16 @@ class ProgramRun:
             with suppress(_Again):
                 conductor.attend()
 
-    def _run_text(self, limits: RunLimits, helpers: HelperTexts) -> None:
+    def _run_text(self, limits: RunLimits, helpers: HelperTexts) -> SystemExit | None:
+        """Runs the program; returns with what it has ended itself, if it has."""
         start = self._conductor.link.start
         try:
             run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
         except SystemExit as end:
-            if end.code:  # else it is how a program says that it has come to its end
+            if self._conductor.link.left:
                 raise
+            return end
+        return None
 
     @property
     def _left(self) -> bool:
@@ -226,10 +239,7 @@ class ProgramRun:
         self._hold_models()
         to = self._clock + end - begin
         while True:
-            if conductor.leaving:
-                raise Leaving
-            if self._again:
-                raise _Again
+            self._check_left()
             if self._rush is not None:
                 if to <= self._rush:
                     self._clock = to
@@ -256,10 +266,7 @@ class ProgramRun:
         self._hold_models()
         self._introduce()
         self._clock += passed
-        if conductor.leaving:
-            raise Leaving
-        if self._again:
-            raise _Again
+        self._check_left()
         if self._rush is not None and self._clock < self._rush:
             return
         self._furthest = max(self._furthest, self._clock)
@@ -274,6 +281,17 @@ class ProgramRun:
             conductor.attend()
             if self._rush is None and conductor.pace(self._clock):
                 return
+
+    def _check_left(self) -> None:
+        """Leaves the program where it is to be left, also one that has caught that and goes on.
+
+        Raises:
+            EndOfRun: If it is to be left.
+        """
+        if self._conductor.leaving:
+            raise Leaving
+        if self._again:
+            raise _Again
 
     def _show(self, simulation: Simulation) -> None:
         """Lets this simulation be shown from now on."""

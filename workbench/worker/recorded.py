@@ -40,7 +40,7 @@ def replay_again(link: Link) -> None:
 
     try:
         with Recorded(path) as recorded:
-            comparison = replay(recorded, trust=True, progress=progress)  # the server has asked
+            comparison = replay(recorded, trust=True, progress=progress, within=Path(link.start.to))  # the server has asked
         found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
         found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"'{path}'", "it")}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from actr3d.recording import Recording
@@ -14,10 +14,12 @@ class RecordedOnce:
 
     Args:
         recording: What has been told up to now.
+        left: Tells whether the program is being left: what it does then, as in `finally`, is nothing that it does by itself.
     """
 
-    def __init__(self, recording: Recording) -> None:
+    def __init__(self, recording: Recording, left: Callable[[], bool]) -> None:
         self._recording = recording
+        self._left = left
         self._events = self._states = self._answers = self._commands = 0
 
     def event(self, event: TraceEvent) -> None:
@@ -27,7 +29,7 @@ class RecordedOnce:
             RecordingError: If the file cannot be written any more.
         """
         self._events += 1
-        if self._events > self._recording.events:
+        if self._events > self._recording.events and not self._left():
             self._recording.event_alone(event)
 
     def state(self, run: int, tick: int, data: bytes) -> None:
@@ -37,17 +39,17 @@ class RecordedOnce:
             RecordingError: If the file cannot be written any more.
         """
         self._states += 1
-        if self._states > self._recording.states:
+        if self._states > self._recording.states and not self._left():
             self._recording.state(run, tick, data)
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
         """Takes what a body answered."""
         self._answers += 1
-        if self._answers > self._recording.answers:
+        if self._answers > self._recording.answers and not self._left():
             self._recording.answer(run, tick, body, word, value)
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
         """Takes what a user did."""
         self._commands += 1
-        if self._commands > self._recording.commands:
+        if self._commands > self._recording.commands and not self._left():
             self._recording.command(run, tick, data)

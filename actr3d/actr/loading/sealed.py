@@ -17,14 +17,17 @@ from types import ModuleType
 from typing import Any
 
 from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.errors import RecordingError
 
 _LOCK = RLock()  # everything here affects the whole process
 OWN = ("actr3d", "workbench", "__main__")
 """Modules that are kept in every replay, wherever they come from."""
+_IN_USE = frozenset(sys.modules) & sys.stdlib_module_names
+"""Modules of Python that this library has loaded before any program runs: none of a program's own modules takes their place."""
 
 
 @contextmanager
-def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
+def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]], within: Path | None = None) -> Generator[HelperTexts]:
     """Restricts imports inside the block to the recorded modules, the standard library and installed packages.
 
     The texts are also written to a new temporary folder, first on the path, for processes that the program starts. The file names
@@ -34,11 +37,18 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]]) -> Gene
         file: The recorded name of the program's file.
         source: Its text.
         helpers: Its helper modules, in the form of `HelperTexts.loaded`.
+        within: Where the temporary folder is made; None for the system's folder for temporary files.
 
     Yields:
         The helper modules, for loading or running the program.
+
+    Raises:
+        RecordingError: If no program can have loaded one of them, because the module of Python of that name is in use.
     """
-    with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-") as name:
+    foreign = sorted(_IN_USE & {name.partition(".")[0] for name in helpers})
+    if foreign:
+        raise RecordingError(f"the recording holds modules that no program can have loaded: Python's own are in use ({', '.join(foreign)})")
+    with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-", dir=within) as name:
         folder, folders = Path(name), installed_folders()
         _lay_out(folder, [(Path(file).name, source), *helpers.values()])
         texts = HelperTexts(helpers, folder)
