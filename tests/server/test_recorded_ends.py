@@ -43,6 +43,7 @@ def build() -> Simulation:
         (PROGRAM + "print('over', end='')\nsys.exit('bye')\n", "failed", {"ended": {"by": "exit"}}),
         (PROGRAM + "1 / 0\n", "failed", {"failed": "ZeroDivisionError: division by zero"}),
         (BUILT, "ended", {"ended": {"by": "stop"}}),
+        (BUILT.replace("self.stop()", "goal.clear()"), "ended", {"ended": {"by": "done"}}),
         (BUILT.replace("self.stop()", "1 / 0"), "failed", {"failed": "ZeroDivisionError: division by zero"}),
         (BUILT.replace("self.stop()", "sys.exit(3)"), "failed", {"failed": "SystemExit: 3"}),
     ],
@@ -59,10 +60,13 @@ def test_the_workbench_and_the_command_line_say_the_same_of_how_a_run_ended(
         main(["run", str(file), "--record", str(tmp_path / "run")])
     except SystemExit:
         assert "sys.exit" in text
+    ticks: list[int] = []
     for each in (path, tmp_path / "run"):
         with Recorded(each) as recorded:
+            ticks.append(recorded.ticks)
             assert {name: recorded.facts[name] for name in ("ended", "failed") if name in recorded.facts} == facts
             assert replay(recorded).difference is None
+    assert ticks[0] == ticks[1]
 
 
 @pytest.mark.parametrize("text", [PROGRAM, BUILT], ids=["program", "built"])

@@ -126,11 +126,12 @@ class BuiltRun:
     def _go_on(self) -> None:
         """Goes on by a few ticks."""
         conductor, simulation = self._conductor, self._simulation
-        ticks = self._allowance()
-        begin = perf_counter()
+        first, last = simulation.ticks, simulation.ticks + self._allowance()
+        begin, over = perf_counter(), None
         try:
-            report = simulation.run(ticks * simulation.period)
-            over = "stop" if report.ended_by == "stop" else "done" if simulation.done else None
+            while over is None and simulation.ticks < last:  # it ends at the same tick however many are done at once
+                simulation.step()
+                over = "stop" if simulation.timeline.lockstep.agents.stopped else "done" if simulation.done else None
             if over is not None:
                 self._conclude()
         except UNFORESEEN as error:
@@ -140,7 +141,7 @@ class BuiltRun:
             self._tell_failure(failure(error))
             conductor.end("failed", told_of(error))
             return
-        self._tick_time = (perf_counter() - begin) / max(1, report.ticks)
+        self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
         conductor.passed()
         if over is None:
             conductor.pace(self.clock)
