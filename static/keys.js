@@ -51,7 +51,8 @@ function press(event) {
   if (!bound?.work || event.altKey || event.defaultPrevented) return false;
   if (document.querySelector("dialog[open]")) return false;
   if (!mod && isWriting(document.activeElement)) return false;
-  if (!mod && Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(event.code) && document.activeElement?.closest(where))) return false;
+  const focused = document.activeElement?.checkVisibility() ? document.activeElement : null; // for a moment it may lie in a dialog that was just closed
+  if (!mod && Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(event.code) && focused?.closest(where))) return false;
   event.preventDefault();
   bound.work();
   return true;
