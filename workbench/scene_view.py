@@ -195,7 +195,7 @@ class _Drawn:
         self._look: Look | None = None
 
     def asked(self, look: Look) -> tuple[OverlayName, ...]:
-        """Returns the visible overlays that need data from the worker, and always the field of view: any browser may look through the eye."""
+        """Returns the visible overlays that need data from the worker, and always the field of view: any browser may use the eye's view."""
         return tuple(name for name, overlay in self._overlays.items() if overlay.asked and name in (look.shown | {"frustum"}))
 
     def look(self, look: Look) -> None:

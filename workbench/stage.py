@@ -61,7 +61,7 @@ class Stage:
         away = away if np.linalg.norm(away) > LEAST else data.xmat[self.body].reshape(3, 3)[:2, 0]
         size = np.linalg.norm(away)
         self.ahead = np.array((*(away / size), 0.0)) if size > 1e-6 else np.array((1.0, 0.0, 0.0))
-        """Horizontal unit vector from the body to the middle of the objects around it, or its heading if they are about at the same place."""
+        """Horizontal unit vector from the body to the middle of the objects around it; if that is at the body, the body's heading."""
 
     def base(self, data: MjData) -> Any:
         """Returns the position of the body."""
