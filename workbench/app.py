@@ -36,7 +36,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
 
     Args:
         models: The models folder.
-        gate: Decides who has access.
+        gate: Checks access to the server.
         memory: Maximum memory of a model [MB]; 0 for no limit.
         keeping: How many recordings are kept; None for the default.
         zygote: The process from which workers are forked, if it has been started already.

@@ -31,8 +31,8 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 
     The result has these keys. `parameters`: settings that differ, each with both values. `changed`: for each recording, what users
     changed during the run, by parameter name, as pairs of time [s] and value. `text`: a diff of the model texts, if both recordings are of
-    the same model file. `same_events`: how many events agree. `whole`: whether all events were compared. `difference`: the first event
-    that differs, with some events before and after it; None if no compared event differs.
+    the same model file. `same_events`: how many events agree. `whole`: False if the comparison stopped at the maximum number of events.
+    `difference`: the first event that differs, with some events before and after it; None if no compared event differs.
 
     Args:
         first: A recording; its run may still be going on.
@@ -106,7 +106,7 @@ def _changes(ours: str, theirs: str) -> list[str]:
 
 
 def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> tuple[int, dict[str, Any] | None, bool]:
-    """Returns how many events agree, the first difference, and whether all events were compared."""
+    """Returns how many events agree, the first difference, and False if the comparison stopped at the maximum number."""
     ours, theirs = _events(one, kinds), _events(other, kinds)
     before: deque[TraceEvent] = deque(maxlen=CONTEXT)
     number = -1

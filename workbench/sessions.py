@@ -200,8 +200,8 @@ class Sessions:
     async def close(self, name: str) -> None:
         """Ends a session.
 
-        NoSuchSessionError: If there is no session of that name.
-            NoSuchSessionError: If there is none of that name.
+        Raises:
+            NoSuchSessionError: If there is no session of that name.
         """
         session = self.get(name)
         del self._sessions[name], self._views[name]

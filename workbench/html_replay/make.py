@@ -23,7 +23,7 @@ from workbench.palette import palette
 from workbench.stage import Stage
 
 RATE = 30
-"""About this many frames per second of simulated time are stored; the page interpolates linearly between them."""
+"""About this many frames per second of simulated time are stored; the page interpolates between them."""
 MOST_FRAMES = 20_000
 MOST_NUMBERS = 7_000_000
 """Maximum number of pose values, 4 bytes each; long runs, or those with many bodies, get fewer frames."""
