@@ -1,1 +1,1 @@
-"""The server: it will show runs in a browser and take commands; it knows neither cognition nor physics."""
+"""The workbench server: shows runs in a browser and accepts commands; it contains neither cognition nor physics."""

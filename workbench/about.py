@@ -1,4 +1,4 @@
-"""What a model's docstring says, as a tree of elements for the page: a small part of Markdown, in which nothing is ever HTML."""
+"""Converts a model's docstring to a tree of elements for the page: a small subset of Markdown; nothing is interpreted as HTML."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from actr3d.errors import ConfigurationError
 from workbench.loader import Listing, listing_of
 
 LONGEST = 20_000
-"""So much of a docstring is shown [characters]: that of a book's page ten times over."""
+"""How much of a docstring is shown [characters]: about ten pages of a book."""
 _ELEMENTS = {
     "paragraph": "p",
     "bullet_list": "ul",
@@ -24,22 +24,22 @@ _ELEMENTS = {
     "strong": "strong",
 }
 _HEADINGS = {"h1": "h2", "h2": "h3", "h3": "h4"}
-"""The page itself has the heading above these; smaller ones are all alike."""
+"""The page has its own heading above these; all smaller headings become `h4`."""
 
 Node = str | dict[str, Any]
-"""A text, or an element: `tag`, `children`, and what else it has: `href` of a link, `settings` of values to try."""
+"""A text, or an element with `tag`, `children` and optional `href` (of a link) or `settings` (values to try)."""
 
 
 def about_of(source: str, filename: str) -> dict[str, Any]:
-    """Returns what a model says of itself.
+    """Returns a model's description of itself, from its docstring.
 
     Args:
-        source: The model's text; nothing of it is run.
-        filename: What it is called.
+        source: The model's text; it is not executed.
+        filename: The name of the model's file.
 
     Returns:
-        `title`, its first line as elements; `nodes`, all else; `cut`, whether there is more than is shown; `readable`, whether the text
-        could be read as Python at all.
+        `title`, the first line as elements; `nodes`, the rest; `cut`, whether the text was too long and is cut; `readable`, whether the
+        text could be parsed as Python.
     """
     listing = listing_of(source, filename)
     text = listing.text[:LONGEST]
@@ -59,7 +59,7 @@ def _tree(text: str) -> SyntaxTreeNode:
 
 
 def _inside(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
-    """Yields what is in a text's paragraphs, without these."""
+    """Yields the contents of a text's paragraphs without the paragraphs themselves."""
     for child in node.children:
         if child.type in ("paragraph", "inline", "heading"):
             yield from _inside(child, listing)
@@ -73,7 +73,7 @@ def _nodes(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
 
 
 def _node(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
-    """Yields what the page is to show of a node; of what is not known its texts."""
+    """Yields what the page shows for a node; for an unknown node, only its texts."""
     match node.type:
         case "text" | "text_special" | "html_inline" | "html_block":
             yield node.content
@@ -89,7 +89,7 @@ def _node(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
         case "code_block" | "fence":
             yield {"tag": "pre", "children": [node.content]}
         case "image":
-            yield node.content  # what stands in its place: the page loads nothing from elsewhere
+            yield node.content  # the alternative text: the page loads nothing from other servers
         case "link":
             address = str(node.attrs.get("href", ""))
             inside = list(_nodes(node, listing))
@@ -108,12 +108,12 @@ def _node(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
 
 
 def _is_tight(item: SyntaxTreeNode) -> bool:
-    """Tells whether a list's item is one paragraph that is to have no room around it."""
+    """Returns whether a list item is a single paragraph without space around it."""
     return len(item.children) == 1 and item.children[0].type == "paragraph" and bool(item.children[0].hidden)
 
 
 def _settings_in(code: str, listing: Listing) -> dict[str, Any] | None:
-    """Returns the values that code such as `width = 0.5, speed = 2` gives to the model's parameters; None where it is anything else."""
+    """Returns the parameter values in code such as `width = 0.5, speed = 2`; None if the code is anything else."""
     try:
         call = ast.parse(f"_({code})", mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):

@@ -1,4 +1,4 @@
-"""The application: everything the server answers, behind one guard."""
+"""Builds the application: all routes of the server behind one access check."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ from workbench.worker.workers import Workers
 
 
 def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, zygote: Zygote | None = None) -> FastAPI:
-    """Makes the application. Its `state.leave` ends all that runs.
+    """Returns the application; its `state.leave` ends all runs.
 
     Args:
         models: The models folder.
-        gate: Whom it lets in.
-        memory: How much memory a model may take [MB]; 0 for no limit.
-        keeping: How many recordings are kept; the usual number where it is not said.
-        zygote: The process from which workers are forked, where it has been started already.
+        gate: Checks access to the server.
+        memory: Maximum memory of a model [MB]; 0 for no limit.
+        keeping: How many recordings are kept; None for the default.
+        zygote: The process from which workers are forked, if it has been started already.
     """
     folder = ModelFolder(models)
     workers = Workers(memory, zygote)
@@ -83,7 +83,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
 
 
 def _manual() -> ASGIApp:
-    """Returns what serves the manual; without a built one, an answer that says how to build it."""
+    """Returns the app that serves the manual; if the manual is not built, a response that explains how to build it."""
     folder = manual()
     if folder is None:
         return PlainTextResponse("The manual has not been built. In a copy of the repository: uv run mkdocs build", status_code=404)
@@ -91,7 +91,7 @@ def _manual() -> ASGIApp:
 
 
 def _told(problem: str, status: int, headers: Mapping[str, str] | None = None) -> JSONResponse:
-    """Returns an answer that says what is wrong; half characters that came with it are written as escapes."""
+    """Returns a response that describes a problem; unpaired surrogate characters are written as escapes."""
     return JSONResponse({"error": sendable(problem)}, status_code=status, headers=headers)
 
 
@@ -100,7 +100,7 @@ async def _refused(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
-    """Tells what of a request is not as the description has it."""
+    """Reports what in a request does not match the API description."""
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     if first["type"] == "json_invalid":
@@ -109,7 +109,7 @@ async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _no_answer(_: Request, error: Exception) -> JSONResponse:
-    """Tells that there is no such address, or that it does not take what was sent."""
+    """Reports that the address does not exist or does not accept the request."""
     assert isinstance(error, HTTPException)
     return _told(error.detail, error.status_code, error.headers)
 

@@ -1,4 +1,4 @@
-"""An attempt to begin a run: what it begins with, and the worker that it is given."""
+"""Describes an attempt to start a run: the options it starts with, and the worker that is given to it."""
 
 from __future__ import annotations
 
@@ -16,46 +16,46 @@ from workbench.worker.workers import Worker
 
 @dataclass(frozen=True, kw_only=True)
 class Relived:
-    """An earlier run that is to be lived through again."""
+    """Describes an earlier run that is to be repeated."""
 
     file: str
-    """Where the model file was then; nothing is read from there."""
+    """The path of the model file at that time; it is not read."""
     source: str
-    """The model's text then."""
+    """The model's text at that time."""
     commands: list[tuple[int, dict[str, Any]]]
-    """What users did, to be done again: after which tick, and what."""
+    """The commands of users, which are applied again: tick after which each was given, and the command."""
     recording: Path
-    """Where it was recorded."""
+    """The recording of the run."""
     helpers: dict[str, tuple[str, str]]
     """Its helper modules, as `actr3d.actr.loading.helper_modules` keeps them."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wanted:
-    """What is wanted of a run; see `Start`."""
+    """Holds the options of a run; see `Start`."""
 
     settings: dict[str, Any] = field(default_factory=dict[str, Any])
     """Values of parameters."""
     seed: int | str | None = None
-    """None for a fresh one."""
+    """None for a new random seed."""
     record: bool = True
     run: bool = False
-    """Whether it goes on at once."""
+    """Whether the run starts going at once, instead of paused."""
     relived: Relived | None = None
-    """The run that it is to be once more; None for a new one of what is in the file now."""
+    """The earlier run to repeat; None for a new run of the current file."""
 
 
 def start_of(path: Path, wanted: Wanted, **more: Any) -> Start:
-    """Returns how a run of a model begins.
+    """Returns the instructions with which a run of a model starts.
 
     Args:
         path: The model file.
-        wanted: What is wanted of it.
-        more: Other fields of `Start`, as they are.
+        wanted: The options of the run.
+        more: Other fields of `Start`, passed on unchanged.
 
     Raises:
         ModelFileError: If the file cannot be read.
-        OSError: If it cannot be read any more.
+        OSError: If the file has been removed or cannot be read any more.
     """
     relived = wanted.relived
     if relived is None:
@@ -70,12 +70,12 @@ def start_of(path: Path, wanted: Wanted, **more: Any) -> Start:
 
 @dataclass(eq=False)
 class Attempt:
-    """A run in its worker, from when that is told to begin."""
+    """Holds a run and its worker, from the moment the run is started."""
 
     start: Start
     worker: Worker
     texts: Texts = field(init=False)
-    """What it is made of."""
+    """The source texts that the run is made of."""
     over: bool = False
     """Whether the worker has ended."""
 

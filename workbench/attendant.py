@@ -1,4 +1,4 @@
-"""Attends to one worker: takes what it says and prints, asks where it is when it is silent, and tells how it ended."""
+"""Monitors one worker process: receives its messages and its output, asks for its position when it is silent, and reports how it ended."""
 
 from __future__ import annotations
 
@@ -15,53 +15,53 @@ from workbench.worker.messages import At, FromWorker, Notice, Over, Start, Where
 from workbench.worker.workers import LOST, PRINTED, Worker
 
 SILENT = 1.0
-"""A worker that is busy and says nothing for so long [s] is asked where it is."""
+"""A busy worker that sends nothing for this long [s] is asked which line it is at."""
 SPEECHLESS = 2.5
-"""One that does not tell so long after it was last heard [s] is busy in compiled code, which lets nothing else happen in its process."""
+"""A worker that does not answer for this long after its last message [s] is busy in compiled code, which blocks its whole process."""
 LAST_WORDS = 1.0
-"""So long what a worker has said is still read after its end [s]."""
+"""How long messages of a worker are still read after it has ended [s]."""
 MOST_PRINTED = 200
-"""So many lines that a worker prints past its model's `print` are told of; the rest is left out."""
+"""How many lines that a worker prints other than by its model's `print` are shown; the rest is dropped."""
 
 
 _MEANINGS = {
     "SIGKILL": ", which it sent itself, or another program did, or the system for want of memory",
     "SIGSEGV": ": a crash in compiled code",
 }
-"""What is told of signals."""
+"""Explanations of signals, added to their names."""
 
 
 class Told(Protocol):
-    """Who is told of it."""
+    """Receives what an attendant reports; a session does."""
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
-        """Takes what a worker says."""
+        """Handles a message from a worker."""
         ...
 
     def take_end(self, worker: Worker, ending: str) -> None:
-        """Takes how a worker ended; nothing where it was in good order."""
+        """Handles the end of a worker; `ending` is empty if it ended normally."""
         ...
 
     def tell(self, notice: Notice) -> None:
-        """Tells the user something."""
+        """Sends a notice to the user."""
         ...
 
     def busy(self, worker: Worker) -> bool:
-        """Tells whether a worker is to be saying something."""
+        """Returns whether a worker is expected to send messages."""
         ...
 
     def halt(self, worker: Worker, name: str) -> None:
-        """Takes note that a signal of this name has stopped a worker, so that it stands still; no name: that it goes on."""
+        """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
         ...
 
 
 class Attendant:
-    """Attends to one worker, until it is gone.
+    """Monitors one worker until it has ended.
 
     Args:
         worker: The worker.
-        start: What it is told to do.
-        told: Who is told of it.
+        start: What the worker must do.
+        told: Receives the worker's messages and its end.
     """
 
     def __init__(self, worker: Worker, start: Start, told: Told) -> None:
@@ -70,10 +70,10 @@ class Attendant:
         self._told = told
         self._heard = time.monotonic()
         self._given_up = 0.0
-        """When the worker was heard last before it could not even tell where it is."""
+        """When the last message had arrived before the worker did not even answer where it is."""
 
     async def serve(self) -> None:
-        """Lets the worker begin, takes what it says, and tells how it ended."""
+        """Starts the worker's job, passes on its messages, and reports how it ended."""
         worker = self._worker
         worker.send(self._start)
         printing = asyncio.create_task(self._print())
@@ -82,8 +82,8 @@ class Attendant:
             over = await self._hear_out()
             if not over:
                 await worker.stop()
-            status = await asyncio.shield(worker.exit)  # who waits may be cancelled, the worker not
-            worker.kill()  # and what it has started
+            status = await asyncio.shield(worker.exit)  # the awaiting task may be cancelled, the worker must not be
+            worker.kill()  # and the processes that it has started
             await asyncio.wait([printing], timeout=1)
             self._told.take_end(worker, "" if over else _why(status, subject_of(self._start)))
         finally:
@@ -92,7 +92,11 @@ class Attendant:
             worker.release()
 
     async def _hear_out(self) -> bool:
-        """Takes what the worker says, until it is gone, even where others hold its wire; tells whether it ends in good order."""
+        """Receives messages until the worker has ended, even if other processes hold its connection open.
+
+        Returns:
+            Whether it ended normally.
+        """
         listening = asyncio.create_task(self._listen())
         try:
             await asyncio.wait([listening, self._worker.exit], return_when=asyncio.FIRST_COMPLETED)
@@ -103,7 +107,7 @@ class Attendant:
         return not listening.cancelled() and listening.result()
 
     async def _listen(self) -> bool:
-        """Takes what the worker says; tells whether it ends in good order."""
+        """Receives messages until the connection ends; returns whether the worker ended normally."""
         over = False
         try:
             while (message := await self._worker.receive()) is not None:
@@ -115,12 +119,12 @@ class Attendant:
         return over
 
     async def _print(self) -> None:
-        """Tells what the worker prints past its model's `print`."""
+        """Shows what the worker prints other than by its model's `print`."""
         output, count = self._worker.output, 0
         while count < MOST_PRINTED:
             try:
                 line = await output.readline()
-            except ValueError:  # a line that is longer than the stream takes
+            except ValueError:  # a line longer than the stream's limit
                 continue
             if not line:
                 return
@@ -134,7 +138,7 @@ class Attendant:
                 pass
 
     async def _watch(self) -> None:
-        """Asks the worker where it is when it is busy and says nothing."""
+        """Asks a busy worker that sends nothing which line it is at."""
         since: float | None = None
         halted = 0
         while True:
@@ -158,16 +162,16 @@ class Attendant:
 
 
 def subject_of(start: Start) -> str:
-    """Returns what a process that does this is called."""
+    """Returns a name for the process that does this job, for messages to users."""
     return "the process that read it" if start.job in ("make", "list") else "the model's process"
 
 
 def _why(status: int, subject: str) -> str:
-    """Says how a process ended that nobody has asked to end.
+    """Returns why a process ended that nobody asked to end.
 
     Args:
         status: Its exit code, or the negative number of a signal.
-        subject: What it is called.
+        subject: The name of the process in the message.
     """
     if status == LOST:
         return "the process from which all models' processes come was ended, and all runs with it; begin again"

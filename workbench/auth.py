@@ -1,4 +1,4 @@
-"""Who may speak to the server: one middleware, which denies by default, over http and websockets alike."""
+"""Controls access to the server: one middleware for HTTP and websockets that denies by default."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
 HEADER = b"x-workbench"
-"""Every request that changes something has it; a form of another page cannot send it."""
+"""Every request that changes something must have this header; a form of another site cannot send it."""
 SAFE = frozenset({"GET", "HEAD"})
 LARGEST = 2_000_000
-"""No request has a larger body [bytes]."""
+"""Maximum size of a request's body [bytes]."""
 BODY_TIME = 30.0
-"""So long a request's body may take to come [s]."""
+"""Maximum time in which a request's body must arrive [s]."""
 LONGEST_PATH = 4_000
-"""Nor a longer path and query."""
+"""Maximum total length of path and query."""
 _HOST = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.\-]+)(?::(\d{1,5}))?")
 
 HEADERS = (
@@ -41,11 +41,11 @@ POLICY = (
     b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
     b"connect-src 'self'; frame-src 'self'; worker-src 'self' blob:; form-action 'none'; base-uri 'none'; frame-ancestors 'self'"
 )
-"""What our own pages may load and do: nothing from anywhere else, no scripts in the text."""
+"""What the workbench's pages may load and do: nothing from other servers, no inline scripts."""
 
 
 class Token:
-    """The secret that lets a user in; it shows itself to nobody."""
+    """Holds the secret that gives a user access; its repr does not show it."""
 
     def __init__(self, text: str | None = None) -> None:
         self._text = secrets.token_urlsafe(32) if text is None else text
@@ -54,46 +54,46 @@ class Token:
         return "<Token>"
 
     def equals(self, other: str) -> bool:
-        """Tells whether it is this one, in a time that tells nothing more."""
+        """Returns whether a text equals the token, in a time that does not depend on where they differ."""
         return hmac.compare_digest(self._text.encode(), other.encode("utf-8", "surrogateescape"))
 
     def reveal(self) -> str:
-        """Returns it, to be told to the user, or to be put into the user's own cookie."""
+        """Returns the token as text, to print it for the user or to put it into the user's cookie."""
         return self._text
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gate:
-    """Where the server is, and whom it lets in."""
+    """Describes where the server listens and who has access."""
 
     token: Token
     port: int
     hosts: frozenset[str] = LOOPBACK
-    """By which names it may be spoken to; others are a sign of a name that was led here from elsewhere (DNS rebinding)."""
+    """Host names by which the server may be called; any other name suggests DNS rebinding."""
     scheme: str = "http"
     cookie: str = field(init=False)
-    """The name of the cookie: one a port, as cookies do not tell ports apart."""
+    """The name of the cookie: one for each port, as cookies do not distinguish ports."""
 
     def __post_init__(self) -> None:
-        """Names the cookie."""
+        """Sets the name of the cookie."""
         object.__setattr__(self, "cookie", f"workbench_{self.port}")
 
     def knows_host(self, host: str) -> bool:
-        """Tells whether a `Host` header names this server."""
+        """Returns whether a `Host` header names this server."""
         match = _HOST.fullmatch(host)
         return match is not None and match[1].lower() in self.hosts and int(match[2] or 80) == self.port
 
     def is_own_origin(self, origin: str, host: str) -> bool:
-        """Tells whether an `Origin` header is that of our own pages, as they were asked for by this `Host`."""
+        """Returns whether an `Origin` header is that of the workbench's own pages, which were loaded from this `Host`."""
         return origin.lower() == f"{self.scheme}://{host.lower()}" and self.knows_host(host)
 
 
 class Guard:
-    """Lets through who has the token and comes from our own page, and keeps everybody else out; adds headers to all answers.
+    """Admits requests that have the token and come from the workbench's own page, refuses all others, and adds headers to all responses.
 
     Args:
-        app: What is guarded.
-        gate: Whom it lets in.
+        app: The application to protect.
+        gate: Decides who has access.
     """
 
     def __init__(self, app: App, gate: Gate) -> None:
@@ -101,7 +101,7 @@ class Guard:
         self._gate = gate
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Handles one request, websocket or event of the server's life."""
+        """Handles one request, websocket, or lifespan event."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
@@ -127,7 +127,7 @@ class Guard:
                 await _refuse(send, status, reason)
 
     def _judge(self, scope: Scope) -> tuple[int, str]:
-        """Returns 200 for who may pass, 303 for who has brought the token in the address, and else why not."""
+        """Returns 200 to admit a request, 303 if the address contains the token, or else the status and reason of the refusal."""
         gate, headers = self._gate, _Headers(scope)
         host, origin = headers.one("host"), headers.one("origin")
         if host is None or not gate.knows_host(host):
@@ -155,7 +155,7 @@ class Guard:
 
 
 def _judge_change(headers: _Headers) -> tuple[int, str]:
-    """Judges a request that changes something: it has JSON, our header, and is not too large."""
+    """Checks a request that changes something: it must be JSON, have the workbench's header, and not be too large."""
     if (headers.one("content-type") or "").partition(";")[0].strip().lower() != "application/json":
         return 415, "what changes something is sent as application/json"
     if headers.one(HEADER.decode()) is None:
@@ -167,18 +167,18 @@ def _judge_change(headers: _Headers) -> tuple[int, str]:
 
 
 class _Headers:
-    """The headers of a request."""
+    """Holds the headers of a request."""
 
     def __init__(self, scope: Scope) -> None:
         self._headers: list[tuple[bytes, bytes]] = scope["headers"]
 
     def one(self, name: str) -> str | None:
-        """Returns a header; one that comes twice counts as something that is never right."""
+        """Returns the value of a header; a repeated header gives a value that never matches."""
         found = [value for key, value in self._headers if key == name.encode()]
         return None if not found else found[0].decode("latin-1") if len(found) == 1 else "\0twice"
 
     def cookies(self, name: str) -> list[str]:
-        """Returns the values of all cookies of a name."""
+        """Returns the values of all cookies with a name."""
         values: list[str] = []
         for key, value in self._headers:
             if key == b"cookie":
@@ -192,7 +192,7 @@ class _Headers:
 
 
 async def _body(receive: Receive) -> tuple[bytes, int, str]:
-    """Returns a request's body and 200; or why it is not taken: it is too large, whatever length it said it has, or too late."""
+    """Returns a request's body and 200, or the status and reason if it is too large (whatever its Content-Length) or too slow."""
     body = bytearray()
     try:
         async with asyncio.timeout(BODY_TIME):
@@ -208,7 +208,7 @@ async def _body(receive: Receive) -> tuple[bytes, int, str]:
 
 
 def _given(body: bytes, receive: Receive) -> Receive:
-    """Returns what gives a body that has been received already, and then what comes."""
+    """Returns a `receive` that first returns a body already read, and then the messages that follow."""
     waiting = [body]
 
     async def give() -> MutableMapping[str, Any]:
@@ -220,7 +220,7 @@ def _given(body: bytes, receive: Receive) -> Receive:
 
 
 def _without_secrets(scope: Scope) -> Scope:
-    """Returns what is asked without what let it in, so that nothing further inside can pass it on."""
+    """Returns the scope without the cookie and the token, so that the application cannot leak them."""
     kept = [(key, value) for key, value in scope["headers"] if key not in (b"cookie", b"authorization")]
     return {**scope, "headers": kept}
 
@@ -237,7 +237,7 @@ def _with_headers(send: Send) -> Send:
 
 
 async def _redirect(scope: Scope, send: Send, gate: Gate) -> None:
-    """Puts the token into a cookie, and sends the browser to the same page without it in the address."""
+    """Stores the token in a cookie and redirects the browser to the same page without the token in its address."""
     rest = {key: values for key, values in parse_qs(scope["query_string"].decode("latin-1")).items() if key != "token"}
     target = scope["path"] + (f"?{urlencode(rest, doseq=True)}" if rest else "")
     cookie = f"{gate.cookie}={gate.token.reveal()}; Path=/; HttpOnly; SameSite=Strict"

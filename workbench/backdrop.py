@@ -1,4 +1,4 @@
-"""What is around the shapes of a scene: light, the ground, the outlines of walls, and soft shade where things stand."""
+"""Draws the surroundings of a scene: lights, the ground, the outlines of walls, and soft shadows on the ground."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from workbench.overlays.overlay import Lines
 from workbench.palette import channels, palette
 
 LIGHTS = (((-4.0, -6.0, 10.0), 2.4), ((-6.0, 6.0, 2.0), 2.0), ((6.0, 2.0, 3.0), 1.2))
-"""The directions from which light comes, and how strong it is: the first casts the shadows; the others brighten the sides."""
+"""The positions of the directional lights and their intensities: the first casts the shadows, the others brighten the sides."""
 HIGHEST = 2.0
-"""What is higher above the ground than this [m] casts no shade on it."""
+"""Shapes higher above the ground than this [m] cast no soft shadow on it."""
 DARKEST, FADING = 0.36, 0.45
-"""How dark the shade of what touches the ground is, and by how much higher it is about a third of that [m]."""
+"""The darkness of the shadow of a shape that touches the ground, and the height [m] at which it falls to about a third (1/e)."""
 SOFT, SOFTER = 0.1, 0.4
-"""How far shade reaches beyond what casts it [m], and how much farther for each metre above the ground."""
+"""How far a shadow extends beyond its shape [m], and how much farther for each metre above the ground."""
 MOST_SHADES = 64
 MOST_OUTLINES = 200
 LEAST_OUTLINED = 0.5
-"""Boxes that are nowhere longer than this [m] have no outline."""
+"""Boxes whose longest side is shorter than this [m] have no outline."""
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 EDGES = np.array([(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 2])
 
@@ -32,7 +32,7 @@ def light(client: Any, *, shadows: bool) -> None:
 
     Args:
         client: Viser's client.
-        shadows: Whether shapes cast shadows, which costs a browser without a graphics card half its time.
+        shadows: Whether shapes cast shadows, which takes half the time of a browser without a graphics card.
     """
     client.scene.configure_default_lights(enabled=False, cast_shadow=False)
     for number, (place, intensity) in enumerate(LIGHTS):
@@ -40,9 +40,9 @@ def light(client: Any, *, shadows: bool) -> None:
 
 
 def lay_grounds(server: Any, model: MjModel) -> list[str]:
-    """Replaces the level planes of a scene by soft ground; returns their names in viser's tree.
+    """Replaces the planes of a scene by a soft ground and returns their names in viser's tree.
 
-    Their colours are the theme's, which each browser sets for itself.
+    Their colours depend on the theme, which each browser sets for itself.
     """
     from mjviser.conversions import get_body_name
 
@@ -74,7 +74,7 @@ def lay_grounds(server: Any, model: MjModel) -> list[str]:
 
 
 class Outlines:
-    """The edges of large boxes that stand, as walls do, so that they look like parts of a building.
+    """Draws the edges of large immovable boxes such as walls, so that they look like parts of a building.
 
     Args:
         server: Viser's server.
@@ -90,7 +90,7 @@ class Outlines:
         self._lines = Lines(server, "/outlines", channels(palette()["outline"]), 1.2)
 
     def draw(self, data: MjData) -> None:
-        """Draws them where the boxes are now."""
+        """Draws the outlines at the current poses of the boxes."""
         if not len(self._geoms):
             return
         turned = data.geom_xmat[self._geoms].reshape(-1, 3, 3)
@@ -99,11 +99,11 @@ class Outlines:
 
 
 class Shades:
-    """The soft shade on the ground under what stands there or is near to it.
+    """Computes soft shadows on the ground under shapes that are on it or near it.
 
     Args:
         model: The compiled scene.
-        ground: How high the ground lies [m].
+        ground: The height of the ground [m].
     """
 
     def __init__(self, model: MjModel, ground: float) -> None:
@@ -113,7 +113,7 @@ class Shades:
         self._boxes = model.geom_aabb[self._geoms]
 
     def told(self, data: MjData) -> list[list[float]]:
-        """Returns the darkest: each x, y, cosine and sine of the direction of its first side, two half sides, softness [m], darkness."""
+        """Returns the darkest shadows: x, y, direction of the first side (cosine, sine), two half sides, softness [m], darkness."""
         turned = data.geom_xmat[self._geoms].reshape(-1, 3, 3)
         middle = data.geom_xpos[self._geoms] + np.einsum("nij,nj->ni", turned, self._boxes[:, :3])
         sides = turned * self._boxes[:, None, 3:]  # half sides, as columns

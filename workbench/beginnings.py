@@ -1,4 +1,4 @@
-"""With what a recorded run began, and what users did: all that is needed to run it again in a session."""
+"""Reads what a recorded run began with and which commands users gave: all that is needed to run it again in a session."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from actr3d.recording import Recorded
 
 
 class Beginning(msgspec.Struct, frozen=True, kw_only=True):
-    """With what a recorded run began."""
+    """Holds what a recorded run began with."""
 
     made_here: bool
-    """Whether this installation made it, and nobody has changed it since: only then its code has been run here before."""
+    """Whether this installation made the recording and nobody has changed it since; only then has its code been run here before."""
     file: str
-    """Where the model file was."""
+    """The path of the model file."""
     source: str
     seed: int | str
     parameters: dict[str, Any]
     helpers: dict[str, tuple[str, str]]
     """The file and text of each helper module, by name."""
     commands: list[tuple[int, dict[str, Any]]]
-    """What users did: after which tick, and what."""
+    """The commands of users: tick after which each was given, and the command."""
 
 
 def beginning_of(path: Path) -> Beginning:
-    """Returns with what the run of a recording began.
+    """Returns what the run of a recording began with.
 
     Raises:
-        RecordingError: If it cannot be read, or does not say which model file made it.
-        ValidationError: If its commands or facts are others than those of a run.
+        RecordingError: If it cannot be read, or does not name the model file that made it.
+        ValidationError: If its commands or facts are not valid for a run.
     """
     with Recorded(path) as recorded:
         facts = recorded.facts
@@ -53,12 +53,12 @@ def beginning_of(path: Path) -> Beginning:
 
 
 def written(began: Beginning) -> str:
-    """Returns it as JSON, also with numbers and texts that strict JSON does not have."""
+    """Returns a beginning as JSON, including numbers and texts that strict JSON does not allow."""
     return json.dumps(msgspec.structs.asdict(began))
 
 
 def parsed(text: bytes) -> Beginning:
-    """Returns what `written` has made text of.
+    """Parses the JSON that `written` returned.
 
     Raises:
         RecordingError: If it is nested too deeply.

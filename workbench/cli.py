@@ -1,4 +1,4 @@
-"""The command `workbench`: starts the server, and opens the browser."""
+"""Defines the command `workbench`, which starts the server and opens the browser."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from workbench.shipped import models_folder
 from workbench.worker.spawn import MEMORY, spawn
 
 READ_TIME = 20.0
-"""So long a browser may take to start and to read the file that leads it here [s]."""
+"""How long a browser may take to start and to read the file that redirects it here [s]."""
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -48,10 +48,10 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _listen(host: str, port: int) -> socket.socket:
-    """Returns a socket that listens.
+    """Returns a listening socket.
 
     Raises:
-        OSError: If the address cannot be had.
+        OSError: If the address is not available.
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family)
@@ -62,7 +62,7 @@ def _listen(host: str, port: int) -> socket.socket:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command until it is interrupted; returns its exit code."""
+    """Runs the command until it is interrupted and returns its exit code."""
     options = _parser().parse_args(arguments)
     if not 0 <= options.port < 65536 or min(options.memory, options.recordings, options.recordings_size) < 0:
         print("error: a port is a number from 0 to 65535, and memory and recordings not below 0", file=sys.stderr)
@@ -79,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"warning: others can reach {host}; whoever has the address below can run programs as you", file=sys.stderr)
     names: list[str] = [*options.name, host]
     gate = Gate(token=Token(), port=port, hosts=LOOPBACK | {name.lower() for name in names})
-    zygote = spawn()  # it loads while the server does
+    zygote = spawn()  # it loads at the same time as the server
     try:
         from workbench.app import make_app
         from workbench.serving import serve
@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _reason(error: OSError, options: argparse.Namespace) -> str:
-    """Says why it cannot be started: which folder cannot be had, or which address."""
+    """Returns why the server cannot start: which folder or address is not available."""
     told = error.strerror or str(error)
     if error.filename is None:
         return f"cannot listen at {options.host}, port {options.port}: {told}"
@@ -102,7 +102,7 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
 
 
 def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:
-    """Tells the address, as the last line, and opens it."""
+    """Prints the address as the last line and opens it in the browser."""
     address = f"{url}/?token={token.reveal()}"
     print(f"models: {folder}")
     print(address, flush=True)
@@ -111,7 +111,7 @@ def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:
 
 
 def _browse(address: str) -> None:
-    """Opens the address in the browser, by way of a file that only its user can read: commands show in lists of processes."""
+    """Opens the address in the browser through a file that only its user can read, because lists of processes show command lines."""
     with tempfile.TemporaryDirectory(prefix="workbench-") as folder:
         page = Path(folder) / "open.html"
         page.write_text(f'<meta http-equiv="refresh" content="0; url={html.escape(address)}">', encoding="utf-8")

@@ -1,4 +1,4 @@
-"""How two recordings differ: in what they began with, and in the first event that is not the same."""
+"""Compares two recordings: their parameters and their events up to the first difference."""
 
 from __future__ import annotations
 
@@ -17,29 +17,30 @@ from workbench.loader import listing_of
 from workbench.summaries import UNREADABLE
 
 CONTEXT = 8
-"""So many events before the first difference are told, and so many after it of each."""
+"""How many events are returned before the first difference, and after it from each recording."""
 MOST_COMPARED = 2_000_000
-"""No more events are compared."""
+"""Maximum number of events that are compared."""
 MOST_TEXT = 200_000
-"""Longer texts of models are not compared line by line [characters]."""
+"""Maximum total length of two model texts that are compared line by line [characters]."""
 MOST_LINES = 400
-"""No more lines are told of what differs between two texts."""
+"""Maximum number of differing lines that are returned for two texts."""
 
 
 def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str, Any]:
-    """Returns where two recordings differ.
+    """Compares two recordings and returns their differences.
 
-    `parameters` holds what was chosen otherwise, `changed` what users changed while each went on, by the names of parameters as
-    pairs of time [s] and value, `text` the lines that differ where both are of one model file, `difference` the
-    first event that is not the same, with some before and after it; None where there is none among the first `compared`.
+    The result has these keys. `parameters`: settings that differ, each with both values. `changed`: for each recording, what users
+    changed during the run, by parameter name, as pairs of time [s] and value. `text`: a diff of the model texts, if both recordings are of
+    the same model file. `same_events`: how many events agree. `whole`: False if the comparison stopped at the maximum number of events.
+    `difference`: the first event that differs, with some events before and after it; None if no compared event differs.
 
     Args:
-        first: One recording, maybe of a run that goes on.
-        second: The other.
-        kinds: Which kinds of events are compared; nothing for all.
+        first: A recording; its run may still be going on.
+        second: The other recording.
+        kinds: The kinds of events to compare; empty for all.
 
     Raises:
-        RecordingError: If one cannot be read.
+        RecordingError: If a recording cannot be read.
     """
     try:
         with Recorded(first) as one, Recorded(second) as other:
@@ -61,12 +62,12 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 
 
 def _told(facts: dict[str, Any]) -> dict[str, Any]:
-    """Returns what of a run's facts was chosen by who began it."""
+    """Returns the settings, the seed and the model name that the user chose for a run."""
     return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
 
 
 def _changed(recorded: Recorded) -> dict[str, list[list[Any]]]:
-    """Returns what users changed of parameters and apertures while the run went on: when [s], and to what."""
+    """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value."""
     live = {parameter.name: parameter.live for parameter in listing_of(_source(recorded.facts)).parameters if parameter.live is not None}
     period = recorded.facts.get("period_us", 0)
     found: dict[str, list[list[Any]]] = {}
@@ -91,7 +92,7 @@ def _source(facts: dict[str, Any]) -> str:
 
 
 def _changes(ours: str, theirs: str) -> list[str]:
-    """Returns the lines that differ between two texts, with some around them, as `diff -u` has them."""
+    """Returns a unified diff of two texts, like `diff -u`."""
     if ours == theirs:
         return []
     if len(ours) + len(theirs) > MOST_TEXT:
@@ -105,7 +106,7 @@ def _changes(ours: str, theirs: str) -> list[str]:
 
 
 def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> tuple[int, dict[str, Any] | None, bool]:
-    """Returns how many events agree, what then differs, and whether all were compared where nothing does."""
+    """Returns how many events agree, the first difference, and False if the comparison stopped at the maximum number."""
     ours, theirs = _events(one, kinds), _events(other, kinds)
     before: deque[TraceEvent] = deque(maxlen=CONTEXT)
     number = -1
@@ -132,12 +133,12 @@ def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[TraceEvent]:
 
 
 def _alike(mine: TraceEvent, its: TraceEvent) -> bool:
-    """Returns whether two events differ in nothing but where in memory some object lies."""
+    """Returns whether two events are equal except for memory addresses of objects."""
     return mine[:3] == its[:3] and mine.to_json() == its.to_json()
 
 
 def _what(mine: TraceEvent | None, its: TraceEvent | None) -> list[list[Any]]:
-    """Returns in what two events differ: names with both values."""
+    """Returns the parts in which two events differ, as names with both values."""
     if mine is None or its is None:
         return []
     found: list[list[Any]] = []
@@ -150,7 +151,7 @@ def _what(mine: TraceEvent | None, its: TraceEvent | None) -> list[list[Any]]:
 
 
 def _differing(name: str, one: Any, other: Any) -> Iterator[list[Any]]:
-    """Yields the innermost values in which two values differ, by the way to them."""
+    """Yields the innermost values in which two values differ, with the path to each."""
     if isinstance(one, dict) and isinstance(other, dict):
         ours, theirs = cast("dict[str, Any]", one), cast("dict[str, Any]", other)
         for key in {**ours, **theirs}:

@@ -1,4 +1,4 @@
-"""Compiled scenes as bytes, and as text that a recording can keep."""
+"""Converts compiled scenes to bytes, and to text that a recording can store."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from mujoco import MjModel
 
 
 def saved(model: MjModel) -> bytes:
-    """Returns a compiled scene as MuJoCo saves it."""
+    """Returns a compiled scene in MuJoCo's binary format (MJB)."""
     image = np.empty(mujoco.mj_sizeModel(model), np.uint8)
     mujoco.mj_saveModel(model, None, image)
     return image.tobytes()
 
 
 def loaded(image: bytes) -> MjModel:
-    """Returns a compiled scene that MuJoCo has saved."""
+    """Loads a compiled scene from MuJoCo's binary format."""
     kind: Any = MjModel
     return kind.from_binary_path("scene.mjb", {"scene.mjb": image})
 
 
 def to_text(image: bytes) -> str:
-    """Returns bytes as text, packed."""
+    """Returns bytes as text, compressed and base64-encoded."""
     return base64.b64encode(zlib.compress(image, 1)).decode("ascii")
 
 
 def from_text(text: str) -> bytes:
-    """Returns the bytes of such a text.
+    """Returns the bytes that `to_text` has encoded.
 
     Raises:
-        ValueError: If it is none.
+        ValueError: If the text is not such an encoding.
     """
     try:
         return zlib.decompress(base64.b64decode(text))

@@ -1,4 +1,4 @@
-"""Recordings as CSV: the events, and the physics with one column for each number of MuJoCo's state."""
+"""Writes recordings as CSV: the events, and the physics with one column for each number of MuJoCo's state."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def write_events_csv(path: Path, to: Path) -> None:
     """Writes a recording's events: time, source, kind, data as JSON.
 
     Raises:
-        RecordingError: If it cannot be read.
+        RecordingError: If the recording cannot be read.
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
@@ -35,14 +35,14 @@ def write_events_csv(path: Path, to: Path) -> None:
 
 
 def write_states_csv(path: Path, to: Path) -> None:
-    """Writes the physics of a recording: a row for each moment, with all numbers of MuJoCo's integration state.
+    """Writes the physics of a recording: one row per tick with all numbers of MuJoCo's integration state.
 
-    The columns have the names of joints, actuators and bodies where the recording holds its compiled scene; elsewhere they are
-    numbered. Of a program, which may make several simulations, the number of the run comes first, and each run begins with its own
-    row of column names.
+    The columns are named after joints, actuators and bodies if the recording holds its compiled scene; otherwise they are numbered.
+    For a program, which may run several simulations, the first column is the number of the run, and each run begins with its own row of
+    column names.
 
     Raises:
-        RecordingError: If it cannot be read, or has no states.
+        RecordingError: If the recording cannot be read, or has no states.
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
@@ -72,7 +72,7 @@ def _write(to: Path, head: tuple[str, ...] | None, rows: Iterable[tuple[Any, ...
 
 
 def _harmless(row: tuple[Any, ...]) -> list[Any]:
-    """Returns a row in which no text is a formula to a spreadsheet."""
+    """Returns a row in which no text can be read as a formula by a spreadsheet."""
     return [f"'{value}" if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r") else value for value in row]
 
 
@@ -80,7 +80,7 @@ def _harmless(row: tuple[Any, ...]) -> list[Any]:
 
 
 def state_columns(model: MjModel) -> list[str]:
-    """Returns what each number of MuJoCo's integration state is, in their order: the field of `MjData`, whose it is, and its unit.
+    """Returns the names of the numbers in MuJoCo's integration state, in order: the field of `MjData`, its object, and its unit.
 
     Source: `mj_getState` and `mjtState` in MuJoCo's documentation.
     """
@@ -108,7 +108,7 @@ def state_columns(model: MjModel) -> list[str]:
 
 
 def _name(item: Any, kind: str, number: int) -> str:
-    """Returns the name of a joint, body, ...; one without a name is called by its number."""
+    """Returns the name of a joint, body, ...; without a name, its kind and number."""
     return str(item.name) or f"{kind} {number}"
 
 
@@ -124,13 +124,13 @@ def _positions(model: MjModel) -> Names:
 
 
 def _degrees(model: MjModel, word: str, linear: tuple[str, str], angular: tuple[str, str]) -> Names:
-    """Yields the names of a field with a number for each degree of freedom.
+    """Yields the column names of a field with one number per degree of freedom.
 
     Args:
         model: The compiled scene.
-        word: The field.
-        linear: What a number is called that moves a free joint along an axis, before that axis, and the unit.
-        angular: Likewise for turning about an axis.
+        word: The name of the field.
+        linear: The prefix of the axis, and the unit, of a number that moves a free joint along an axis.
+        angular: The same for a rotation about an axis.
     """
     for number in range(model.njnt):
         name, kind = _name(model.joint(number), "joint", number), int(model.jnt_type[number])
@@ -143,7 +143,7 @@ def _degrees(model: MjModel, word: str, linear: tuple[str, str], angular: tuple[
 
 
 def _of_actuators(model: MjModel, word: str, begins: Any, counts: Any) -> Names:
-    """Yields the names of a field of which each actuator has some numbers, from `begins` on; -1 where it has none."""
+    """Yields the column names of a field in which each actuator has `counts` numbers from index `begins` on; -1 if it has none."""
     order = sorted((int(begins[number]), number) for number in range(model.nactuator) if int(counts[number]) > 0)
     for _, number in order:
         name, count = _name(model.actuator(number), "actuator", number), int(counts[number])

@@ -1,4 +1,4 @@
-"""Curves of a run: how its joints stood, how fast its bodies went, how much room they had, how hard they were touched."""
+"""Computes curves of a run: joint positions, speeds of bodies, clearance in doorways, and contact forces."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ Values = Sequence[float | None]
 
 
 class Curve(NamedTuple):
-    """One curve."""
+    """Describes one curve."""
 
     name: str
     unit: str
     group: str
-    """Curves of one group are drawn together: `joint`, `joint speed`, `place`, `speed`, `clearance` or `contact`."""
+    """The group of curves that are drawn together: `joint`, `joint speed`, `place`, `speed`, `clearance` or `contact`."""
 
 
 class Source(ABC):
-    """What the values of some curves come from."""
+    """Computes the values of some curves from a state."""
 
     curves: tuple[Curve, ...]
     needs = 0
-    """What must be computed of a state before: 0 nothing, 1 the geometry and speeds, 2 contacts and forces, too."""
+    """What must be computed for a state first: 0 nothing, 1 positions and velocities, 2 also contacts and forces."""
 
     @abstractmethod
     def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns the value of each of its curves in a state; None where there is none."""
+        """Returns the value of each of its curves in a state; None if there is no value."""
 
 
 class Joints(Source):
-    """Positions and speeds of joints, in degrees where they turn.
+    """Reads positions and speeds of joints; those of hinges in degrees.
 
     Args:
         model: The compiled scene.
@@ -67,16 +67,16 @@ class Joints(Source):
         self._factors = np.array(factors)
 
     def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns all positions and speeds."""
+        """Returns all joint positions and speeds."""
         return (numbers[self._columns] * self._factors).tolist()
 
 
 class Motion(Source):
-    """Where a body is, and how fast it goes over the ground.
+    """Computes the position of a body and its speed over the ground.
 
     Args:
         model: The compiled scene.
-        data: Its state.
+        data: The state of the scene.
         name: The body's name.
         root: The number of its MuJoCo body.
     """
@@ -89,48 +89,48 @@ class Motion(Source):
         self._speeds = np.zeros(6)
 
     def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns the place of its root, and that point's speed."""
+        """Returns x and y of the body's root [m] and the horizontal speed of that point [m/s]."""
         mujoco.mj_objectVelocity(self._model, self._data, mujoco.mjtObj.mjOBJ_XBODY, self._root, self._speeds, 0)
         x, y, _ = self._data.xpos[self._root].tolist()
         return x, y, math.hypot(*self._speeds[3:5].tolist())
 
 
 class Room(Source):
-    """How much room a body has in a doorway, as `PassageResult` measures it, but for what it holds in its hands.
+    """Computes a body's clearance in a doorway, as `PassageResult` measures it but without objects held in the hands.
 
     Args:
         model: The compiled scene.
-        data: Its state.
+        data: The state of the scene.
         name: The body's name.
-        geoms: Its geoms.
-        wall: The wall with the doorway, as `surroundings` tells it.
-        where: What the names end with, where there are several doorways.
+        geoms: The body's geoms.
+        wall: The wall with the doorway, as `surroundings` describes it.
+        where: The suffix of the curves' names if there are several doorways.
     """
 
     needs = 1
 
     def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> None:
         self.curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
-        from actr3d.simulation.clearance import Clearance, Wall  # they load the eye, too, without which the server starts sooner
+        from actr3d.simulation.clearance import Clearance, Wall  # also loads the camera, which would slow the start
 
         self._clearance = Clearance(model, data, geoms, Wall(**wall))
 
     def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns the smallest distances to the left and the right segment; None where nothing of it is in the doorway."""
+        """Returns the smallest distances to the left and right wall segment [m]; None if no part of the body is in the doorway."""
         return self._clearance.rooms() or (None, None)
 
 
 class Force(Source):
-    """The hardest touch of a body by anything but the ground, as `PassageResult` measures it, but at the ends of ticks.
+    """Computes the largest contact force on a body from anything but the ground, like `PassageResult` but only at the ends of ticks.
 
     Args:
         model: The compiled scene.
-        data: Its state.
+        data: The state of the scene.
         name: The body's name.
-        feels: The geoms that feel touches.
-        own: For each geom whether it is the body's; the last is for soft things, which have none.
-        owners: For each geom what tells the objects apart to which they belong; the last is for soft things.
-        ground: The geoms that are the ground.
+        feels: The geoms that sense contacts.
+        own: For each geom, whether it belongs to the body; the last entry is for soft objects (flexes), which have no geom.
+        owners: For each geom, the number of the object that it belongs to; the last entry is for soft objects.
+        ground: The geoms of the ground.
     """
 
     needs = 2
@@ -148,13 +148,13 @@ class Force(Source):
     ) -> None:
         self.curves = (Curve(f"{name} contact force", "N", "contact"),)
         self._model, self._data, self._own, self._owners = model, data, own, owners
-        # A geom without a name is felt as the part that it belongs to.
+        # A geom without a name counts as part of its MuJoCo body.
         self._parts = {geom: geom if model.geom(geom).name else -1 - int(model.geom_bodyid[geom]) for geom in feels}
         self._ground = frozenset(ground)
         self._wrench = np.zeros(6)
 
     def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns what presses hardest, summed over all contacts of one part with one object."""
+        """Returns the largest force [N], summed over all contacts of one part with one object."""
         if self._data.ncon == 0:
             return (0.0,)
         pairs = self._data.contact.geom
@@ -169,11 +169,11 @@ class Force(Source):
 
 
 class Curves:
-    """Computes curves from the states of a run, which it needs nothing else of; the run itself is left alone.
+    """Computes curves from the recorded states of a run; the run itself is not touched.
 
     Args:
         model: The compiled scene.
-        world: What is in it, as `Facts.world` tells it.
+        world: The contents of the world, as in `Facts.world`.
     """
 
     def __init__(self, model: MjModel, world: dict[str, Any]) -> None:
@@ -182,15 +182,15 @@ class Curves:
 
     @property
     def names(self) -> list[dict[str, str]]:
-        """What curves there are."""
+        """All curves with name, unit and group."""
         return [curve._asdict() for source in self._sources for curve in source.curves]
 
     def told(self, moments: Iterable[tuple[float, bytes]], names: Sequence[str] | None) -> dict[str, Any]:
-        """Returns what is asked for: the `names` of all curves with unit and group, `times` [s], and the values of `curves` by name.
+        """Returns `names` (all curves with unit and group), `times` [s], and `curves` (values by name).
 
         Args:
-            moments: Times [s] and MuJoCo's integration states then.
-            names: Which curves; None for all. There are none of names that are not known.
+            moments: Times [s] with MuJoCo's integration state at each.
+            names: The curves to compute; None for all. Unknown names are ignored.
         """
         wanted = [source for source in self._sources if names is None or any(curve.name in names for curve in source.curves)]
         depth = max((source.needs for source in wanted), default=0)
@@ -207,7 +207,7 @@ class Curves:
         return {"names": self.names, "times": times, "curves": chosen}
 
     def _pose(self, numbers: NDArray[np.float64], depth: int) -> None:
-        """Computes as much of a state as is needed."""
+        """Computes the quantities that the curves need for a state."""
         if depth:
             mujoco.mj_setState(self._model, self._data, numbers, INTEGRATION)
         if depth == 1:
@@ -219,11 +219,11 @@ class Curves:
 
 
 NOTHING: dict[str, Any] = {"names": [], "times": [], "curves": {}}
-"""The curves of a run that has no world."""
+"""The curves of a run without a world."""
 
 
 def joined(parts: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """Returns the curves of simulations that come one after the other as those of one run; each is null where it is not one of theirs."""
+    """Joins the curves of consecutive simulations into those of one run; a curve is null where a simulation does not have it."""
     names: dict[str, dict[str, str]] = {}
     times: list[float] = []
     curves: dict[str, list[float | None]] = {}
@@ -237,9 +237,9 @@ def joined(parts: Iterable[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[Source]:
-    """Yields where the curves of bodies come from."""
+    """Yields the sources of the curves of bodies."""
     roots = np.append(model.body_rootid[model.geom_bodyid], -1)
-    owners = np.where(roots == 0, -2 - np.arange(len(roots)), roots)  # what lies in the world itself is an object of its own
+    owners = np.where(roots == 0, -2 - np.arange(len(roots)), roots)  # each geom of the world body counts as an object of its own
     walls = world["walls"]
     for name, body in world["bodies"].items():
         own = np.append(np.isin(model.geom_bodyid, _members(model, body["root"])), False)
@@ -250,7 +250,7 @@ def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[So
 
 
 def _members(model: MjModel, root: int) -> list[int]:
-    """Returns the MuJoCo bodies that a body consists of."""
+    """Returns the MuJoCo bodies that make up a body."""
     members = {root}
     for number in range(root + 1, model.nbody):
         if int(model.body_parentid[number]) in members:
@@ -259,17 +259,17 @@ def _members(model: MjModel, root: int) -> list[int]:
 
 
 def stretch(first: float, last: float | None, period: int, zero: int = 0) -> tuple[int, int | None]:
-    """Returns the first and the last tick of a stretch; None for one without end.
+    """Returns the first and the last tick of an interval; the last is None if it is open-ended.
 
     Args:
-        first: Its begin [s].
-        last: Its end [s]; None for none.
-        period: A tick [us].
-        zero: When tick 0 was [us].
+        first: Start of the interval [s].
+        last: End of the interval [s]; None if it is open-ended.
+        period: Length of a tick [us].
+        zero: Time of tick 0 [us].
     """
     return -(-max(0, microseconds(first) - zero) // period), None if last is None else (microseconds(last) - zero) // period
 
 
 def stride(count: int, most: int) -> int:
-    """Returns each how manieth of so many moments is to be taken for no more than `most` of them."""
+    """Returns the step n, so that every n-th of `count` moments gives at most `most` moments."""
     return max(1, -(-count // most))

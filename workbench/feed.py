@@ -1,4 +1,4 @@
-"""What browsers are shown of a session, each as fast as it can take it: one that is slow, or frozen, holds up nobody."""
+"""Sends a session's news to browsers, each at its own speed: a slow or frozen browser delays no other."""
 
 from __future__ import annotations
 
@@ -11,37 +11,37 @@ from typing import Any, Protocol
 import msgspec
 
 MOST_EVENTS = 50_000
-"""So many events of a run the server has at hand; older ones are in the worker's trace, and in the recording."""
+"""How many events of a run the server keeps in memory; older events are in the worker's trace and in the recording."""
 MOST_KEPT = 50_000_000
-"""And so many bytes of them."""
+"""Maximum total size of these events [bytes]."""
 MOST_NOTICES = 500
 MOST_REPLIES = 1_000
-"""So many replies may wait for a browser; one that goes on asking and reads nothing is sent away."""
+"""How many replies may wait for a browser; one that keeps asking without reading is disconnected."""
 AT_ONCE = 2_000
-"""So many events go in one message."""
+"""Maximum number of events in one message."""
 
 MOST_BYTES = 500_000
-"""And no more than so many bytes of them, but for a single event that is larger."""
+"""Maximum size of the events in one message [bytes]; a single larger event is sent alone."""
 
 Raw = msgspec.Raw
 
 
 class EventLog:
-    """The latest events of one run, by number from 0."""
+    """Holds the latest events of one run, numbered from 0."""
 
     def __init__(self) -> None:
         self.first = 0
         self._events: deque[bytes] = deque()
         self._size = 0
-        """How many bytes they have."""
+        """Total size of the events [bytes]."""
 
     @property
     def next(self) -> int:
-        """The number that the next event will have."""
+        """The number of the next event."""
         return self.first + len(self._events)
 
     def add(self, first: int, events: Sequence[bytes]) -> None:
-        """Takes in events; those that are known already are left out, and where some are missing it begins anew after the gap."""
+        """Adds events; known ones are skipped, and after a gap the log starts again."""
         if first > self.next:
             self._events.clear()
             self._size = 0
@@ -54,14 +54,14 @@ class EventLog:
             self.first += 1
 
     def cut(self, number: int) -> None:
-        """Drops the events from a number on."""
+        """Removes the events from a number on."""
         while self._events and self.next > number:
             self._size -= len(self._events.pop())
         if not self._events:
             self.first = number
 
     def since(self, number: int, most: int = AT_ONCE) -> tuple[int, list[bytes]]:
-        """Returns events from a number on, and the number of the first of them: another where older ones are gone."""
+        """Returns events from a number on, and the number of the first; it is higher if older events are gone."""
         begin = max(0, number - self.first)
         found: list[bytes] = []
         size = 0
@@ -74,58 +74,58 @@ class EventLog:
 
 
 class Shown(Protocol):
-    """What is shown of a session."""
+    """The part of a session that a feed sends."""
 
     @property
     def name(self) -> str:
-        """What the session is called."""
+        """The name of the session."""
         ...
 
     @property
     def run(self) -> int:
-        """The number of the run that is shown."""
+        """The number of the run on screen."""
         ...
 
     @property
     def epoch(self) -> int:
-        """How often the run has gone another way."""
+        """Counts how often the run has been replaced, or cut and continued differently."""
         ...
 
     @property
     def log(self) -> EventLog:
-        """The run's events."""
+        """The events of the run."""
         ...
 
     @property
     def notices(self) -> deque[tuple[int, bytes]]:
-        """What the user was told, numbered, as JSON."""
+        """The notices to the user, numbered, as JSON."""
         ...
 
     @property
     def state_version(self) -> int:
-        """Counts the states."""
+        """The version of the state: increases with each new state."""
         ...
 
     @property
     def facts_version(self) -> int:
-        """Counts what is known of the session and its run."""
+        """The version of the facts about the session and its run."""
         ...
 
     def state_json(self) -> bytes:
-        """Returns the newest state."""
+        """Returns the newest state as JSON."""
         ...
 
     def facts_json(self) -> bytes:
-        """Returns what is known of the session and its run."""
+        """Returns the facts about the session and its run as JSON."""
         ...
 
 
 class Feed:
-    """One browser's view of a session: what it has been sent, and what comes next.
+    """Tracks what one browser has been sent of a session, and composes its next message.
 
     Args:
         shown: The session.
-        name: What the browser is called among others.
+        name: The browser's name, as other users see it.
     """
 
     def __init__(self, shown: Shown, name: str) -> None:
@@ -141,33 +141,33 @@ class Feed:
         self._state = self._facts = -1
 
     def resume(self, run: int, epoch: int, events: int) -> None:
-        """Goes on from what a browser knows of a run already, if it is the one that is shown."""
+        """Continues from the events that a browser already knows, if they belong to the run on screen."""
         if (run, epoch) == (self._shown.run, self._shown.epoch) and events <= self._shown.log.next:
             self._run, self._epoch, self._next = run, epoch, events
 
     def wake(self) -> None:
-        """Lets it know that there is something new."""
+        """Signals that there is something new to send."""
         self._changed.set()
 
     def cut(self, number: int) -> None:
-        """Takes note that events from a number on are no more."""
+        """Records that the events from a number on no longer exist."""
         if self._next > number:
             self._next = number
             self._cut = number if self._cut is None else min(self._cut, number)
         self._epoch = self._shown.epoch
 
     def reply(self, reply: bytes) -> None:
-        """Takes what came of something that this browser has said."""
+        """Queues the reply to a command or question of this browser."""
         self._replies.append(reply)
         self.wake()
 
     @property
     def choked(self) -> bool:
-        """Whether the browser goes on asking and does not read what it is told."""
+        """Whether the browser keeps asking without reading its replies."""
         return len(self._replies) > MOST_REPLIES
 
     async def next(self) -> bytes:
-        """Returns the next message, as soon as there is anything to tell."""
+        """Waits until there is something to send, and returns the next message."""
         while True:
             await self._changed.wait()
             self._changed.clear()

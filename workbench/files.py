@@ -1,4 +1,4 @@
-"""The model files of one folder: nothing outside it is read or written, and nothing in it is ever run."""
+"""Reads and writes the model files of one folder: nothing outside it is touched, and nothing in it is executed."""
 
 from __future__ import annotations
 
@@ -18,40 +18,40 @@ from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError
 
 LARGEST = 1_000_000
-"""No model file is larger [bytes]."""
+"""Maximum size of a model file [bytes]."""
 MOST_FILES = 2_000
-"""So many files are listed at most."""
+"""Maximum number of files that are listed."""
 OWN = ".workbench"
-"""The folder, inside that of the models, of what the workbench keeps: recordings, and what was deleted."""
+"""The folder inside the models folder in which the workbench keeps recordings and deleted files."""
 
 
 class FileError(Actr3dError):
-    """A file cannot be read or written as asked."""
+    """A file cannot be read or written as requested."""
 
     status = 400
 
 
 class NoSuchFileError(FileError):
-    """There is no such file."""
+    """The file does not exist."""
 
     status = 404
 
 
 class ConflictError(FileError):
-    """The file is not what who writes it thinks it is."""
+    """The file has changed since its writer read it, or already exists."""
 
     status = 409
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelFile:
-    """A model file."""
+    """Holds the content of a model file."""
 
     path: str
-    """Inside the folder, with slashes."""
+    """The path inside the folder, with slashes."""
     text: str
     version: str
-    """Tells one text from another: a hash of the file's bytes."""
+    """A hash of the file's bytes, which identifies this version of the text."""
 
 
 class ModelFolder:
@@ -65,7 +65,7 @@ class ModelFolder:
         self.root = root.resolve()
 
     def paths(self) -> list[str]:
-        """Returns the paths of all model files, in the order of their names; hidden ones and links that lead out left out."""
+        """Returns the paths of all model files, sorted by folder depth and name, without hidden files and links that lead outside."""
         found: list[str] = []
         for path in self._walk(self.root):
             found.append(path.relative_to(self.root).as_posix())
@@ -76,7 +76,7 @@ class ModelFolder:
     def _walk(self, folder: Path) -> Iterator[Path]:
         try:
             inside = sorted(folder.iterdir()) if folder.is_dir() else []
-        except OSError:  # which one may not read, or which has gone meanwhile: the others are there all the same
+        except OSError:  # not readable, or deleted in the meantime: the other folders are listed all the same
             return
         for path in inside:
             if path.name[0] in "._":
@@ -87,10 +87,10 @@ class ModelFolder:
                 yield path
 
     def locate(self, path: str) -> Path:
-        """Returns where a path inside the folder is.
+        """Returns the location of a path inside the folder.
 
         Raises:
-            FileError: If it leads out of the folder, is hidden, or is no name of a model file.
+            FileError: If the path leads out of the folder, is hidden, or is not a name of a model file.
         """
         parts = path.split("/")
         if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
@@ -102,7 +102,7 @@ class ModelFolder:
         where = self.root.joinpath(*parts)
         try:
             inside = where.resolve().is_relative_to(self.root)
-        except (OSError, RuntimeError):  # links that lead in a circle
+        except (OSError, RuntimeError):  # links that form a loop
             inside = False
         if not inside:
             raise FileError("that leads out of the models folder")
@@ -112,7 +112,7 @@ class ModelFolder:
         """Reads a model file.
 
         Raises:
-            FileError: If there is no such file, or it is too large or no text.
+            FileError: If the file does not exist, is too large, or is not text.
         """
         where = self._existing(path)
         try:
@@ -124,20 +124,20 @@ class ModelFolder:
 
     @staticmethod
     def version(where: Path) -> str:
-        """Returns what tells a file's present text from others."""
+        """Returns the version of a file's current text: a hash of its bytes."""
         return hashlib.sha256(where.read_bytes()).hexdigest()
 
     def save(self, path: str, text: str, version: str | None) -> ModelFile:
-        """Writes a model file, if it still is what the writer knows.
+        """Writes a model file if it has not changed since the writer read it.
 
         Args:
-            path: Which.
-            text: What is to be in it.
-            version: That of the text which this one replaces; None for a new file.
+            path: The path of the file.
+            text: The new text.
+            version: The version of the text that is replaced; None for a new file.
 
         Raises:
-            ConflictError: If there is such a file already, or it has another text than that.
-            FileError: If it cannot be written.
+            ConflictError: If a new file already exists, or the file has a different version.
+            FileError: If the file cannot be written.
         """
         where = self.locate(path)
         data = _encoded(text, self._line_end(where))
@@ -159,14 +159,14 @@ class ModelFolder:
         return ModelFile(path=path, text=text, version=self.version(where))
 
     def _line_end(self, where: Path) -> str:
-        """Returns how a file's lines end, so that a file from elsewhere keeps its way."""
+        """Returns the line ending of a file, so that a file keeps its own."""
         with contextlib.suppress(OSError), where.open("rb") as file:
             return "\r\n" if file.readline(LARGEST).endswith(b"\r\n") else "\n"
         return "\n"
 
     def _write(self, where: Path, data: bytes) -> None:
-        """Writes a file as a whole, or not at all."""
-        target = where.resolve()  # a link inside the folder stays one
+        """Writes a file atomically: completely or not at all."""
+        target = where.resolve()  # a link inside the folder stays a link
         beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
         try:
             with beside.open("xb") as file:
@@ -183,20 +183,20 @@ class ModelFolder:
         """Writes a copy of a model file under another name.
 
         Raises:
-            FileError: If there is none, or something of the other name already.
+            FileError: If the file does not exist, or the other name is taken.
         """
         return self.save(to, self.read(path).text, None)
 
     def rename(self, path: str, to: str) -> ModelFile:
-        """Gives a model file another name.
+        """Renames a model file.
 
         Raises:
-            FileError: If there is none, or something of the other name already.
+            FileError: If the file does not exist, or the other name is taken.
         """
         where, target = self._existing(path), self.locate(to)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            os.link(where, target, follow_symlinks=False)  # which never replaces what is there
+            os.link(where, target, follow_symlinks=False)  # unlike rename, this never replaces an existing file
             where.unlink()
         except FileExistsError:
             raise ConflictError(f"there is a '{to}' already") from None
@@ -205,10 +205,10 @@ class ModelFolder:
         return self.read(to)
 
     def delete(self, path: str) -> str:
-        """Puts a model file into the trash folder; returns where that is, inside the models folder.
+        """Moves a model file to the trash folder; returns its new path inside the models folder.
 
         Raises:
-            FileError: If there is none, or it cannot be moved.
+            FileError: If the file does not exist or cannot be moved.
         """
         where = self._existing(path)
         trash = self.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
@@ -220,7 +220,7 @@ class ModelFolder:
             raise FileError(f"cannot delete '{path}': {error.strerror}") from None
         with contextlib.suppress(OSError):
             if where.parent != self.root:
-                where.parent.rmdir()  # only where nothing is left in it
+                where.parent.rmdir()  # succeeds only if the folder is empty
         return target.relative_to(self.root).as_posix()
 
     def _existing(self, path: str) -> Path:
@@ -231,18 +231,18 @@ class ModelFolder:
 
 
 def _writable(where: Path) -> bool:
-    """Tells whether a file may be written: saving puts another in its place, for which the system asks the folder alone.
+    """Returns whether a file may be written; saving replaces the file, for which the system checks only the folder's permissions.
 
-    It lets root write everything; a file that nobody may write is left alone by root, too.
+    Root may write every file, so a file without any write permission counts as read-only for root, too.
     """
     return os.access(where, os.W_OK) and bool(where.stat().st_mode & 0o222)
 
 
 def _encoded(text: str, line_end: str) -> bytes:
-    """Returns a text as it stands in a file, in the encoding that its first lines declare.
+    """Returns a text as bytes, in the encoding that its first lines declare.
 
     Raises:
-        FileError: If that encoding does not have all of its characters, or is unknown.
+        FileError: If the encoding is unknown, or lacks a character of the text.
     """
     try:
         declared, _ = tokenize.detect_encoding(io.BytesIO(text.encode("utf-8")).readline)

@@ -1,7 +1,7 @@
-"""What can be made of recordings: each form by one function that writes a file. They run in workers, never in the server.
+"""Creates files from recordings: each form has one function that writes a file. They run in workers, never in the server.
 
-A recording may come from anybody; what is in it is read, and a compiled scene is loaded, only where that may take too long, take too
-much memory or crash.
+A recording may come from anybody. Reading it or loading its compiled scene may take too long, use too much memory or crash, which
+must not harm the server.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from actr3d.recording.opening import opened
 from actr3d.values import to_json
 
 Maker = Callable[..., None]
-"""Gets the path of each recording, that of the new file, and options by name."""
+"""Called with the path of each recording, the path of the new file, and options by name."""
 FORMS: dict[str, Maker] = {}
-"""By the names of forms, what makes them."""
+"""The functions by the names of their forms."""
 
 
 def form(name: str) -> Callable[[Maker], Maker]:
-    """Adds what makes a form."""
+    """Registers a function as the maker of a form."""
 
     def add(maker: Maker) -> Maker:
         FORMS[name] = maker
@@ -36,16 +36,16 @@ def form(name: str) -> Callable[[Maker], Maker]:
 
 @form("sqlite")
 def copy(path: Path, to: Path) -> None:
-    """Copies a recording that is being written, page by page, damage and all; the run that writes it does not wait.
+    """Copies a recording that may still be written, page by page including any damage, without blocking the run that writes it.
 
     Raises:
-        RecordingError: If it cannot be read, or the copy cannot be written, as on a full disk.
+        RecordingError: If it cannot be read, or the copy cannot be written (for example because the disk is full).
     """
     try:
         with closing(opened(path)) as source, closing(sqlite3.connect(to, isolation_level=None)) as target:
             target.execute("PRAGMA synchronous=OFF")
-            source.backup(target)  # in one step: of several, each write in between would begin it again
-            target.execute("PRAGMA journal_mode=DELETE")  # as a run that has ended leaves its own: one file, without companions
+            source.backup(target)  # in one step: with several, each write in between would restart the copy
+            target.execute("PRAGMA journal_mode=DELETE")  # as after a run that has ended: a single file without -wal and -shm files
     except sqlite3.Error as error:
         reason = "the disk is full" if "full" in str(error) else str(error)
         raise RecordingError(f"the recording cannot be copied: {reason}") from None
@@ -77,24 +77,24 @@ def replay_html(path: Path, to: Path) -> None:
 
 @form("curves")
 def curves(path: Path, to: Path, *, names: Sequence[str] | None, first: float, most: int, last: float | None) -> None:
-    """Writes how a recorded run went as curves over time, also one that goes on, as JSON; see `protocol.Curves`.
+    """Writes the curves of a recorded run over time as JSON, even if the run is still going on; see `protocol.Curves`.
 
     Args:
         path: The recording.
-        to: The file.
+        to: The new file.
         names: Which curves; None for all.
-        first: From when on [s].
-        most: How many times at most, evenly spread; the last one is among them.
-        last: Until when [s]; None for as far as it goes.
+        first: The start of the interval [s].
+        most: Maximum number of times, evenly spaced; the last moment is included.
+        last: The end of the interval [s]; None for the end of the recording.
     """
     to.write_text(to_json(curves_of(path, names, first, most, last)), encoding="utf-8")
 
 
 def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, last: float | None = None) -> dict[str, Any]:
-    """Returns how a recorded run went as curves over time; see `curves`.
+    """Returns the curves of a recorded run over time; see `curves`.
 
     Raises:
-        RecordingError: If it cannot be read.
+        RecordingError: If the recording cannot be read.
     """
     from workbench.compiled import from_text, loaded
     from workbench.curves import NOTHING, Curves, stretch, stride
@@ -114,7 +114,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
 
 @form("comparison")
 def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -> None:
-    """Writes where two recordings differ, as JSON; see `compare`."""
+    """Writes the differences of two recordings as JSON; see `compare`."""
     from workbench.comparing import compare
 
     to.write_text(to_json(compare(first, second, kinds)), encoding="utf-8")
@@ -122,7 +122,7 @@ def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -
 
 @form("beginning")
 def beginning(path: Path, to: Path) -> None:
-    """Writes with what a recorded run began and what users did, as JSON; see `Beginning`."""
+    """Writes what a recorded run began with and the commands of users, as JSON; see `Beginning`."""
     from workbench.beginnings import beginning_of, written
 
     to.write_text(written(beginning_of(path)), encoding="utf-8")

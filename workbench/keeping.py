@@ -1,4 +1,4 @@
-"""Which recordings a folder keeps: each run makes one, and nobody deletes them all by hand."""
+"""Decides which recordings a folder keeps: each run makes one, and few users delete them by hand."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from workbench.feed import EventLog
 from workbench.worker.messages import State
 
 MOST = 500
-"""So many recordings are kept, unless told otherwise."""
+"""Default maximum number of recordings."""
 MOST_MEGABYTES = 4_000
-"""And no more than so many MB of them."""
+"""Default maximum size of all recordings [MB]."""
 _BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
-"""The name that a run gives its recording; one with another name was given it by a user."""
+"""The form of the name that a run gives its recording; any other name was given by a user."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Keeping:
-    """What is kept."""
+    """Limits for the recordings that are kept."""
 
     number: int = MOST
-    """So many recordings; 0 for any number."""
+    """Maximum number of recordings; 0 for no limit."""
     megabytes: int = MOST_MEGABYTES
-    """So much of them [MB]; 0 for any size."""
+    """Maximum size of all recordings [MB]; 0 for no limit."""
 
 
 def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
-    """Returns which recordings are too many: the oldest of those that no user has named.
+    """Returns the recordings that exceed the limits: the oldest of those that no user has named.
 
     Args:
         files: All recordings.
-        keeping: What is kept.
+        keeping: The limits.
     """
     newest = sorted(files, key=written, reverse=True)
     number = size = 0
@@ -58,12 +58,12 @@ def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
 
 
 def stamp() -> str:
-    """Returns what stands at the end of a new recording's name: when it began, and a number, as several may begin in one second."""
+    """Returns the end of a new recording's name: the current time and a random number, as several may begin in one second."""
     return f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}"
 
 
 def written(path: Path) -> float:
-    """Returns when a file was last written; 0 where it is gone meanwhile."""
+    """Returns when a file was last written [s since 1970]; 0 if it no longer exists."""
     try:
         return path.stat().st_mtime
     except OSError:
@@ -71,7 +71,7 @@ def written(path: Path) -> float:
 
 
 def begun(path: Path) -> float:
-    """Returns when a recording began, as its name tells; else when it was last written [s since 1970]."""
+    """Returns when a recording began according to its name, or else when it was last written [s since 1970]."""
     named = _BEGUN.search(path.stem)
     if named is not None:
         try:
@@ -82,15 +82,15 @@ def begun(path: Path) -> float:
 
 
 def is_unnamed(path: Path) -> bool:
-    """Tells whether a recording has the name that its run has given it."""
+    """Returns whether a recording still has the name that its run gave it."""
     return _UNNAMED.fullmatch(path.stem) is not None
 
 
 def never_begun(state: State | None, log: EventLog) -> bool:
-    """Tells whether a run has stood at its start all the time, and printed nothing: its recording is of no use.
+    """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
 
     Args:
-        state: Its newest state; None where it has not told any.
+        state: Its newest state; None if it has not sent any.
         log: Its events.
     """
     if state is None or state.furthest > 0 or state.status != "paused":
@@ -100,7 +100,7 @@ def never_begun(state: State | None, log: EventLog) -> bool:
 
 
 def size_of(path: Path) -> int:
-    """Returns how large a recording is with what lies beside it, as of one that is being written [bytes]; 0 where it is gone."""
+    """Returns the size of a recording with its companion files (as during writing) [bytes]; 0 if it no longer exists."""
     size = 0
     for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
         with suppress(OSError):
@@ -109,11 +109,11 @@ def size_of(path: Path) -> int:
 
 
 def stands_alone(path: Path) -> bool:
-    """Tells whether a recording is all in its own file, as one is whose run has ended in good order."""
+    """Returns whether a recording has no companion files, as after a run that has ended normally."""
     return not any(path.with_name(path.name + end).exists() for end in COMPANIONS)
 
 
 def erase(path: Path) -> None:
-    """Deletes a recording, and what lies beside it."""
+    """Deletes a recording and its companion files."""
     for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
         each.unlink(missing_ok=True)

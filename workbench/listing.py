@@ -1,4 +1,4 @@
-"""Summaries of recordings: read by workers from each file once, and again only when it has changed."""
+"""Lists summaries of recordings: workers read each file once, and again only when it has changed."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from workbench.worker.messages import Reply, Start
 from workbench.worker.workers import Workers
 
 MOST = 1_000
-"""So many recordings are listed at once."""
+"""Maximum number of recordings in one list."""
 LONGEST = 10.0
-"""A summary may take so long to be read [s]."""
+"""Maximum time to read one summary [s]."""
 MOST_READERS = 4
-"""So many workers read summaries at once."""
+"""Maximum number of workers that read summaries at the same time."""
 _Stamp = tuple[int, ...]
 
 
 class Listing:
-    """Reads summaries of recordings, and keeps them for as long as their files stay as they are.
+    """Reads summaries of recordings and caches them until their files change.
 
     Args:
         recordings: The recordings.
-        workers: Who gives workers.
+        workers: The pool that starts workers.
     """
 
     def __init__(self, recordings: Recordings, workers: Workers) -> None:
@@ -38,16 +38,16 @@ class Listing:
         self._workers = workers
         self._known: dict[str, tuple[_Stamp, Summary]] = {}
         self._coming: dict[str, asyncio.Future[Summary]] = {}
-        """Those that are being read; who asks for one meanwhile waits for the same."""
+        """The summaries that are being read; all who ask for one wait for the same result."""
         self._turns = asyncio.Semaphore(MOST_READERS)
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def some(self, first: int = 0, most: int = MOST) -> tuple[int, list[Summary]]:
-        """Returns how many recordings there are, and the summaries of some, the newest first; also of files that cannot be read.
+        """Returns how many recordings there are, and the summaries of some, newest first, including files that cannot be read.
 
         Args:
-            first: How many of the newest are left out.
-            most: How many are listed.
+            first: How many of the newest are skipped.
+            most: Maximum number of summaries.
 
         Raises:
             OSError: If no worker can be started.
@@ -63,7 +63,7 @@ class Listing:
         """Returns the summary of a recording.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name.
+            NoSuchRecordingError: If there is no recording of that name.
             OSError: If no worker can be started.
         """
         path = self._recordings.path(name)
@@ -93,7 +93,7 @@ class Listing:
         return [(path, there[path]) for path in paths]
 
     async def _read(self, paths: list[Path], stamps: dict[Path, _Stamp]) -> None:
-        """Reads summaries; where a file takes too long or ends its reader, another worker goes on with the next one."""
+        """Reads summaries; if a file takes too long or crashes the worker, another worker continues with the next file."""
 
         def found(path: Path, summary: Summary) -> None:
             self._known[path.name] = stamps[path], summary
@@ -112,46 +112,46 @@ class Listing:
                         slow = f"it takes longer than {LONGEST:g} s to read"
                         found(left[0], unreadable(left[0], reading.problem if reading.over_by_itself else slow))
                         del left[0]
-        except Exception as error:  # noqa: BLE001 - who waits is told
+        except Exception as error:  # noqa: BLE001 - passed on to those who wait
             self._give_up(left, error)
         except asyncio.CancelledError:
             self._give_up(left, OSError("the workbench ends"))
             raise
 
     def _give_up(self, paths: Sequence[Path], error: Exception) -> None:
-        """Tells those who wait for summaries why they do not come."""
+        """Passes an error on to those who wait for these summaries."""
         for path in paths:
             coming = self._coming.pop(path.name, None)
             if coming is not None:
                 coming.set_exception(error)
-                coming.exception()  # nobody may wait for it any more
+                coming.exception()  # marks it as retrieved, as nobody may wait for it any more
 
 
 class _Reading(Job):
-    """The summaries that one worker reads.
+    """Collects the summaries that one worker reads.
 
     Args:
-        paths: Of which files.
-        found: Called with each.
+        paths: The files to read.
+        found: Called with each path and its summary.
     """
 
     def __init__(self, paths: Sequence[Path], found: Callable[[Path, Summary], None]) -> None:
         super().__init__()
         self.count = 0
-        """How many have come."""
+        """How many summaries have arrived."""
         self.over_by_itself = False
         self._paths = paths
         self._found = found
 
     def reply(self, message: Reply) -> None:
-        """Takes one."""
+        """Stores the summary in a reply."""
         path = self._paths[self.count]
         self.count += 1
         error = message.error
         self._found(path, unreadable(path, error) if error is not None else msgspec.json.decode(message.result, type=Summary))
 
     async def end(self) -> None:
-        """Waits until the worker has ended, or has read at one file for too long."""
+        """Waits until the worker has ended, or has taken too long for one file."""
         count = -1
         while not self.over_by_itself and count != self.count:
             count = self.count
@@ -161,7 +161,7 @@ class _Reading(Job):
 
 
 def _stamp(path: Path) -> _Stamp:
-    """Returns numbers that differ when the file has changed; while a run goes on, what is new lies in a file beside it."""
+    """Returns numbers that change when the file changes; during a run, new data is in the -wal file beside it."""
     numbers: list[int] = []
     for each in (path, path.with_name(f"{path.name}-wal")):
         try:

@@ -1,4 +1,4 @@
-"""What a model file says of itself, read from its text alone: loading a file for its listing never runs it."""
+"""Describes model files from their text alone: listing a file never executes it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BOUNDS = {"Gt": "above", "Ge": "least", "Lt": "below", "Le": "most"}
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """The command that changes a parameter while a run goes on; see `actr3d.configuration.Live`."""
+    """Describes the command that changes a parameter during a run; see `actr3d.configuration.Live`."""
 
     word: str
     before: tuple[str, ...] = ()
@@ -34,14 +34,14 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True)
 class Parameter:
-    """One parameter of a model, as far as its text tells."""
+    """Describes one parameter of a model, as far as its text shows."""
 
     name: str
     takes: str
-    """`number`, `whole number`, `text`, `switch`, or the declared type where it is another."""
+    """`number`, `whole number`, `text`, `switch`, `choice`, or the text of any other declared type."""
     default: Any = None
     known: bool = True
-    """Whether the default can be told without running anything; else `default` is its text."""
+    """Whether the default is known without executing code; otherwise `default` is its source text."""
     optional: bool = False
     """Whether it may be None."""
     choices: tuple[Any, ...] | None = None
@@ -53,13 +53,13 @@ class Parameter:
     help: str = ""
     line: int = 0
     live: Change | None = None
-    """How it is changed while a run goes on; None where that needs a new run."""
+    """How the parameter is changed during a run; None if a change needs a new run."""
 
     def check(self, value: Any) -> None:
-        """Checks a value against the bounds.
+        """Checks a value against the parameter's type and bounds.
 
         Raises:
-            ConfigurationError: If it is not what the parameter takes.
+            ConfigurationError: If the value is not allowed.
         """
         if value is None and self.optional:
             return
@@ -77,7 +77,7 @@ class Parameter:
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """Something that is wrong with a text, or may be."""
+    """Describes an error in a text, or a possible one."""
 
     level: str
     """`error` or `warning`."""
@@ -87,26 +87,26 @@ class Problem:
 
 @dataclass(frozen=True, kw_only=True)
 class Listing:
-    """What is known of a model file without running it."""
+    """Describes a model file, as far as this is possible without executing it."""
 
     title: str = ""
     """The first line of its docstring."""
     text: str = ""
     """Its docstring."""
     kind: str = "program"
-    """`simulation` where it builds one, else `program`."""
+    """`simulation` if the file defines `build`, otherwise `program`."""
     parameters: tuple[Parameter, ...] = ()
     simulates: bool = False
-    """Whether it makes simulations of its own: its text calls `Simulation`."""
+    """Whether it creates simulations itself: its text calls `Simulation`."""
     productions: tuple[str, ...] = ()
-    """`Agent.production`, as far as the text tells."""
+    """The names `Agent.production` that were found in the text."""
     problems: tuple[Problem, ...] = field(default=())
 
     def parameter(self, name: str) -> Parameter:
         """Returns a parameter by name.
 
         Raises:
-            ConfigurationError: If there is none of that name.
+            ConfigurationError: If there is no parameter of that name.
         """
         known = {parameter.name: parameter for parameter in self.parameters}
         if name not in known:
@@ -115,7 +115,7 @@ class Listing:
 
 
 def listing_of(source: str, filename: str = "model.py") -> Listing:
-    """Reads a model's text; what is wrong with it stands in `problems`."""
+    """Returns the description of a model's text; errors and warnings are in `problems`."""
     problems = tuple(problems_of(source, filename))
     tree = syntax_tree(source)
     text = sendable(ast.get_docstring(tree) or "")
@@ -132,7 +132,7 @@ def listing_of(source: str, filename: str = "model.py") -> Listing:
 
 
 def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
-    """Yields what compiling a text complains of; nothing of it is run."""
+    """Yields the errors and warnings of compiling a text; it is not executed."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         try:
@@ -151,7 +151,7 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
 
 
 def _of_build(tree: ast.Module) -> Iterator[Parameter]:
-    """Yields the fields of the class that `build` takes, where it stands in the same file."""
+    """Yields the fields of the parameter class of `build`, if it is defined in the same file."""
     builds = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == "build"]
     argument = builds[-1].args.args[0] if builds and builds[-1].args.args else None
     if argument is None or argument.annotation is None:
@@ -170,11 +170,11 @@ def _of_build(tree: ast.Module) -> Iterator[Parameter]:
 
 
 def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str, Any]) -> Parameter:
-    """Returns a parameter with what its declared type says."""
+    """Returns a parameter completed with its declared type."""
     if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
         try:
             return _declared(parameter, ast.parse(annotation.value, mode="eval").body, constants)
-        except (SyntaxError, ValueError):  # as of one that is being written just now
+        except (SyntaxError, ValueError):  # for example while it is being typed
             return replace(parameter, takes=sendable(annotation.value))
     if isinstance(annotation, ast.BinOp) and isinstance(annotation.op, ast.BitOr):
         sides = [side for side in (annotation.left, annotation.right) if ast.unparse(side) != "None"]
@@ -201,7 +201,7 @@ def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str
 
 
 def _marked(parameter: Parameter, mark: ast.expr, constants: Mapping[str, Any]) -> Parameter:
-    """Returns a parameter with what one mark beside its type says: a bound, or how it changes live."""
+    """Returns a parameter completed with one annotation of its type: a bound, or how it changes live."""
     if not isinstance(mark, ast.Call):
         return parameter
     name = ast.unparse(mark.func).rpartition(".")[2]
@@ -218,7 +218,7 @@ def _marked(parameter: Parameter, mark: ast.expr, constants: Mapping[str, Any]) 
 
 
 def _of_first_lines(source: str) -> Iterator[Parameter]:
-    """Yields what the first lines of a program set, `name = value`, as far as the values are plain."""
+    """Yields parameters from the first lines of a program (`name = value`) whose values are literals."""
     try:
         found = first_lines(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -251,10 +251,10 @@ def _default(node: ast.expr | None, constants: Mapping[str, Any]) -> dict[str, A
 
 
 def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
-    """Returns the value of an expression that is a literal, or the name of one; a tuple as a list, as JSON has it.
+    """Returns the value of a literal or of the name of a constant; a JSON form of it must exist.
 
     Raises:
-        ValueError: If it is anything else.
+        ValueError: If the expression is anything else.
     """
     if isinstance(node, ast.Name) and node.id in constants:
         return constants[node.id]
@@ -268,7 +268,7 @@ def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
 
 
 def _can_be_told(value: Any) -> bool:
-    """Tells whether JSON has a value."""
+    """Returns whether JSON can represent a value."""
     if isinstance(value, float):
         return math.isfinite(value)
     if isinstance(value, str):
@@ -282,7 +282,7 @@ def _can_be_told(value: Any) -> bool:
 
 
 def sendable(text: str) -> str:
-    """Returns a text that can be sent: half characters, which no encoding has, as escapes."""
+    """Returns a text that can be sent: unpaired surrogate characters, which no encoding has, become escapes."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
@@ -291,7 +291,7 @@ def _last_name(node: ast.expr) -> str:
 
 
 def _productions(tree: ast.Module) -> Iterator[str]:
-    """Yields the methods of classes all of whose parameters have defaults."""
+    """Yields the names of methods whose parameters all have defaults, as those of productions do."""
     for kind in (node for node in tree.body if isinstance(node, ast.ClassDef)):
         for node in kind.body:
             if isinstance(node, ast.FunctionDef) and node.args.args and len(node.args.defaults) == len(node.args.args):

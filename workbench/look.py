@@ -1,4 +1,4 @@
-"""Which overlays a session's 3D view shows: the same for all who watch. From where it is seen each browser chooses for itself."""
+"""Stores which overlays a session's 3D view shows. They are the same for all who watch; each browser chooses its own camera."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ TITLES: dict[say.OverlayName, str] = {
     "posture": "planned posture",
     "contacts": "contacts",
 }
-"""What overlays are called, in their order."""
+"""The titles of the overlays, in the order of the menu."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """Which overlays are shown."""
+    """Holds the set of overlays that are shown."""
 
     shown: frozenset[say.OverlayName] = frozenset({"features", "path", "contacts"})
 
     def after(self, said: say.Overlay) -> Look:
-        """Returns what is shown after a command."""
+        """Returns the overlays that are shown after a command."""
         return replace(self, shown=self.shown | {said.name} if said.shown else self.shown - {said.name})
 
     def told(self) -> dict[str, Any]:
-        """Returns what pages are told: `overlays`, each with `name`, `title` and whether it is `shown`."""
+        """Returns the entry for pages: `overlays`, each with `name`, `title` and whether it is `shown`."""
         return {"overlays": [{"name": name, "title": title, "shown": name in self.shown} for name, title in TITLES.items()]}

@@ -1,4 +1,4 @@
-"""Sends a file that is open already: whatever happens meanwhile to its name, the answer is whole."""
+"""Sends a file that is already open: the response is complete even if the file is renamed or deleted in the meantime."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
 PART = 256 * 1024
-"""So much is read and sent at once [bytes]."""
+"""How much is read and sent at a time [bytes]."""
 
 
 class OpenFile(Response):
-    """An answer that is the content of an open file, with its length; closes the file at the end, or when the client has gone.
+    """Responds with the content of an open file, and closes the file at the end or when the client has disconnected.
 
     Args:
-        file: The file.
-        media_type: What it is.
-        name: What it is called where it is kept; None where it is not meant to be kept.
+        file: The open file.
+        media_type: Its media type.
+        name: The file name of a download; None if the response is not a download.
     """
 
     def __init__(self, file: FileIO, media_type: str, name: str | None = None) -> None:
@@ -33,7 +33,7 @@ class OpenFile(Response):
         self.init_headers({"content-length": str(self._size), **headers})
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Sends it."""
+        """Sends the response."""
         sending, leaving = asyncio.ensure_future(self._send(send)), asyncio.ensure_future(gone(receive))
         try:
             await asyncio.wait([sending, leaving], return_when=asyncio.FIRST_COMPLETED)
@@ -49,7 +49,7 @@ class OpenFile(Response):
         await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
         left = self._size
         while left:
-            # To the end also where it is cancelled: the file must not be closed under it.
+            # The read must finish even if the task is cancelled: the file must not be closed during it.
             reading = asyncio.ensure_future(asyncio.to_thread(self._file.read, min(PART, left)))
             try:
                 part = await asyncio.shield(reading)
@@ -57,13 +57,13 @@ class OpenFile(Response):
                 await asyncio.wait([reading])
                 raise
             if not part:
-                return  # somebody has cut the file; the client sees that the answer is shorter than it should be
+                return  # the file was truncated; the client sees a response shorter than announced
             left -= len(part)
             await send({"type": "http.response.body", "body": part, "more_body": True})
         await send({"type": "http.response.body", "body": b"", "more_body": False})
 
 
 async def gone(receive: Receive) -> None:
-    """Waits until the client of a request has gone."""
+    """Waits until the client of a request has disconnected."""
     while (await receive())["type"] != "http.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""What a list tells of model files: read from each once, and again only when it has changed."""
+"""Describes model files for a list: each file is read once, and again only when it has changed."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from workbench.loader import listing_of
 
 @dataclass(frozen=True)
 class Outline:
-    """What a list tells of a model file."""
+    """Holds what a list shows of a model file."""
 
     title: str = ""
     """The first line of its docstring."""
     kind: str = "program"
-    """`simulation` where it builds one, else `program`."""
+    """`simulation` if the file defines `build`, otherwise `program`."""
 
 
 def outline_of(path: Path) -> Outline:
-    """Returns what a list tells of a file; of one that cannot be read nothing."""
+    """Returns the outline of a file; an empty one if the file cannot be read."""
     try:
         now = path.stat()
         return _read(path, (now.st_mtime_ns, now.st_size, now.st_ino)) if now.st_size <= LARGEST else Outline()
@@ -33,6 +33,6 @@ def outline_of(path: Path) -> Outline:
 
 @lru_cache(maxsize=2 * MOST_FILES)
 def _read(path: Path, _: tuple[int, ...]) -> Outline:
-    """Reads a file, which these numbers tell from what it was before."""
+    """Reads a file; the numbers change when the file changes, so that the cache is not used for an old version."""
     listing = listing_of(read_source(path), path.name)
     return Outline(listing.title, listing.kind)

@@ -1,4 +1,4 @@
-"""What a browser loads: our page, viser's page, and the two websockets."""
+"""Serves what a browser loads: the workbench's page, viser's page, and the two websockets."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from workbench.shipped import static
 from workbench.viser_bridge import POLICY, Bridge, page
 
 MOST_PAGES = 64
-"""So many browsers may be connected at once."""
+"""Maximum number of connected browsers."""
 MOST_AT_ONCE = 32
-"""So many commands of one browser may wait for what comes of them."""
+"""Maximum number of commands of one browser that wait for their replies."""
 LONGEST = 100_000
-"""Nothing longer is said on the websocket [characters]."""
+"""Maximum length of a message from a browser [characters]."""
 
 router = APIRouter(include_in_schema=False)
 _names = itertools.count(1)
@@ -34,13 +34,13 @@ _names = itertools.count(1)
 
 @router.get("/")
 def index() -> FileResponse:
-    """Gives the page."""
+    """Returns the workbench's page."""
     return FileResponse(static() / "index.html", media_type="text/html")
 
 
 @router.get("/viser/")
 def any_scene(request: Request) -> Response:
-    """Leads to the 3D view of the newest session that has one."""
+    """Redirects to the 3D view of the newest session that has one."""
     sessions: Sessions = request.app.state.sessions
     shown = [session.name for session in sessions.all() if sessions.view(session.name) is not None]
     if not shown:
@@ -50,7 +50,7 @@ def any_scene(request: Request) -> Response:
 
 @router.get("/viser/{session}/")
 def scene(session: str, request: Request) -> Response:
-    """Gives viser's page for a session."""
+    """Returns viser's page for a session."""
     sessions: Sessions = request.app.state.sessions
     if sessions.view(session) is None:
         return PlainTextResponse("there is no 3D view of that session\n", status_code=404)
@@ -59,7 +59,7 @@ def scene(session: str, request: Request) -> Response:
 
 @router.websocket("/viser/{session}")
 async def scene_socket(websocket: WebSocket, session: str) -> None:
-    """Carries viser's websocket."""
+    """Connects a browser to viser's websocket."""
     sessions: Sessions = websocket.app.state.sessions
     bridge: Bridge = websocket.app.state.bridge
     await bridge.carry(websocket, sessions.view(session))
@@ -67,7 +67,7 @@ async def scene_socket(websocket: WebSocket, session: str) -> None:
 
 @router.websocket("/ws")
 async def socket(websocket: WebSocket) -> None:
-    """Shows one session, and takes what its user says."""
+    """Sends a browser the updates of one session, and carries out its commands."""
     state: Any = websocket.app.state
     if state.pages >= MOST_PAGES:
         await websocket.close(1013)
@@ -82,11 +82,11 @@ async def socket(websocket: WebSocket) -> None:
 
 
 class _Page:
-    """One browser on the websocket.
+    """Serves one browser on the websocket.
 
     Args:
         websocket: Its websocket.
-        sessions: What it can show.
+        sessions: The sessions it can show.
     """
 
     def __init__(self, websocket: WebSocket, sessions: Sessions) -> None:
@@ -96,16 +96,16 @@ class _Page:
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
-        """Serves it until it is gone. The first that it says is an `Attach`; another one later shows another session."""
+        """Serves the browser until it disconnects. Its first message is an `Attach`; a later one changes the session."""
         sending: asyncio.Task[None] | None = None
         feed: Feed | None = None
-        session: Any = None  # of that feed
+        session: Any = None  # the session of that feed
         try:
             while True:
                 message = await self._websocket.receive()
                 if message["type"] == "websocket.disconnect":
                     return
-                text: str = message.get("text") or ""  # what is no text is nothing that a page says
+                text: str = message.get("text") or ""  # pages send only text; other data counts as empty text
                 if len(text) > LONGEST or (feed is not None and feed.choked):
                     await self._websocket.close(1009 if len(text) > LONGEST else 1008)
                     return
@@ -157,7 +157,7 @@ def _reply(number: int | None, result: bytes = b"null", error: str | None = None
 
 
 def _number_of(text: str) -> int | None:
-    """Returns the number of what a page says, whatever else is wrong with it, so that who waits is told; None where it has none."""
+    """Returns the number of a page's message, even if the rest is invalid, so that the sender gets a reply; None if it has none."""
     try:
         number = json.loads(text)["id"]
     except (ValueError, TypeError, LookupError, RecursionError):
@@ -166,7 +166,7 @@ def _number_of(text: str) -> int | None:
 
 
 def _read(text: str) -> tuple[say.Attach | None, say.Request | None, str]:
-    """Reads what a page says: an `Attach`, a `Request`, or why it is neither."""
+    """Parses a page's message: an `Attach`, a `Request`, or the reason why it is neither."""
     try:
         if '"attach"' in text[:200]:
             return say.Attach.model_validate_json(text), None, ""

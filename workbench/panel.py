@@ -1,4 +1,4 @@
-"""Viser's own panel: run, pause, step and back, the apertures, the overlays; so that the 3D view can be used alone."""
+"""Defines viser's own panel with run, pause, step, back, apertures and overlays, so that the 3D view can be used alone."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ MOST_SLIDERS = 8
 
 
 class Panel:
-    """The controls in viser's panel. What a model calls its things is shown as text only.
+    """Shows the controls in viser's panel. Names from a model are shown as plain text.
 
     Args:
-        gui: Viser's side of it.
-        apertures: By the name of each aperture the least and the greatest width that it can be set to [cm].
-        look: How the scene is looked at.
-        said: Takes what users do.
+        gui: Viser's GUI interface.
+        apertures: The minimum and maximum width of each aperture [cm], by name.
+        look: Which overlays are shown.
+        said: Called with each command of a user.
     """
 
     def __init__(self, gui: Any, apertures: dict[str, tuple[int, int]], look: Look, said: Callable[[Any], None]) -> None:
         self._said = said
         self.apertures = apertures
-        """What it was made for."""
+        """The apertures that the panel was made for."""
         gui.reset()
         gui.set_panel_label("ACT-R 3D")
         self._time = gui.add_markdown("")
@@ -50,7 +50,7 @@ class Panel:
                 self._boxes[name] = box
 
     def show(self, state: State) -> None:
-        """Shows how the run is."""
+        """Shows the state of the run."""
         pace = "" if state.measured is None else f" · {state.measured:.1f}x"
         text = f"**t = {state.time:.2f} s** · {state.status}{pace}"
         if self._time.content != text:
@@ -62,13 +62,13 @@ class Panel:
                 slider.value = shown
 
     def choose(self, look: Look) -> None:
-        """Shows how the scene is looked at."""
+        """Shows which overlays are on."""
         for name, box in self._boxes.items():
             if box.value != (name in look.shown):
                 box.value = name in look.shown
 
     def _slid(self, name: str, slider: Any, event: Any) -> None:
-        if event.client_id is not None:  # else the panel is only being set to what is so
+        if event.client_id is not None:  # otherwise the panel itself was updated to the current state
             self._said(say.Aperture(width=slider.value / 100, name=name))
 
     def _switched(self, name: say.OverlayName, box: Any, event: Any) -> None:

@@ -1,6 +1,6 @@
-"""What a page, or a program, may say to the workbench: frozen types, one a command or question, each with its bounds.
+"""Defines what a page or a program may send to the workbench: one frozen type for each command or question, with its bounds.
 
-The same types serve the websocket, the REST interface and its OpenAPI description, and the worker in which a model runs.
+The websocket, the REST interface with its OpenAPI description, and the worker in which a model runs share these types.
 """
 
 from __future__ import annotations
@@ -17,13 +17,12 @@ Plain = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
 """A value that can be recorded."""
 
 OverlayName = Literal["frustum", "edges", "features", "path", "posture", "contacts"]
-"""What can be drawn over the 3D view: what the eye can see, the edges that it sees, what vision has found last with its width, the
-path walked, the posture that the body is commanded to, where it touches something."""
-"""From where the 3D view is seen: from where each user likes, with the body, through its eye, from above."""
+"""What can be drawn over the 3D view: the field of view, the edges seen, the last features that vision found with their widths, the
+path walked, the posture that the body is commanded to take, and its contacts."""
 
 
 class Said(BaseModel):
-    """The base of all that is said."""
+    """Base of all commands and questions."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -32,83 +31,83 @@ class Said(BaseModel):
 
 
 class Run(Said):
-    """Lets the run go on."""
+    """Continues the run."""
 
     type: Literal["run"] = "run"
 
 
 class Pause(Said):
-    """Holds the run at the end of the present tick."""
+    """Pauses the run at the end of the current tick."""
 
     type: Literal["pause"] = "pause"
 
 
 class Step(Said):
-    """Goes on by some ticks."""
+    """Runs a number of ticks."""
 
     type: Literal["step"] = "step"
     ticks: int = Field(default=1, ge=1, le=100_000)
 
 
 class Cycle(Said):
-    """Goes on until the next production fires: of one system where it is named, else of any."""
+    """Runs until the next production fires; of one production system if `system` is given."""
 
     type: Literal["cycle"] = "cycle"
     system: Name | None = None
 
 
 class Back(Said):
-    """Goes back by some ticks."""
+    """Goes back by a number of ticks."""
 
     type: Literal["back"] = "back"
     ticks: int = Field(default=1, ge=1, le=100_000)
 
 
 class Seek(Said):
-    """Goes to a time that the run has been at [s]; going on from there gives what was."""
+    """Goes to an earlier time of the run [s]; running on from there repeats what was recorded."""
 
     type: Literal["seek"] = "seek"
     time: Seconds
 
 
 class Until(Said):
-    """Goes on until one of what is named comes true."""
+    """Runs until one of the given conditions is true."""
 
     type: Literal["until"] = "until"
     time: Seconds | None = None
-    """[s]"""
+    """This time is reached [s]."""
     production: Name | None = None
-    """One of this name fires."""
+    """A production of this name fires."""
     buffer: Name | None = None
     """The buffer at this path matches `pattern`."""
     pattern: Annotated[str, Field(max_length=2000)] | None = None
     contact: Annotated[str, Field(max_length=200)] | None = None
-    """This body touches something other than the ground; an empty text for any body."""
+    """This body touches something other than the ground; an empty text means any body."""
 
 
 class Breakpoints(Said):
-    """Names the productions after which the run pauses whenever they fire."""
+    """Sets the productions after which the run pauses whenever they fire."""
 
     type: Literal["breakpoints"] = "breakpoints"
     productions: tuple[Name, ...] = Field(default=(), max_length=200)
 
 
 class Speed(Said):
-    """Sets how many times as fast as real time the run goes at most; None for as fast as possible."""
+    """Sets the maximum speed of the run as a multiple of real time; None for as fast as possible."""
 
     type: Literal["speed"] = "speed"
     factor: float | None = Field(default=None, ge=0.05, le=10_000)
 
 
 class Change(Said):
-    """The base of what changes the run itself.
+    """Base of the commands that change the run itself.
 
-    Where the run has gone back, it goes another way from here. What lies ahead is kept as a recording of its own, a branch; where the
-    run is not recorded, the change is refused unless `drop` allows to lose it.
+    If the run has gone back, it continues differently from here. The part that lies ahead is kept as a recording of its own, a
+    branch. If the run is not recorded, the change is refused unless `drop` is true.
     """
 
     drop: bool = False
-    """Whether what lies ahead may be lost where it cannot be kept."""
+    """Whether the part that lies ahead may be lost if it cannot be kept."""
 
 
 class Aperture(Change):
@@ -128,7 +127,7 @@ class Set(Change):
 
 
 class Say(Change):
-    """Says any word to the world, the minds or a body, as `Simulation.command` takes it."""
+    """Sends any command to the world, the agents or a body, as `Simulation.command` does."""
 
     type: Literal["say"] = "say"
     word: Name
@@ -141,20 +140,20 @@ class Say(Change):
 
 
 class Restart(Said):
-    """Begins again: with other parameters, where some are given; with a new seed, or the same."""
+    """Starts the model again, optionally with other parameters or a new seed."""
 
     type: Literal["restart"] = "restart"
     settings: dict[Name, Plain] | None = Field(default=None, max_length=200)
-    """Values of parameters that are not the model's defaults; None for those of the present run."""
+    """Values of parameters that differ from the model's defaults; None for those of the current run."""
     seed: int | None = Field(default=None, ge=0, lt=2**63)
     new_seed: bool = False
     record: bool = True
     run: bool = False
-    """Whether it runs at once; otherwise it waits at its start."""
+    """Whether the run starts at once; otherwise it is paused at its start."""
 
 
 class Overlay(Said):
-    """Shows or hides something over the 3D view, for all who watch the session."""
+    """Shows or hides an overlay of the 3D view, for all who watch the session."""
 
     type: Literal["overlay"] = "overlay"
     name: OverlayName
@@ -162,7 +161,7 @@ class Overlay(Said):
 
 
 class Stop(Said):
-    """Ends the worker in which the run is, whatever it does."""
+    """Ends the worker process of the run, whatever it is doing."""
 
     type: Literal["stop"] = "stop"
 
@@ -171,7 +170,7 @@ class Stop(Said):
 
 
 class Explain(Said):
-    """Why: every production and retrieval of the agents, or of one; now, or at a past time."""
+    """Explains productions and retrievals of all agents or of one, now or at a past time."""
 
     type: Literal["explain"] = "explain"
     at: Seconds | None = None
@@ -180,7 +179,7 @@ class Explain(Said):
 
 
 class Rows(Said):
-    """The chunks of a memory with their activations now."""
+    """Returns the chunks of a memory with their current activations."""
 
     type: Literal["memory"] = "memory"
     memory: Name
@@ -189,21 +188,21 @@ class Rows(Said):
 
 
 class Look(Said):
-    """What a body's eye sees now, row by row."""
+    """Returns what a body's eye sees now, row by row."""
 
     type: Literal["view"] = "view"
     body: Name | None = None
 
 
 class Body(Said):
-    """What a body is like now: joints with their limits, contacts, bounding box, place."""
+    """Returns the current state of a body: joints with their limits, contacts, bounding box, position."""
 
     type: Literal["body"] = "body"
     body: Name | None = None
 
 
 class Events(Said):
-    """Events of the run, from a number on."""
+    """Returns events of the run from a number on."""
 
     type: Literal["events"] = "events"
     first: int = Field(default=0, ge=0)
@@ -212,24 +211,24 @@ class Events(Said):
 
 
 class Curves(Said):
-    """How the run went up to the furthest that it has come, as curves over time, for plots.
+    """Returns curves of the run over time, up to the furthest time that it has reached, for plots.
 
-    Answered by `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`: `names` are all that there are, in
-    degrees where something turns; `curves` those that are asked for, one value for each time, null where there is none, as of the
-    clearance of who is not in the doorway. Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
-    values are of the ends of ticks: the contact force of that moment. A run that has gone back still tells what lies ahead, until
-    it goes another way. The same comes from `/api/recordings/{recording}/curves`.
+    The answer is `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`. `names` lists all curves, with
+    angles in degrees; `curves` holds the requested ones, with one value for each time, or null if there is no value (for example the
+    clearance of a body that is not in the doorway). Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
+    values are those at the ends of ticks, including the contact force. After going back, a run still returns what lies ahead, until it
+    continues differently. `/api/recordings/{recording}/curves` returns the same for a recording.
     """
 
     type: Literal["curves"] = "curves"
     names: tuple[Name, ...] | None = Field(default=None, max_length=500)
-    """Which; None for all."""
+    """The names of the curves; None for all."""
     first: Seconds = 0.0
-    """From when on [s]: what a page knows already it need not ask for again."""
+    """Start of the interval [s]: a page need not ask again for what it has."""
     last: Seconds | None = None
-    """Until when, this moment included [s]; None for as far as the run has come."""
+    """End of the interval, included [s]; None for the furthest time of the run."""
     most: int = Field(default=1_000, ge=2, le=5_000)
-    """How many times at most, evenly spread; the last one of the stretch is among them. All of a stretch that has fewer."""
+    """Maximum number of times, evenly spaced; the last moment of the interval is included. A shorter interval is returned completely."""
 
 
 Command = Annotated[
@@ -263,40 +262,40 @@ Anything = Annotated[
 ]
 
 LOOKS = (Overlay,)
-"""What changes the view only, and nothing of the run."""
+"""Commands that change only the view and not the run."""
 QUESTIONS = (Explain, Rows, Look, Body, Events, Curves)
-"""What only asks."""
+"""The questions, which change nothing."""
 ANYTHING: TypeAdapter[Any] = TypeAdapter(Anything)
-"""Reads a command or question."""
+"""Parses a command or question."""
 
 
 class Attach(Said):
-    """The first thing that a page says on its websocket: which session it shows, and what it knows of it already."""
+    """The first message of a page on its websocket: the session to show, and what the page already knows of it."""
 
     type: Literal["attach"] = "attach"
     session: Name
     run: int = Field(default=0, ge=0)
-    """The number of the run of which it knows events."""
+    """The number of the run whose events the page knows."""
     epoch: int = Field(default=0, ge=0)
     events: int = Field(default=0, ge=0)
-    """How many it knows."""
+    """How many events it knows."""
 
 
 class Request(Said):
-    """What a page says after that: a command or question with a number, which the reply names."""
+    """Any later message of a page: a command or question with a number, which the reply repeats."""
 
     id: int = Field(ge=0, lt=2**53)
     say: Anything
 
 
 def problem_of(error: Mapping[str, Any]) -> str:
-    """Returns in words where something that was said is wrong, and why; never what was said, which may be nothing that JSON has.
+    """Returns a text that says where a message is invalid and why; it never quotes the message, which JSON may not be able to hold.
 
     Args:
-        error: One of those that pydantic's `ValidationError.errors` returns.
+        error: An error from pydantic's `ValidationError.errors`.
     """
     place = ".".join(str(part)[:100] for part in error["loc"])
     words = str(error["msg"])
-    if error["type"] == "union_tag_invalid":  # whose words have what was said among them
+    if error["type"] == "union_tag_invalid":  # pydantic's own text for this error quotes the message
         words = f"{error['ctx']['discriminator']} must be one of {error['ctx']['expected_tags']}"
     return f"{place}: {words}" if place else words

@@ -1,4 +1,4 @@
-"""The part of the REST interface that tells of recordings, and gives and takes them away."""
+"""The REST interface for recordings: lists, downloads, compares, opens, replays, renames and deletes them."""
 
 from __future__ import annotations
 
@@ -32,45 +32,45 @@ KINDS: dict[File, str] = {
     "states.csv": "text/csv",
     "replay.html": "text/html",
 }
-"""What files can be had of a recording, and their media types."""
+"""The file formats in which a recording can be downloaded, with their media types."""
 
 
 class Naming(say.Said):
-    """A recording's other name."""
+    """A new name for a recording."""
 
     to: Annotated[str, Field(min_length=1, max_length=150)]
 
 
 class Trusting(say.Said):
-    """Whether code may be run."""
+    """Whether code of a recording may be run."""
 
     trust: bool = False
-    """Whether the code in the recording may be run though this installation did not make it."""
+    """Whether the code in the recording may be run although this installation did not make it."""
 
 
 class Opening(Trusting):
-    """How a recording is opened."""
+    """Options for opening a recording."""
 
     real_time: bool = False
-    """Whether a run with a body goes at real time until a speed is chosen."""
+    """Whether a run with a body goes in real time until a speed is chosen."""
 
 
 class Pair(say.Said):
-    """Two recordings."""
+    """Two recordings to compare."""
 
     first: Annotated[str, Field(max_length=160)]
     second: Annotated[str, Field(max_length=160)]
     kinds: tuple[say.Name, ...] = Field(default=(), max_length=50)
-    """Which kinds of events are compared; nothing for all."""
+    """The kinds of events to compare; empty for all."""
 
 
 @router.get("/recordings")
 async def recordings(
     request: Request, first: Annotated[int, Query(ge=0, le=1_000_000)] = 0, most: Annotated[int, Query(ge=1, le=MOST_LISTED)] = MOST_LISTED
 ) -> Response:
-    """Lists recordings, the newest first: `total` of them, and what is known of those from `first` on.
+    """Lists recordings, newest first: the `total` number, and summaries from number `first` on.
 
-    `problem` says why one cannot be read, `session` which session goes on writing it.
+    `problem` says why a recording cannot be read, `session` which session is still writing it.
     """
     sessions = sessions_of(request)
     total, found = await sessions.listing.some(first, most)
@@ -81,15 +81,15 @@ async def recordings(
 
 @router.get("/recordings/{recording}")
 async def recording(request: Request, recording: Id) -> Response:
-    """Returns what is known of a recording."""
+    """Returns the summary of a recording."""
     return Response(to_json(await _recording(sessions_of(request), recording)), media_type="application/json")
 
 
 @router.get("/recordings/{recording}/file")
 async def download(request: Request, recording: Id, form: File = "sqlite") -> Response:
-    """Returns a file: the recording as it is, its events or states as CSV, or one HTML file that plays its scene beside its trace.
+    """Returns a file: the recording itself, its events or states as CSV, or an HTML file that plays its scene beside its trace.
 
-    Of a run that goes on it is what has been recorded until now. 409 where there is nothing to return, as no states of a program.
+    For a run that is still going on, it contains what has been recorded so far. 409 if there is nothing to return, for example no states.
     """
     sessions = sessions_of(request)
     path = sessions.recordings.path(recording)
@@ -101,7 +101,7 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
 
 
 async def _made(request: Request, form: str, *paths: Path, **options: Any) -> FileIO:
-    """Returns an open file that a worker makes of recordings, for as long as the client waits for it."""
+    """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
     return await while_wanted(sessions_of(request).readers.make(form, *paths, **options), lambda: gone(request.receive))
 
 
@@ -114,9 +114,9 @@ async def recorded_curves(
     most: Annotated[int, Query(ge=2, le=20_000)] = 2_000,
     last: Annotated[float | None, Query(ge=0, lt=1e9, allow_inf_nan=False)] = None,
 ) -> Response:
-    """Returns how a recorded run went, also one that goes on, as curves over time, for plots: those that are named, or all.
+    """Returns curves of a recorded run over time, for plots: the named ones, or all; the run may still be going on.
 
-    `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`, as the question `curves` of a session does.
+    `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`, as the question `curves` of a session returns.
     """
     path = sessions_of(request).recordings.path(recording)
     return OpenFile(await _made(request, "curves", path, names=name, first=first, most=most, last=last), "application/json")
@@ -124,10 +124,10 @@ async def recorded_curves(
 
 @router.post("/recordings/{recording}/open", status_code=201)
 async def open_recording(request: Request, recording: Id, body: Opening | None = None) -> dict[str, Any]:
-    """Begins a session that lives through a recorded run again, or returns the one that does so already.
+    """Starts a session that repeats a recorded run, or returns the session that already does.
 
-    All of the recorded run is known at once: it can be sent to any time of it. Opening runs the code that the recording holds:
-    403 where this installation did not make it, unless the request says `trust`.
+    The whole recorded run is available at once: the session can go to any time of it. Opening runs the code in the recording: 403 if
+    this installation did not make it, unless `trust` is true.
     """
     said = body or Opening()
     return (await sessions_of(request).reopen(recording, trust=said.trust, real_time=said.real_time)).summary()
@@ -137,7 +137,7 @@ async def open_recording(request: Request, recording: Id, body: Opening | None =
 async def recorded_code(request: Request, recording: Id) -> dict[str, Any]:
     """Returns the code that opening or replaying a recording runs: the model's `source`, and the texts of its `helpers` by name.
 
-    `made_here` says whether this installation made the recording, and nobody has changed it since.
+    `made_here` says whether this installation made the recording and nobody has changed it since.
     """
     began = await sessions_of(request).beginning(recording)
     helpers = {sendable(name): sendable(text) for name, (_, text) in began.helpers.items()}
@@ -146,9 +146,9 @@ async def recorded_code(request: Request, recording: Id) -> dict[str, Any]:
 
 @router.post("/recordings/{recording}/replay")
 async def replay(request: Request, recording: Id, body: Trusting | None = None) -> dict[str, Any]:
-    """Runs a recording again, in a process of its own, and says whether every byte agrees; it ends when nobody waits any more.
+    """Runs a recording again in a process of its own and reports whether all bytes agree; it is cancelled when the clients disconnect.
 
-    403 where this installation did not make the recording, unless the request says `trust`.
+    403 if this installation did not make the recording, unless `trust` is true.
     """
     sessions = sessions_of(request)
     await sessions.trusted(recording, body is not None and body.trust)
@@ -157,21 +157,21 @@ async def replay(request: Request, recording: Id, body: Trusting | None = None) 
 
 @router.get("/recordings/{recording}/replay")
 async def replaying(request: Request, recording: Id) -> dict[str, Any]:
-    """Tells how much of a recording has been run again, from 0 to 1, while that goes on; null where it does not."""
+    """Returns the share of a recording that has been run again, from 0 to 1; null if no replay is in progress."""
     sessions = sessions_of(request)
     return {"share": sessions.reruns.share(sessions.recordings.path(recording))}
 
 
 @router.post("/recordings/{recording}/rename")
 def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
-    """Gives a recording another name; one that a user has named is not removed to make place for others."""
+    """Renames a recording; a recording with a name given by a user is never deleted automatically."""
     sessions_of(request).recordings.rename(recording, body.to)
     return {"renamed": body.to}
 
 
 @router.post("/recordings/{recording}/delete")
 def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
-    """Deletes a recording; 409 while a run goes on writing it."""
+    """Deletes a recording; 409 while a run is still writing it."""
     sessions = sessions_of(request)
     if recording in sessions.writing():
         raise SessionError("a run that is open still writes this recording; begin its model anew, or close its session, and then delete it")
@@ -181,7 +181,7 @@ def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
 
 @router.post("/compare")
 async def compare_recordings(request: Request, body: Pair) -> Response:
-    """Returns where two recordings differ: parameters, the lines of the model, and the first event that is not the same."""
+    """Returns the differences of two recordings: parameters, lines of the model, and the first event that differs."""
     sessions = sessions_of(request)
     names = (body.first, body.second)
     first, second = [sessions.recordings.path(name) for name in names]
@@ -192,5 +192,5 @@ async def compare_recordings(request: Request, body: Pair) -> Response:
 
 
 async def _recording(sessions: Sessions, name: str) -> dict[str, Any]:
-    """Returns what is told of a recording."""
+    """Returns the summary of a recording and the session that is writing it."""
     return {**vars(await sessions.listing.one(name)), "session": sessions.writing().get(name)}

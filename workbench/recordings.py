@@ -1,4 +1,4 @@
-"""The files of the recordings of a models folder."""
+"""Manages the recording files of a models folder."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class NoSuchRecordingError(Actr3dError):
 
 
 class Recordings:
-    """The recordings of a models folder.
+    """Finds, renames and deletes the recordings of a models folder.
 
     Args:
         root: The models folder.
@@ -35,16 +35,16 @@ class Recordings:
         self._folder = root / OWN / "recordings"
 
     def new(self, model: str) -> Path:
-        """Returns a new file for a run of a model."""
+        """Returns a new file path for a run of a model."""
         self._folder.mkdir(parents=True, exist_ok=True)
         stem = re.sub(r"[^A-Za-z0-9_]", "_", model)[:60] or "model"
         return self._folder / f"{stem}-{stamp()}.sqlite"
 
     def path(self, name: str) -> Path:
-        """Returns where a recording is.
+        """Returns the path of a recording.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name.
+            NoSuchRecordingError: If there is no recording of that name.
         """
         path = self._folder / f"{name}.sqlite"
         if _NAME.fullmatch(name) is None or not path.is_file() or path.is_symlink():
@@ -52,23 +52,23 @@ class Recordings:
         return path
 
     def all(self) -> list[Path]:
-        """Returns where all are, the newest first."""
+        """Returns the paths of all recordings, newest first."""
         return sorted(self._files(), key=lambda path: (begun(path), path.name), reverse=True)
 
     def _files(self) -> Sequence[Path]:
         return [path for path in self._folder.glob("*.sqlite") if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
 
     def tidy(self, keeping: Keeping) -> None:
-        """Deletes the oldest recordings that no user has named, where there are too many."""
+        """Deletes the oldest recordings that no user has named, if the limits are exceeded."""
         for path in superfluous(self._files(), keeping):
             erase(path)
 
     def rename(self, name: str, to: str) -> None:
-        """Gives a recording another name; one that a user has named is kept until a user deletes it.
+        """Renames a recording; a recording that a user has named is kept until a user deletes it.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name.
-            RecordingError: If the other name cannot be had, or the recording is still being written.
+            NoSuchRecordingError: If there is no recording of that name.
+            RecordingError: If the new name is invalid or taken, or the recording is still being written.
         """
         path, target = self.path(name), self._folder / f"{to}.sqlite"
         if _NAME.fullmatch(to) is None:
@@ -76,7 +76,7 @@ class Recordings:
         if not stands_alone(path):
             raise RecordingError("the recording is still being written: stop or restart its run first")
         try:
-            os.link(path, target, follow_symlinks=False)  # which never replaces what is there
+            os.link(path, target, follow_symlinks=False)  # unlike rename, this never replaces an existing file
             path.unlink()
         except FileExistsError:
             raise RecordingError(f"there is a recording '{to}' already") from None
@@ -87,10 +87,10 @@ class Recordings:
             raise RecordingError(f"the recording cannot be renamed: {error.strerror}") from None
 
     def opened(self, name: str) -> FileIO:
-        """Returns the file of a recording, open for reading: it stays readable whatever happens to its name.
+        """Returns the file of a recording, opened for reading: it stays readable even if the recording is renamed or deleted.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name.
+            NoSuchRecordingError: If there is no recording of that name.
         """
         try:
             descriptor = os.open(self.path(name), os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -102,6 +102,6 @@ class Recordings:
         """Deletes a recording.
 
         Raises:
-            NoSuchRecordingError: If there is none of that name.
+            NoSuchRecordingError: If there is no recording of that name.
         """
         erase(self.path(name))

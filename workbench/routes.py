@@ -1,4 +1,4 @@
-"""The REST interface: models and sessions; `recording_routes` has the recordings. Its description in OpenAPI is at /api/openapi.json."""
+"""The REST interface for models and sessions; `recording_routes` has recordings. Its OpenAPI description is at /api/openapi.json."""
 
 from __future__ import annotations
 
@@ -26,42 +26,42 @@ InFolder = Annotated[str, Query(min_length=1, max_length=400)]
 Id = Annotated[str, InPath(min_length=1, max_length=160)]
 Version = Annotated[str, Field(max_length=100)]
 ANSWER_TIME = 10.0
-"""So long a request waits for what comes of a command [s]; the command goes on."""
+"""How long a request waits for the result of a command [s]; the command itself continues."""
 
 
 class Save(say.Said):
-    """A model file's new text."""
+    """A model file with its new text."""
 
     path: FilePath
     text: say.Text
     version: Version | None = None
-    """The version that it replaces; None for a new file."""
+    """The version that is replaced; None for a new file."""
 
 
 class Rename(say.Said):
-    """A model file's other name."""
+    """A model file and its new name."""
 
     path: FilePath
     to: FilePath
 
 
 class Delete(say.Said):
-    """A model file to be put into the trash folder."""
+    """A model file to move to the trash folder."""
 
     path: FilePath
 
 
 class Check(say.Said):
-    """A text that may be no model yet."""
+    """A text to check, which may not be a valid model yet."""
 
     path: FilePath
     text: say.Text
     load: bool = False
-    """Whether it is loaded, too, which runs its top level and its `build`, in a worker."""
+    """Whether it is also loaded in a worker, which runs its top level and its `build`."""
 
 
 class Open(say.Said):
-    """A model to begin a session with."""
+    """A model with which to start a session."""
 
     model: FilePath
     settings: dict[say.Name, say.Plain] = Field(default_factory=dict, max_length=200)
@@ -69,7 +69,7 @@ class Open(say.Said):
     record: bool = True
     run: bool = False
     real_time: bool = False
-    """Whether a run with a body goes at real time until a speed is chosen; else every run goes as fast as it can."""
+    """Whether a run with a body goes in real time until a speed is chosen; otherwise every run goes as fast as possible."""
 
 
 class Saying(say.Said):
@@ -79,7 +79,7 @@ class Saying(say.Said):
 
 
 def sessions_of(request: Request) -> Sessions:
-    """Returns the sessions of the server that is asked."""
+    """Returns the sessions of the server that handles the request."""
     return request.app.state.sessions
 
 
@@ -88,7 +88,7 @@ def sessions_of(request: Request) -> Sessions:
 
 @router.get("/models")
 def models(request: Request) -> dict[str, Any]:
-    """Lists the model files; none of them is run."""
+    """Lists the model files; none of them is executed."""
     folder = sessions_of(request).folder
     files = [{"path": sendable(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
     return {"folder": sendable(str(folder.root)), "models": files}
@@ -96,16 +96,16 @@ def models(request: Request) -> dict[str, Any]:
 
 @router.get("/model")
 def model(request: Request, path: InFolder) -> dict[str, Any]:
-    """Gives a model file's text, and what it says of itself."""
+    """Returns a model file's text and the description read from it."""
     sessions = sessions_of(request)
     file = sessions.folder.read(path)
-    request.app.state.later(sessions.saved, sessions.folder.locate(path))  # who reads it anew may have seen that it has changed
+    request.app.state.later(sessions.saved, sessions.folder.locate(path))  # the client may reload because the file has changed
     return _told(file)
 
 
 @router.get("/model/version")
 def version(request: Request, path: InFolder) -> dict[str, Any]:
-    """Tells which text a model file has now, without the text; null where there is no such file."""
+    """Returns the version of a model file's current text, without the text; null if the file does not exist."""
     folder = sessions_of(request).folder
     where = folder.locate(path)
     return {"path": path, "version": folder.version(where) if where.is_file() else None}
@@ -113,7 +113,7 @@ def version(request: Request, path: InFolder) -> dict[str, Any]:
 
 @router.put("/model")
 def save(request: Request, body: Save) -> dict[str, Any]:
-    """Writes a model file, if it still has the text of the version that is named; 409 where not."""
+    """Writes a model file if its version is still the given one; otherwise 409."""
     sessions = sessions_of(request)
     file = sessions.folder.save(body.path, body.text, body.version)
     request.app.state.later(sessions.saved, sessions.folder.locate(file.path))
@@ -128,7 +128,7 @@ def duplicate(request: Request, body: Rename) -> dict[str, Any]:
 
 @router.post("/model/rename")
 def rename(request: Request, body: Rename) -> dict[str, Any]:
-    """Gives a model file another name."""
+    """Renames a model file."""
     sessions = sessions_of(request)
     before = sessions.folder.locate(body.path)
     file = sessions.folder.rename(body.path, body.to)
@@ -138,7 +138,7 @@ def rename(request: Request, body: Rename) -> dict[str, Any]:
 
 @router.post("/model/delete")
 def delete(request: Request, body: Delete) -> dict[str, Any]:
-    """Puts a model file into the trash folder."""
+    """Moves a model file to the trash folder."""
     sessions = sessions_of(request)
     trash = sessions.folder.delete(body.path)
     request.app.state.later(sessions.saved, sessions.folder.locate(body.path))
@@ -147,7 +147,7 @@ def delete(request: Request, body: Delete) -> dict[str, Any]:
 
 @router.post("/check")
 async def check(request: Request, body: Check) -> dict[str, Any]:
-    """Says what is wrong with a text, with line numbers: what compiling tells, or with `load` also what loading it tells."""
+    """Checks a text and returns its problems with line numbers: those of compiling it and, with `load`, of loading it."""
     sessions = sessions_of(request)
     path = sessions.folder.locate(body.path)
     listing = await asyncio.to_thread(listing_of, body.text, body.path)
@@ -166,14 +166,14 @@ def _told(file: ModelFile) -> dict[str, Any]:
 
 @router.get("/sessions")
 def sessions(request: Request) -> dict[str, Any]:
-    """Lists the sessions; `ready` tells whether a run can begin at once, or only when the workbench has loaded what models need."""
+    """Lists the sessions; `ready` says whether a run can start at once, or the workbench is still loading what models need."""
     known = sessions_of(request)
     return {"sessions": [session.summary() for session in known.all()], "ready": known.workers.ready}
 
 
 @router.post("/sessions", status_code=201)
 async def open_session(request: Request, body: Open) -> dict[str, Any]:
-    """Begins a session with a model file; it waits at its start, unless it is to run."""
+    """Starts a session with a model file; the run is paused at its start unless `run` is true."""
     wanted = body.model_dump(exclude={"model", "settings"})
     session = await sessions_of(request).open(body.model, dict(body.settings), **wanted)
     return session.summary()
@@ -181,7 +181,7 @@ async def open_session(request: Request, body: Open) -> dict[str, Any]:
 
 @router.get("/sessions/{session}")
 def session(request: Request, session: Id) -> Response:
-    """Tells of a session and of the newest state of its run."""
+    """Returns the facts of a session and the newest state of its run."""
     found = sessions_of(request).get(session)
     told = {"session": msgspec.Raw(found.facts_json()), "state": msgspec.Raw(found.state_json())}
     return Response(msgspec.json.encode(told), media_type="application/json")
@@ -189,19 +189,19 @@ def session(request: Request, session: Id) -> Response:
 
 @router.get("/sessions/{session}/about")
 def about(request: Request, session: Id) -> dict[str, Any]:
-    """Gives the description of the model whose run is shown: its docstring as a tree of elements, with values to try."""
+    """Returns the description of the model on screen: its docstring as a tree of elements, with values to try."""
     found = sessions_of(request).get(session)
     source = found.source
-    if source is None:  # no run of it could be begun
+    if source is None:  # no run could be started
         source = sessions_of(request).folder.read(found.model).text
     return about_of(source, found.model)
 
 
 @router.post("/sessions/{session}/say")
 async def say_to(request: Request, session: Id, body: Saying) -> Response:
-    """Says a command or asks a question, and waits a while for what comes of it.
+    """Carries out a command or answers a question, and waits a limited time for the result.
 
-    409 where it cannot be done; 202 where it has not been done yet, as of a model that is busy.
+    409 if it fails; 202 if it is not done yet, for example because the model is busy.
     """
     work = asyncio.create_task(sessions_of(request).get(session).carry_out(body.say, "API"))
     done, _ = await asyncio.wait([work], timeout=ANSWER_TIME)

@@ -1,4 +1,4 @@
-"""The 3D view of a session: a viser server on loopback, which is fed from the newest state of the run."""
+"""Shows the 3D view of a session: a viser server on loopback that draws the newest state of the run."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 
 
 class SceneView:
-    """Shows the world of a session's run, with overlays, and viser's own panel.
+    """Shows the world of a session's run with overlays and viser's own panel.
 
-    Everything is drawn in a thread of its own, from a copy of the model; where states come faster than they can be drawn,
-    the newest is drawn. Where nobody looks nothing is drawn, and the worker computes nothing for overlays.
+    Everything is drawn in a separate thread from a copy of the model. If states arrive faster than they can be drawn, only the newest is
+    drawn. If no browser is connected, nothing is drawn, and the worker computes no data for overlays.
 
     Args:
-        session: What is shown, and told what users do in the panel.
+        session: The session to show; it receives the commands that users give in the panel.
     """
 
     def __init__(self, session: Session) -> None:
@@ -54,12 +54,12 @@ class SceneView:
         self._scene: _Drawn | None = None
         self._panel: Panel | None = None
         self.ready = asyncio.Event()
-        """Set once there is something to see."""
+        """Set once there is something to show."""
         self.over = False
         session.watchers.append(self._watch)
         self._task = asyncio.create_task(self._draw_on())
 
-    # -- what the session tells
+    # -- updates from the session
 
     def _watch(self, what: Facts | State | Look | None) -> None:
         if what is None:
@@ -76,7 +76,7 @@ class SceneView:
         self._changed.set()
 
     async def _draw_on(self) -> None:
-        """Draws the newest, as often as there is something new."""
+        """Draws the newest state whenever there is something new."""
         while True:
             await self._changed.wait()
             self._changed.clear()
@@ -88,7 +88,7 @@ class SceneView:
                 continue
             watched = bool(self._server.get_clients())
             self._session.draw(self._scene.asked(self._look) if watched else ())
-            # Where nobody looks, nothing is drawn; who comes is shown the newest.
+            # Without a browser nothing is drawn; a browser that connects later gets the newest state.
             if self.ready.is_set() and not watched:
                 continue
             state, self._state = self._state, None
@@ -97,16 +97,16 @@ class SceneView:
                 self.ready.set()
                 self._session.scene_ready()
 
-    # -- the bridge's side
+    # -- access for the bridge
 
     def address(self, *, shadows: bool) -> tuple[int, dict[str, str]]:
-        """Returns the port of viser's own server, and the headers that let the bridge in, and say whether shadows are wanted."""
+        """Returns the port of viser's server, and the headers that admit the bridge and say whether shadows are wanted."""
         return int(self._server.get_port()), {BRIDGE_HEADER: self._secret, SHADOWS_HEADER: "on" if shadows else "off"}
 
     # -- the scene
 
     def _build(self, facts: Facts) -> None:
-        """Makes the scene of a new run."""
+        """Builds the scene of a new run."""
         with self._lock:
             self._scene = None
             if facts.mj_model is None:
@@ -125,7 +125,7 @@ class SceneView:
                 self._scene = _Drawn(self._server, self._moments, facts, self._look, self._panel_for)
 
     def _panel_for(self, apertures: dict[str, tuple[int, int]]) -> Panel:
-        """Returns the panel: that of the run before, where the same can be said to this one."""
+        """Returns the panel: the one of the previous run if it has the same apertures, otherwise a new one."""
         if self._panel is None or self._panel.apertures != apertures:
             self._panel = Panel(self._server.gui, apertures, self._look, self._said)
         return self._panel
@@ -141,7 +141,7 @@ class SceneView:
                 scene.show(state)
 
     def _come(self, client: Any) -> None:
-        """Lights the scene of a browser that comes, and shows it the newest."""
+        """Sets up the lights for a browser that connects, and shows it the newest state."""
         light(client, shadows=header_of(self._server, client, SHADOWS_HEADER) != "off")
         self._wake(client)
 
@@ -149,7 +149,7 @@ class SceneView:
         self._loop.call_soon_threadsafe(self._changed.set)
 
     def _said(self, command: Any) -> None:
-        """Hands what a user does in the panel to the session, whose thread is another."""
+        """Sends a command from the panel to the session, which runs in another thread."""
 
         def tell() -> None:
             self._session._keep(self._session.carry_out(command, "3D view"))
@@ -158,14 +158,14 @@ class SceneView:
 
 
 class _Drawn:
-    """The scene of one run.
+    """Draws the scene of one run.
 
     Args:
         server: Viser's server.
-        moments: Numbers what is shown.
-        facts: What is known of the run; it has a scene.
-        look: How it is looked at.
-        panel: Returns viser's own panel for the apertures that there are.
+        moments: Numbers the states that are shown.
+        facts: The facts of the run; it has a scene.
+        look: Which overlays are shown.
+        panel: Returns viser's own panel for the given apertures.
     """
 
     def __init__(
@@ -179,11 +179,11 @@ class _Drawn:
         self.data = MjData(self._model)
         mujoco.mj_forward(self._model, self.data)
         world: dict[str, Any] = msgspec.json.decode(facts.world)
-        # It scales what the model says of looks: it gets a copy of its own.
+        # The scene scales the model's visual settings, so it gets a copy of its own.
         self._scene: Any = ViserMujocoScene(server, loaded(facts.mj_model), 1)
         self._scene.camera_tracking_enabled = False  # it would shift the world
-        self._scene.set_refresh_handler(lambda: None)  # its own threads read no data
-        server.scene.configure_environment_map(hdri=None)  # much of what a picture costs without a graphics card
+        self._scene.set_refresh_handler(lambda: None)  # so that its own threads read no data
+        server.scene.configure_environment_map(hdri=None)  # it takes much of the drawing time without a graphics card
         self._overlays: dict[OverlayName, Overlay] = make_overlays(server, self._scene, self._model, world, look)
         self._server, self._moments = server, moments
         self._stage = Stage(self._model)
@@ -195,11 +195,11 @@ class _Drawn:
         self._look: Look | None = None
 
     def asked(self, look: Look) -> tuple[OverlayName, ...]:
-        """Returns the overlays that need data of the worker, and always the field of view: any browser may look through the eye."""
+        """Returns the visible overlays that need data from the worker, and always the field of view: any browser may use the eye's view."""
         return tuple(name for name, overlay in self._overlays.items() if overlay.asked and name in (look.shown | {"frustum"}))
 
     def look(self, look: Look) -> None:
-        """Lets the scene be looked at so."""
+        """Shows the chosen overlays."""
         if look == self._look:
             return
         self._look = look
@@ -210,7 +210,7 @@ class _Drawn:
         self._tell_now()
 
     def show(self, state: State) -> None:
-        """Shows a state."""
+        """Shows a state of the run."""
         assert state.physics is not None
         numbers = np.frombuffer(state.physics)
         if numbers.size != mujoco.mj_stateSize(self._model, INTEGRATION):
@@ -225,9 +225,9 @@ class _Drawn:
         self._tell_now()
 
     def _tell_now(self) -> None:
-        """Tells browsers where the body, its eye and its head are, and what there is of shade and labels."""
+        """Sends browsers the positions of the body, its eye and its head, and the shadows and labels."""
         if not np.isfinite(self.data.xpos).all():
-            return  # physics has failed: the last that made sense stays
+            return  # physics has diverged: keep the last valid state
         self._outlines.draw(self.data)
         eyes, features = self._overlays["frustum"], self._overlays["features"]
         assert isinstance(eyes, Frustum)

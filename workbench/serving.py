@@ -1,4 +1,4 @@
-"""Serves until it is interrupted: the application, and the workers with it."""
+"""Serves the application until the process is interrupted, and ends the workers with it."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 LARGEST_MESSAGE = 60_000_000
-"""No message on a websocket is longer [bytes]; pictures that viser's page sends are the largest."""
+"""Maximum size of a websocket message [bytes]; pictures that viser's page sends are the largest."""
 MOST_CONNECTIONS = 500
-"""Who comes while so many are open is told to come again later."""
+"""Maximum number of open connections; further clients are asked to come again later (status 503)."""
 REQUEST_TIME = 10.0
-"""So long a connection may be open, or have had its last answer, until all headers of a request have come [s]."""
+"""A connection is closed if a complete request header does not arrive within this time after its opening or last response [s]."""
 
 
 class _Server(uvicorn.Server):
-    """Tells when it has started; ends what runs before it waits for browsers to leave."""
+    """Calls a function when it has started, and ends all runs before it waits for browsers to disconnect."""
 
     def __init__(self, config: uvicorn.Config, started: Callable[[], None], leave: Callable[[], Any]) -> None:
         super().__init__(config)
@@ -29,35 +29,35 @@ class _Server(uvicorn.Server):
         self._leave = leave
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Starts, and tells so."""
+        """Starts the server, and reports it."""
         await super().startup(sockets)
         self._begun()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Ends."""
+        """Ends all runs, then the server."""
         await self._leave()
-        logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)  # that requests are broken off now is no error
+        logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)  # requests that are aborted now are not errors
         await super().shutdown(sockets)
 
 
 class PunctualProtocol(H11Protocol):
-    """Closes a connection on which no request comes, or only part of one: many of these would leave no room for others."""
+    """Closes a connection without a complete request: many of these would use up all connections."""
 
     _late: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Begins to wait for a request."""
+        """Starts the timer for a request."""
         super().connection_made(transport)
         self._wait()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Waits no more."""
+        """Stops the timer."""
         super().connection_lost(exc)
         if self._late is not None:
             self._late.cancel()
 
     def on_response_complete(self) -> None:
-        """Waits for the next request."""
+        """Restarts the timer for the next request."""
         super().on_response_complete()
         self._wait()
 
@@ -67,19 +67,19 @@ class PunctualProtocol(H11Protocol):
         self._late = self.loop.call_later(REQUEST_TIME, self._give_up, self.cycle)
 
     def _give_up(self, before: RequestResponseCycle | None) -> None:
-        """Closes the connection where no request has begun since then; one that has become a websocket is none of ours."""
+        """Closes the connection if no request has begun since then; a connection that has become a websocket is left alone."""
         under_way = self.cycle is not before or (before is not None and not before.response_complete)
         if not under_way and self.transport.get_protocol() is self:
             self.transport.close()
 
 
 def config_of(app: Any) -> uvicorn.Config:
-    """Returns how an application is served."""
+    """Returns the uvicorn configuration of an application."""
     return uvicorn.Config(
         app,
         log_config=None,
-        log_level="error",  # what is wrong with somebody's request is for who has sent it
-        access_log=False,  # it would write the token down
+        log_level="error",  # errors in a request are reported to its sender
+        access_log=False,  # it would contain the token
         server_header=False,
         http=PunctualProtocol,
         ws="websockets-sansio",
@@ -95,9 +95,9 @@ def serve(app: Any, listening: socket.socket, started: Callable[[], None]) -> No
 
     Args:
         app: The application.
-        listening: Where it listens.
-        started: Is called once it answers.
+        listening: The listening socket.
+        started: Called once the server accepts requests.
     """
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
-    with suppress(KeyboardInterrupt):  # which is how users end it
+    with suppress(KeyboardInterrupt):  # the usual way to end it
         _Server(config_of(app), started, app.state.leave).run(sockets=[listening])

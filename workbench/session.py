@@ -1,4 +1,4 @@
-"""A session: one model, its present run in a worker, and the browsers that watch it and share control."""
+"""Defines the session: one model, its current run in a worker, and the browsers that watch it and share control."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ from workbench.worker.workers import Worker, Workers
 
 
 class Session(Telling):
-    """Runs one model, again and again, and tells all who watch.
+    """Runs one model, as often as users ask, and reports to all who watch it.
 
     Args:
-        name: What it is called.
+        name: The name of the session.
         path: The model file.
-        workers: Who gives workers.
-        recording: Returns a new file for a recording of a model of that name.
-        shown_path: The model as pages call it.
+        workers: The pool that starts workers.
+        recording: Returns a new file for a recording of a model with the given name.
+        shown_path: The model's path as pages show it.
     """
 
     def __init__(self, name: str, path: Path, workers: Workers, recording: Callable[[str], Path], shown_path: str) -> None:
         super().__init__(name, path, shown_path)
         self.speed: float | None = None
         self.real_time = False
-        """Whether runs that have a body go at real time, until somebody chooses a speed."""
+        """Whether runs with a body go in real time; until a user chooses a speed."""
         self._workers = workers
         self._new_recording = recording
         self._beginning = asyncio.Lock()
-        """Held while a worker is being given to a new run."""
+        """Held while a new run is being given a worker."""
         self._given_up = 0
-        """No attempt up to this one is wanted any more, if it has no worker yet."""
+        """Attempts up to this number are cancelled if they have no worker yet."""
         self._tasks: set[asyncio.Task[Any]] = set()
         self._waiting = Waiting()
         self._drawn: tuple[str, ...] = ()
@@ -53,7 +53,7 @@ class Session(Telling):
 
     @property
     def _worker(self) -> Worker | None:
-        """The worker of the run that is shown; None once that has ended."""
+        """The worker of the run on screen; None once it has ended."""
         return None if self._shown is None or self._shown.over else self._shown.worker
 
     @property
@@ -61,10 +61,10 @@ class Session(Telling):
         return self._loading or self._shown
 
     async def begin(self, wanted: Wanted | None = None) -> None:
-        """Begins a new run in a new worker; the old one stays until this one is built, so that an error leaves it on screen.
+        """Starts a new run in a new worker; the old run stays on screen until the new one is built, so that an error does not remove it.
 
         Args:
-            wanted: What is wanted of it; None for what its parameters declare.
+            wanted: The options of the run; None for the defaults of the model.
 
         Raises:
             ModelFileError: If the file cannot be read.
@@ -78,7 +78,7 @@ class Session(Telling):
             self._attempt = start.attempt
             attempt = Attempt(start, await self._workers.launch())
             self._keep(Attendant(attempt.worker, start, self).serve())
-            if start.attempt <= self._given_up:  # stopped meanwhile
+            if start.attempt <= self._given_up:  # stopped in the meantime
                 self._asked.add(attempt.worker)
                 attempt.worker.kill()
                 return
@@ -89,7 +89,7 @@ class Session(Telling):
             self._changed(facts=True)
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
-        """Takes what a worker says."""
+        """Handles a message from a worker."""
         if isinstance(message, Reply):
             self._waiting.take(message)
             return
@@ -139,11 +139,11 @@ class Session(Telling):
         self._tell_watchers(state)
 
     def _attempt_of(self, worker: Worker) -> Attempt | None:
-        """Returns the attempt whose worker this is; None where another one has taken its place."""
+        """Returns the attempt whose worker this is; None if a newer attempt has replaced it."""
         return next((one for one in (self._shown, self._loading) if one is not None and one.worker is worker), None)
 
     def _swap(self, attempt: Attempt, facts: Facts) -> None:
-        """Shows a run that has been built, in place of the one before."""
+        """Shows a newly built run in place of the previous one."""
         before, worker = self._shown, self._worker
         self._shown, self._loading = attempt, None
         useless = before.start.record if before is not None and never_begun(self.state, self.log) else None
@@ -160,7 +160,7 @@ class Session(Telling):
         self._changed(facts=True)
 
     def take_end(self, worker: Worker, ending: str) -> None:
-        """Takes how a worker ended, and tells it; nothing where it was in good order."""
+        """Handles the end of a worker and reports it; `ending` is empty if it ended normally."""
         self._waiting.end(worker)
         asked = worker in self._asked
         self._asked.discard(worker)
@@ -187,11 +187,11 @@ class Session(Telling):
 
     @property
     def is_over(self) -> bool:
-        """Whether it has no run that can be told anything, and none is on its way."""
+        """Whether no run accepts commands and none is being built."""
         return not self.alive and self._loading is None
 
     def halt(self, worker: Worker, name: str) -> None:
-        """Takes note that a signal of this name has stopped a worker, so that it stands still; no name: that it goes on."""
+        """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
         if self._attempt_of(worker) is None:
             return
         self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
@@ -203,17 +203,17 @@ class Session(Telling):
         self._changed(facts=True)
 
     def busy(self, worker: Worker) -> bool:
-        """Tells whether a worker is to be saying something."""
+        """Returns whether a worker is expected to send messages."""
         loading = self._loading is not None and worker is self._loading.worker
         return loading or (worker is self._worker and (self.going_on or self._waiting.on(worker)))
 
     @property
     def going_on(self) -> bool:
-        """Whether its run goes on."""
+        """Whether the current run is going on."""
         return self.state is not None and self.state.status == "running"
 
     def _leave(self, worker: Worker, useless: str | None = None) -> None:
-        """Ends a worker, without waiting for it, and then deletes a recording that is of no use."""
+        """Ends a worker in the background; then deletes its recording if that is useless."""
         self._asked.add(worker)
 
         async def end() -> None:
@@ -224,14 +224,14 @@ class Session(Telling):
         self._keep(end())
 
     async def stop(self) -> None:
-        """Ends the workers, whatever they do; at the latest after two seconds they are gone."""
-        self._given_up = self._attempt  # also one that has no worker yet
+        """Ends the workers, whatever they are doing; after at most two seconds they are gone."""
+        self._given_up = self._attempt  # including an attempt that has no worker yet
         workers = [one.worker for one in (self._shown, self._loading) if one is not None and not one.over]
         self._asked.update(workers)
         await asyncio.gather(*(worker.stop() for worker in workers))
 
     async def close(self) -> None:
-        """Ends everything."""
+        """Stops the workers, informs the watchers, and cancels all tasks."""
         await self.stop()
         self._tell_watchers(None)
         tasks = list(self._tasks)
@@ -241,14 +241,14 @@ class Session(Telling):
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
-    # -- what is said to it
+    # -- commands and questions
 
     async def carry_out(self, said: Any, who: str = "") -> Reply:
-        """Does what somebody wants, or answers what is asked; what comes of it is told, errors too.
+        """Carries out a command or answers a question; the reply holds the result or the error.
 
         Args:
             said: One of `protocol.Anything`.
-            who: Who says it, as others are told.
+            who: The name of the user, as other users see it.
         """
         if not isinstance(said, (*say.QUESTIONS, *say.LOOKS)) and who and who != self._controlled_by:
             self._controlled_by = who
@@ -268,21 +268,21 @@ class Session(Telling):
                     self._note(said)
                     reply = await self._ask(said)
                     if isinstance(said, say.Breakpoints) and reply.error is not None and self.breakpoints == said.productions:
-                        self._note(say.Breakpoints(productions=before))  # there is a name among them that the run does not know
+                        self._note(say.Breakpoints(productions=before))  # the run does not know one of the names
                     return reply
         except (Actr3dError, OSError) as error:
             return Reply(id=0, error=str(error))
         return Reply(id=0)
 
     async def _begin_again(self, said: say.Restart) -> None:
-        """Begins as the newest run was begun, but for what is said."""
+        """Starts a run with the settings and seed of the newest run, except where the command gives others."""
         newest = self._newest
         settings = said.settings if said.settings is not None or newest is None else newest.start.settings
         seed = said.seed if said.seed is not None or said.new_seed or newest is None else newest.start.seed
         await self.begin(Wanted(settings=settings or {}, seed=seed, record=said.record, run=said.run))
 
     def _note(self, said: Any) -> None:
-        """Keeps what holds for later runs, too."""
+        """Stores what also holds for later runs: speed and breakpoints."""
         if isinstance(said, say.Speed):
             self.speed, self.real_time = said.factor, False
         elif isinstance(said, say.Breakpoints):
@@ -290,9 +290,9 @@ class Session(Telling):
             self._changed(facts=True)
 
     async def _ask(self, said: Any) -> Reply:
-        """Tells it to the run that is meant: what is said of what is shown to that, any other command to the newest.
+        """Sends a command to the run that it is meant for: questions and moves in time to the run on screen, all others to the newest run.
 
-        Whoever has begun a new run means that by what is said next, though the one before is on screen until it is built.
+        After a user has started a new run, further commands go to it, although the previous run is on screen until the new one is built.
         """
         if isinstance(said, (*say.QUESTIONS, say.Back, say.Seek)):
             return await self._waiting.ask(self._worker, said)
@@ -300,13 +300,13 @@ class Session(Telling):
             loading = self._loading
         if loading is None:
             return await self._waiting.ask(self._worker, said)
-        if isinstance(said, say.Pause) and self._worker is not None:  # both are to stand
+        if isinstance(said, say.Pause) and self._worker is not None:  # both runs must pause
             self._waiting.tell(loading.worker, said)
             return await self._waiting.ask(self._worker, said)
         return await self._waiting.ask(loading.worker, said)
 
     def draw(self, kinds: tuple[str, ...]) -> None:
-        """Lets the states of this run and later ones tell what overlays of these kinds show."""
+        """Sets for which kinds of overlays the states of this run and later runs contain data."""
         if kinds != self._drawn:
             self._drawn = kinds
             if self._worker is not None:

@@ -1,4 +1,4 @@
-"""All sessions of a server, and the jobs that need a worker for a moment only."""
+"""Manages all sessions of a server, and short jobs that need a worker."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
 MOST = 8
-"""So many sessions there may be at once; each has a worker."""
+"""Maximum number of sessions; each has a worker."""
 CHECK_TIME = 10.0
-"""So long a model may take to be loaded for a check [s]."""
+"""Maximum time for loading a model for a check [s]."""
 
 
 class SessionError(Actr3dError):
-    """A session cannot be begun, or is not there."""
+    """A session cannot be started or does not exist."""
 
     status = 409
 
@@ -39,18 +39,18 @@ class NoSuchSessionError(SessionError):
 
 
 class UntrustedError(SessionError):
-    """Code of a recording would be run that this installation did not make, and the user has not said that it may."""
+    """Code of a recording that this installation did not make would be run without the user's permission."""
 
     status = 403
 
 
 class Sessions:
-    """Begins and ends sessions.
+    """Starts and ends sessions.
 
     Args:
-        folder: The models.
-        recordings: Where runs are recorded.
-        workers: Who runs them.
+        folder: The folder of the models.
+        recordings: The folder of the recordings.
+        workers: The pool that starts workers.
     """
 
     def __init__(self, folder: ModelFolder, recordings: Recordings, workers: Workers) -> None:
@@ -67,21 +67,21 @@ class Sessions:
         self._reopening = asyncio.Lock()
 
     def all(self) -> list[Session]:
-        """Returns all sessions, the oldest first."""
+        """Returns all sessions, oldest first."""
         return list(self._sessions.values())
 
     def get(self, name: str) -> Session:
         """Returns a session.
 
         Raises:
-            NoSuchSessionError: If there is none of that name.
+            NoSuchSessionError: If there is no session of that name.
         """
         if name not in self._sessions:
             raise NoSuchSessionError("there is no such session")
         return self._sessions[name]
 
     def writing(self) -> dict[str, str]:
-        """Returns by their names the recordings that runs go on writing, and their sessions."""
+        """Returns the recordings that runs are still writing, with the names of their sessions."""
         return {
             Path(session.start.record).stem: session.name
             for session in self.all()
@@ -89,22 +89,22 @@ class Sessions:
         }
 
     def view(self, name: str) -> SceneView | None:
-        """Returns the 3D view of a session, once there is something to see."""
+        """Returns the 3D view of a session; None until there is something to show."""
         view = self._views.get(name)
         return view if view is not None and view.ready.is_set() else None
 
     async def open(
         self, model: str, settings: dict[str, Any], *, seed: int | None, record: bool, run: bool, real_time: bool = False
     ) -> Session:
-        """Begins a session with a model file.
+        """Starts a session with a model file.
 
         Args:
-            model: The file, as pages call it.
+            model: The path of the file as pages show it.
             settings: Values of parameters.
-            seed: None for a new one.
+            seed: None for a new random seed.
             record: Whether the run is recorded.
-            run: Whether it goes on at once.
-            real_time: Whether a run with a body goes at real time, until a speed is chosen; else it goes as fast as it can.
+            run: Whether the run starts going at once, instead of paused.
+            real_time: Whether a run with a body goes in real time until a speed is chosen; otherwise it goes as fast as possible.
 
         Raises:
             Actr3dError: If there is no such file, or there are too many sessions.
@@ -115,7 +115,7 @@ class Sessions:
         return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run), real_time=real_time)
 
     async def beginning(self, recording: str) -> Beginning:
-        """Returns with what a recorded run began; nothing of it is run.
+        """Returns what a recorded run began with; its code is not executed.
 
         Raises:
             Actr3dError: If there is no such recording, or it cannot be read.
@@ -125,14 +125,14 @@ class Sessions:
             return parsed(made.read())
 
     async def trusted(self, recording: str, trust: bool) -> Beginning:
-        """Returns with what a recorded run began, if its code may be run.
+        """Returns what a recorded run began with, if its code may be run.
 
         Args:
-            recording: Its name.
-            trust: Whether the user has said that code may be run that this installation has not recorded itself.
+            recording: The name of the recording.
+            trust: Whether the user permits running code that this installation has not recorded itself.
 
         Raises:
-            UntrustedError: If it may not.
+            UntrustedError: If the code may not be run.
             Actr3dError: If there is no such recording, or it cannot be read.
             OSError: If no worker can be started.
         """
@@ -145,18 +145,18 @@ class Sessions:
         return began
 
     async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False) -> Session:
-        """Begins a session that lives through a recorded run again, with everything that users did; or returns the one that does already.
+        """Starts a session that repeats a recorded run with all commands of users; or returns the session that already does.
 
         Args:
-            recording: Its name.
-            trust: As of `trusted`.
-            real_time: As of `open`.
+            recording: The name of the recording.
+            trust: As in `trusted`.
+            real_time: As in `open`.
 
         Raises:
             Actr3dError: If there is no such recording, or there are too many sessions.
             OSError: If no worker can be started.
         """
-        async with self._reopening:  # who opens it twice at once gets one session
+        async with self._reopening:  # two simultaneous requests get the same session
             where = self.recordings.path(recording)
             open_already = [one for one in self.all() if one.recorded == where and not one.is_over]
             if open_already:
@@ -164,15 +164,15 @@ class Sessions:
             began = await self.trusted(recording, trust)
             path = Path(began.file).resolve()
             if not path.is_relative_to(self.folder.root):
-                path = self.folder.root / path.name  # a new run is one of the user's own model of that name, if there is one
+                path = self.folder.root / path.name  # a new run uses the user's own model of that name, if there is one
             shown = path.relative_to(self.folder.root).as_posix()
             relived = Relived(file=began.file, source=began.source, commands=began.commands, helpers=began.helpers, recording=where)
             wanted = Wanted(settings=began.parameters, seed=began.seed, record=False, relived=relived)
             return await self._begun(path, shown, wanted, real_time=real_time)
 
     async def _begun(self, path: Path, model: str, wanted: Wanted, *, real_time: bool = False) -> Session:
-        """Returns a new session that has begun a run; where that cannot be begun, there is no session either."""
-        async with self._opening:  # making room takes a moment, in which nobody else takes it
+        """Returns a new session that has started a run; if the run cannot be started, the session is closed again."""
+        async with self._opening:  # making room takes a moment, in which no other session may take it
             session = await self._new(path, model)
         session.real_time = real_time
         try:
@@ -185,7 +185,7 @@ class Sessions:
 
     async def _new(self, path: Path, model: str) -> Session:
         if len(self._sessions) >= MOST:
-            # Whoever has tried many models has left many behind: their runs are recorded, and can be opened again.
+            # Users who try many models leave sessions behind: their runs are recorded and can be opened again.
             idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
             if not idle:
                 raise SessionError(f"there are {MOST} sessions already, and each is watched or goes on: close a page, or stop a run")
@@ -201,7 +201,7 @@ class Sessions:
         """Ends a session.
 
         Raises:
-            NoSuchSessionError: If there is none of that name.
+            NoSuchSessionError: If there is no session of that name.
         """
         session = self.get(name)
         del self._sessions[name], self._views[name]
@@ -212,18 +212,18 @@ class Sessions:
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
     def saved(self, path: Path) -> None:
-        """Takes note that a file has another text now."""
+        """Informs the sessions that a file may have a new text."""
         for session in self.all():
             session.file_changed(path)
 
     def renamed(self, before: Path, path: Path, model: str) -> None:
-        """Takes note that a model file has another name now: its sessions go on with it."""
+        """Informs the sessions of a model file that it has been renamed: they continue with the new name."""
         for session in self.all():
             if session.path == before:
                 session.renamed(path, model)
 
     async def check(self, path: Path, text: str) -> list[dict[str, Any]]:
-        """Loads a model in a worker, and builds what it describes, without running it; returns what is complained of.
+        """Loads a model in a worker and builds what it describes, without running it; returns the problems found.
 
         Raises:
             OSError: If no worker can be started.

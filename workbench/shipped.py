@@ -1,4 +1,4 @@
-"""Where the models are: the folder that was named, `models` in the present one, or one at home with copies of the shipped ones."""
+"""Finds the models folder: the one named by the user, `models` in the current folder, or one at home with copies of the shipped models."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from pathlib import Path
 import actr3d
 
 HOME = "actr3d-models"
-"""The name of the folder in the user's home."""
+"""The name of the models folder in the user's home folder."""
 
 
 def shipped() -> Path:
-    """Returns the folder of the models that come with the library."""
+    """Returns the folder of the models that are shipped with the library."""
     package = Path(actr3d.__file__).parent
     inside = package / "models"
     return inside if inside.is_dir() else package.parent / "models"
 
 
 def models_folder(named: Path | None, present: Path, home: Path) -> Path:
-    """Returns the folder to work in, which is made, and filled, where there is none.
+    """Returns the folder to work in; creates and fills it if there is none.
 
     Args:
-        named: What the user named, if anything.
-        present: The present folder.
-        home: The user's.
+        named: The folder that the user named, if any.
+        present: The current folder.
+        home: The user's home folder.
 
     Raises:
-        OSError: If it cannot be made or read.
+        OSError: If the folder cannot be created or read.
     """
     if named is not None:
         named.mkdir(parents=True, exist_ok=True)
@@ -38,7 +38,7 @@ def models_folder(named: Path | None, present: Path, home: Path) -> Path:
         return present / "models"
     folder = home / HOME
     if not folder.exists():
-        # The bytes alone: the user's own copies may be written, also where what was installed may not.
+        # Copies only the contents: the user's copies must be writable even if the installed files are not.
         shutil.copytree(shipped(), folder, ignore=shutil.ignore_patterns("__pycache__", ".*"), copy_function=shutil.copyfile)
     return folder
 
@@ -50,7 +50,7 @@ def manual() -> Path | None:
 
 
 def static() -> Path:
-    """Returns the folder of the page: inside the package where it is installed, beside it in a copy of the repository."""
+    """Returns the folder of the page: inside the package if installed, beside it in a copy of the repository."""
     package = Path(__file__).parent
     inside = package / "static"
     return inside if inside.is_dir() else package.parent / "static"

@@ -1,4 +1,4 @@
-"""What of a world is seen at first: the body that moves, where it faces, and what stands around it."""
+"""Determines what the 3D view shows first: the moving body, its heading, and the objects around it."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from mujoco import MjData, MjModel, mjtGeom
 
 NEAR = 12.0
-"""What is farther from the body than this is no part of the stage [m]."""
+"""Objects farther from the body than this are not part of the stage [m]."""
 LEAST = 0.8
-"""The stage reaches at least so far around the body [m]."""
+"""Minimum extent of the stage around the body [m]."""
 SMALLEST = 0.3
-"""Bodies that are lower are shown as if they were so high [m]."""
+"""Bodies smaller than this are framed as if they had this size [m]."""
 MOST_CORNERS = 400
-"""Of a stage with more corners, browsers are told those of the box around it."""
+"""Above this number of corners, browsers get only the corners of the bounding box."""
 
 
 class Stage:
-    """The body and the things around it, as a run begins.
+    """Holds the body and the objects around it at the start of a run.
 
     Args:
         model: The compiled scene.
@@ -31,7 +31,7 @@ class Stage:
 
         moving = np.flatnonzero(model.body_dofnum > 0)
         self.body = int(moving[0]) if moving.size else 0
-        """The first body that moves, by its number."""
+        """The number of the first body that moves."""
         data = MjData(model)
         mujoco.mj_kinematics(model, data)
         base = self.base(data)
@@ -41,10 +41,10 @@ class Stage:
             if np.linalg.norm((np.clip(base, low, high) - base)[:2]) <= NEAR:
                 boxes.append((np.maximum(low, base - NEAR), np.minimum(high, base + NEAR)))
         self.corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
-        """Those of the boxes around all that stands there `(n, 3)` [m]."""
+        """The corners of the bounding boxes of all objects on the stage `(n, 3)` [m]."""
         self.low, self.high = self.corners.min(axis=0), self.corners.max(axis=0)
         self.ground = _ground(model)
-        """How high the ground lies [m]."""
+        """The height of the ground [m]."""
         own = [box for box, body in zip(_boxes(model, data), _bodies(model), strict=True) if self._of_body(model, body)]
         self.own = [get_body_name(model, body) for body in range(1, model.nbody) if self._of_body(model, body)]
         """The names of the body and its parts in viser's tree."""
@@ -52,26 +52,26 @@ class Stage:
         below = np.min([low for low, _ in own] or [base - least], axis=0)
         above = np.max([high for _, high in own] or [base + least], axis=0)
         self.middle = (below + above) / 2 - base
-        """From where the body is to its middle, as the run begins [m]."""
+        """The offset from the body's origin to its middle at the start of the run [m]."""
         self.height = float(max(SMALLEST, *(above - below)))
-        """How large the body is as the run begins [m]."""
+        """The size of the body at the start of the run [m]."""
         self.start = base
-        """Where the body is as the run begins."""
+        """The position of the body at the start of the run."""
         away = ((self.low + self.high) / 2 - base)[:2]
         away = away if np.linalg.norm(away) > LEAST else data.xmat[self.body].reshape(3, 3)[:2, 0]
         size = np.linalg.norm(away)
         self.ahead = np.array((*(away / size), 0.0)) if size > 1e-6 else np.array((1.0, 0.0, 0.0))
-        """Horizontally, from the body to the middle of what stands around it; where that is about the same place, where it faces."""
+        """Horizontal unit vector from the body to the middle of the objects around it; if that is at the body, the body's heading."""
 
     def base(self, data: MjData) -> Any:
-        """Returns where the body is."""
+        """Returns the position of the body."""
         return np.array(data.xpos[self.body])
 
     def told(self, grounds: list[str]) -> dict[str, Any]:
-        """Returns what browsers need to place their cameras.
+        """Returns the data with which browsers place their cameras.
 
         Args:
-            grounds: The names of the level planes in viser's tree.
+            grounds: The names of the ground planes in viser's tree.
         """
         around = itertools.product(*zip(self.low, self.high, strict=True))
         corners = self.corners if len(self.corners) <= MOST_CORNERS else np.array(list(around))
@@ -87,28 +87,28 @@ class Stage:
         return {**told, "height": self.height, "ground": self.ground, "grounds": grounds, "own": self.own}
 
     def _of_body(self, model: MjModel, body: int) -> bool:
-        """Returns whether a MuJoCo body is the body of the stage or a part of it; where none moves, all are."""
+        """Returns whether a MuJoCo body belongs to the body of the stage; if no body moves, all do."""
         return self.body == 0 or bool(model.body_rootid[body] == model.body_rootid[self.body])
 
 
 def _ground(model: MjModel) -> float:
-    """Returns how high the highest level plane of the world lies [m]; 0 where there is none."""
+    """Returns the height of the highest plane of the world [m]; 0 if there is none."""
     heights = model.geom_pos[(model.geom_type == mjtGeom.mjGEOM_PLANE) & (model.geom_bodyid == 0), 2]
     return float(heights.max()) if heights.size else 0.0
 
 
 def _seen(model: MjModel) -> Any:
-    """Returns the numbers of the geoms that are seen, except endless ground."""
+    """Returns the numbers of the visible geoms except planes."""
     return np.flatnonzero((model.geom_type != mjtGeom.mjGEOM_PLANE) & (model.geom_rgba[:, 3] > 0))
 
 
 def _bodies(model: MjModel) -> list[int]:
-    """Returns the MuJoCo bodies of the geoms that are seen."""
+    """Returns the MuJoCo bodies of the visible geoms."""
     return model.geom_bodyid[_seen(model)].tolist()
 
 
 def _boxes(model: MjModel, data: MjData) -> list[tuple[Any, Any]]:
-    """Returns the lowest and the highest corner of each geom that is seen."""
+    """Returns the lowest and the highest corner of the bounding box of each visible geom."""
     found: list[tuple[Any, Any]] = []
     for number in _seen(model):
         turned = data.geom_xmat[number].reshape(3, 3)

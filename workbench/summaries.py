@@ -1,4 +1,4 @@
-"""What a list tells of a recording, as a worker reads it from the file."""
+"""Reads the summary of a recording that a list shows; this happens in a worker."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from workbench.loader import Parameter, listing_of
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
 UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, *_WRONG)
-"""What reading a file raises that is no whole recording of this form."""
+"""The exceptions that reading an invalid or incomplete recording may raise."""
 Event = tuple[int, str, str, msgspec.Raw]
-"""When [us], who, what, and the particulars as JSON."""
+"""Time [us], source, kind, and data as JSON."""
 EVENTS = msgspec.json.Decoder(list[Event])
-"""Reads a row of events, but not their particulars."""
+"""Decodes a row of events, but not their data."""
 MOST_TEXT = 200_000
-"""No summary is longer [bytes of JSON]."""
+"""Maximum size of a summary [bytes of JSON]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Summary:
-    """What a list tells of a recording."""
+    """Holds what a list shows of a recording."""
 
     id: str
     model: str = ""
@@ -38,33 +38,33 @@ class Summary:
     seed: Any = None
     parameters: dict[str, Any] = field(default_factory=dict[str, Any])
     different: tuple[str, ...] = ()
-    """Which of these are not what the model's text has as defaults."""
+    """The parameters that differ from the defaults in the model's text."""
     branched: float | None = None
-    """Of a branch: where the past of its run was changed [s]."""
+    """For a branch: the time at which the past of its run was changed [s]."""
     ended: str | None = None
-    """How it ended; None where it was broken off, or goes on."""
+    """How the run ended; None if it was broken off, or is still going on."""
     failed: str | None = None
-    """What the model raised, where it was over for that."""
+    """The error that ended the model, if any."""
     result: dict[str, Any] | None = None
-    """What was measured of it, if anything was."""
+    """The result that was measured, if any."""
     time: float = 0.0
-    """How long it is [s of simulated time]."""
+    """Duration of the run [s of simulated time]."""
     events: int = 0
     states: int = 0
-    """How many there are of MuJoCo; none of a program that makes no simulation."""
+    """Number of MuJoCo states; 0 for a program without a simulation."""
     size: int
-    """With what is written beside it while a run goes on [bytes]."""
+    """Size including companion files [bytes]."""
     made: float
-    """When it began, as its name tells; else when it was last written [s since 1970]."""
+    """When the run began according to the file name, or else when the file was last written [s since 1970]."""
     problem: str | None = None
-    """Why it cannot be read, where it cannot."""
+    """Why the recording cannot be read; None if it can."""
 
 
 def summary_json(path: Path) -> bytes:
-    """Returns the `Summary` of a file as JSON; of one that is no recording, with the reason.
+    """Returns the `Summary` of a file as JSON; if the file is not a recording, the summary gives the reason.
 
     Raises:
-        RecordingError: If it is too long.
+        RecordingError: If the summary is too long.
     """
     size = size_of(path)
     try:
@@ -80,14 +80,14 @@ def summary_json(path: Path) -> bytes:
 
 
 def unreadable(path: Path, reason: str) -> Summary:
-    """Returns what is told of a file that cannot be read."""
+    """Returns the summary of a file that cannot be read."""
     return Summary(id=path.stem, size=size_of(path), made=begun(path), problem=reason.removeprefix("it is ")[:2_000])
 
 
 def _read(recorded: Recorded, size: int) -> Summary:
     facts, path = recorded.facts, recorded.path
     ended: dict[str, Any] | None = facts.get("ended")
-    last = [event for text in recorded.last_events() for event in EVENTS.decode(text)]  # what was measured is told at the very end
+    last = [event for text in recorded.last_events() for event in EVENTS.decode(text)]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
     return Summary(
@@ -115,12 +115,12 @@ def _result(events: list[Event]) -> dict[str, Any] | None:
 
 
 def _different(parameters: dict[str, Any], source: str) -> tuple[str, ...]:
-    """Returns which parameters are not what the text has as defaults; also those whose defaults the text does not tell."""
+    """Returns the parameters that differ from the defaults in the text, or whose defaults the text does not show."""
     known = _parameters(source) if parameters else {}
     return tuple(name for name, value in parameters.items() if name not in known or not known[name].known or known[name].default != value)
 
 
 @lru_cache(maxsize=64)
 def _parameters(source: str) -> dict[str, Parameter]:
-    """Returns the parameters of a text; many recordings are of the same."""
+    """Returns the parameters of a text; cached, as many recordings have the same text."""
     return {parameter.name: parameter for parameter in listing_of(source).parameters}

@@ -1,4 +1,4 @@
-"""What pages are told of a session, and who watches it."""
+"""Defines the part of a session that pages see: its state, its notices, and who watches it."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ Watcher = Callable[[Facts | State | Look | None], None]
 
 
 class Telling:
-    """The part of a session that is shown: what it is like, and who watches it.
+    """Holds what is shown of a session, and who watches it.
 
     Args:
-        name: What it is called.
+        name: The name of the session.
         path: The model file.
-        shown_path: The model as pages call it.
+        shown_path: The model's path as pages show it.
     """
 
     def __init__(self, name: str, path: Path, shown_path: str) -> None:
@@ -34,7 +34,7 @@ class Telling:
         self.model = shown_path
         self.feeds: list[Feed] = []
         self.watchers: list[Watcher] = []
-        """Are told of the facts of each new run, of each state, of another look, and by None of the end."""
+        """Called with the facts of each new run, each state, each change of the view settings, and None at the end."""
         self.look = Look()
         self.run: int = 0
         self.epoch: int = 0
@@ -46,42 +46,45 @@ class Telling:
         self.facts: Facts | None = None
         self.breakpoints: tuple[str, ...] = ()
         self.born = time.time()
-        """When it began [s since 1970]: tells it from sessions of that name of an earlier server."""
+        """When the session began [s since 1970]: distinguishes it from a session of the same name of an earlier server."""
         self.branched: Branched | None = None
-        """What was kept when a user changed something in the past of the present run, the latest time."""
+        """What was kept when a user last changed something in the past of the current run."""
         self.has_scene = False
-        """Whether there is a 3D view to look at."""
+        """Whether there is a 3D view."""
         self._shown: Attempt | None = None
-        """Whose run is on screen, also once its worker has ended."""
+        """The attempt whose run is on screen, even after its worker has ended."""
         self._loading: Attempt | None = None
-        """Whose run is being built."""
+        """The attempt whose run is being built."""
         self._attempt = 0
-        """The number of the latest."""
+        """The number of the latest attempt."""
         self._notice_number = 0
         self._cuts: deque[tuple[int, int]] = deque(maxlen=MOST_NOTICES)
-        """Where the run went another way: before which notice, and after how many events. Notices between are of a past that is gone."""
+        """Where the run was cut and continued differently: (number of the next notice, number of events kept).
+
+        Earlier notices about later events belong to a past that no longer exists.
+        """
         self._controlled_by = ""
         self._ending = ""
         self._stuck: dict[str, Any] | None = None
 
     @property
     def start(self) -> Start | None:
-        """What the present run began with."""
+        """What the current run was started with."""
         return None if self._shown is None else self._shown.start
 
     @property
     def recorded(self) -> Path | None:
-        """The recording of the run that is shown, or is on its way, where that is an earlier run; None for a new one."""
+        """The recording that the run on screen, or the one being built, repeats; None for a new run."""
         start = self._shown.start if self._shown is not None else None if self._loading is None else self._loading.start
         return None if start is None or start.recorded is None else Path(start.recorded)
 
     @property
     def alive(self) -> bool:
-        """Whether the present run can still be told something."""
+        """Whether the current run still accepts commands."""
         return self._shown is not None and not self._shown.over
 
     def _shown_file(self, file: str | None, start: Start | None = None) -> str | None:
-        """Returns a file of the models folder as pages call it; the model itself by its present name."""
+        """Returns the path of a file in the models folder as pages show it; for the model itself, its current name."""
         if file is None or file == str(self.path) or (start is not None and file == start.path):
             return file and self.model
         root = self.path.parents[self.model.count("/")]
@@ -89,7 +92,7 @@ class Telling:
         return Path(file).relative_to(root).as_posix() if inside else file
 
     def facts_json(self) -> bytes:
-        """Returns what is known of the session and its run."""
+        """Returns the facts about the session and its run as JSON."""
         facts, start = self.facts, self.start
         told: dict[str, Any] = {
             **self.summary(),
@@ -117,7 +120,7 @@ class Telling:
         return msgspec.json.encode(told)
 
     def summary(self) -> dict[str, Any]:
-        """Returns what a list of sessions tells of it."""
+        """Returns the entry of this session in the list of sessions."""
         return {
             "recorded": None if self.recorded is None else self.recorded.stem,
             "id": self.name,
@@ -132,7 +135,7 @@ class Telling:
         }
 
     def state_json(self) -> bytes:
-        """Returns the newest state."""
+        """Returns the newest state as JSON."""
         state = self.state
         if state is None:
             return b"null"
@@ -141,26 +144,26 @@ class Telling:
 
     @property
     def source(self) -> str | None:
-        """The text of the run that is shown, else of the one that is being built; None where there is neither."""
+        """The model text of the run on screen, or else of the one being built; None if there is neither."""
         attempt = self._shown or self._loading
         return None if attempt is None else attempt.start.source
 
     # -- who watches
 
     def join(self, name: str) -> Feed:
-        """Lets one more browser watch."""
+        """Adds a browser that watches."""
         feed = Feed(self, name)
         self.feeds.append(feed)
         self._changed(facts=True)
         return feed
 
     def part(self, feed: Feed) -> None:
-        """Takes note that a browser is gone."""
+        """Removes a browser that has left."""
         self.feeds.remove(feed)
         self._changed(facts=True)
 
     def tell(self, notice: Notice, start: Start | None = None) -> None:
-        """Tells all who watch something; with the attempt that it is about, and the version of the model's text then."""
+        """Sends a notice to all who watch, with the attempt it is about and the version of the model's text at that time."""
         told: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         told |= {"file": self._shown_file(notice.file, start), "line": notice.line}
         is_shown = self._shown is not None and (self._attempt if start is None else start.attempt) == self._shown.start.attempt
@@ -171,17 +174,17 @@ class Telling:
         self._changed()
 
     def scene_ready(self) -> None:
-        """Takes note that there is a 3D view now."""
+        """Records that the 3D view is ready."""
         self.has_scene = True
         self._changed(facts=True)
 
     def file_changed(self, path: Path) -> None:
-        """Takes note that a file may have another text now: the run is stale where it was made of that."""
+        """Informs pages that a file may have changed: a run that was made from it is stale."""
         if path == self.path or (self._shown is not None and self._shown.texts.has_helper(path)):
             self._changed(facts=True)
 
     def renamed(self, path: Path, model: str) -> None:
-        """Takes note that the model's file has another name now."""
+        """Records the new name of the model's file."""
         self.path, self.model = path, model
         self._changed(facts=True)
 
@@ -196,5 +199,5 @@ class Telling:
 
 
 def _exactly(seed: int | str) -> int | str:
-    """Returns a seed as a page can read it without loss: as text where it is larger than the whole numbers that JavaScript has."""
+    """Returns a seed in a form that a page can read without loss: as text if it exceeds JavaScript's exact integers."""
     return seed if isinstance(seed, int) and abs(seed) < 2**53 else str(seed)

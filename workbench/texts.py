@@ -1,4 +1,4 @@
-"""The texts that a run was made of: the model's own and those of its helper modules; and whether the files hold them still."""
+"""Remembers the texts that a run was made from, those of the model and its helper modules, to detect whether the files have changed."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from actr3d.errors import Actr3dError
 from workbench.worker.messages import Loaded, Start, digest_of
 
 MOST = 100
-"""No more helper modules are watched."""
+"""Maximum number of helper modules that are watched."""
 
 
 class Texts:
-    """Knows what a run was made of.
+    """Holds the versions of the texts that a run was made from.
 
     Args:
-        start: What the run began with. Helper modules that it names are of an earlier run, which it lives through again.
+        start: What the run began with. Its helper modules, if any, are those of the earlier run that it repeats.
     """
 
     def __init__(self, start: Start) -> None:
@@ -26,23 +26,23 @@ class Texts:
             self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
 
     def take(self, loaded: Loaded) -> None:
-        """Takes note of a helper module that the run has loaded."""
+        """Records a helper module that the run has loaded."""
         path = Path(loaded.file).resolve()
         if path in self._helpers or len(self._helpers) < MOST:
             self._helpers[path] = loaded.digest
 
     def has_helper(self, path: Path) -> bool:
-        """Tells whether a file is one of the helper modules."""
+        """Returns whether a file is one of the helper modules."""
         return path.resolve() in self._helpers
 
     def differ(self, path: Path) -> bool:
-        """Tells whether any of the files holds another text now.
+        """Returns whether any of the files has changed.
 
         Args:
-            path: Where the model is now.
+            path: The current path of the model.
         """
         try:
-            # A file that is none may never come to its end.
+            # Reading something other than a regular file may never end.
             if not all(each.is_file() for each in (path, *self._helpers)):
                 return True
             return read_source(path) != self._source or any(digest_of(read_source(path)) != then for path, then in self._helpers.items())

@@ -1,4 +1,4 @@
-"""The bridge to viser: its page and its websocket, on our port and behind our login."""
+"""Connects browsers to viser: its page and its websocket are served on the workbench's port, behind its login."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ POLICY = (
     "connect-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
     "frame-ancestors 'self'"
 )
-"""What viser's page may load: without it a foreign address in its own address line would make it obey a foreign server."""
+"""What viser's page may load: without this policy, a server address in the page's URL could give another server control of it."""
 MOST_VIEWS = 32
-"""So many 3D views may be open at once."""
+"""Maximum number of open 3D views."""
 
 
 ADDED = (
     '<script src="/static/framed.js"></script><script type="module" src="/static/scene/view.js"></script>'
     '<link rel="stylesheet" href="/static/scene/view.css">'
 )
-"""What is put into viser's page."""
+"""HTML that is inserted into viser's page."""
 
 
 @cache
 def page() -> str:
-    """Returns viser's page, which takes `?panel=hidden` and `?darkMode`."""
+    """Returns viser's page, which understands `?panel=hidden` and `?darkMode`."""
     spec = find_spec("viser")
     assert spec is not None
     assert spec.origin is not None
@@ -41,17 +41,17 @@ def page() -> str:
 
 
 class Bridge:
-    """Carries websockets of browsers to viser's own server and back."""
+    """Forwards websocket messages between browsers and viser's server."""
 
     def __init__(self) -> None:
         self._open = 0
 
     async def carry(self, browser: WebSocket, view: SceneView | None) -> None:
-        """Carries one websocket, until one side is gone.
+        """Forwards messages of one websocket until one side disconnects.
 
         Args:
-            browser: The browser's, not yet accepted. With `?shadows=off` it is shown no shadows.
-            view: What it wants to see; None where there is nothing.
+            browser: The browser's websocket, not yet accepted. With `?shadows=off` it gets no shadows.
+            view: The 3D view that it requests; None if there is none.
         """
         if view is None or view.over or self._open >= MOST_VIEWS:
             await browser.close(1008)
@@ -69,7 +69,7 @@ class Bridge:
         port, headers = view.address(shadows=browser.query_params.get("shadows") != "off")
         offered = [Subprotocol(name) for name in browser.scope.get("subprotocols", [])]
         try:
-            # Only what is named here goes on: neither our cookie nor our token does.
+            # Only these headers are forwarded: neither the workbench's cookie nor its token.
             upstream = await websockets.connect(
                 f"ws://127.0.0.1:{port}",
                 subprotocols=offered or None,

@@ -1,4 +1,4 @@
-"""Viser's server: on loopback, for nobody but the bridge, and without a way out."""
+"""Starts viser's server on loopback, where only the bridge can connect and no tunnel can be opened."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from typing import Any
 import numpy as np
 
 BRIDGE_HEADER = "x-workbench-bridge"
-"""With it the bridge says that it is the bridge: any page of the user's browser could find a port on loopback."""
+"""The header with which the bridge proves its identity: any web page in the user's browser could find a port on loopback."""
 
 SHADOWS_HEADER = "x-workbench-shadows"
-"""With it the bridge says whether a browser is to be shown shadows: `on` or `off`."""
+"""The header with which the bridge says whether a browser gets shadows: `on` or `off`."""
 
 
 def start_viser(secret: str) -> Any:
-    """Starts viser's server, which lets nobody in but who knows a secret, and opens no tunnel.
+    """Starts viser's server, which admits only clients that know the secret, and opens no tunnel.
 
     Args:
-        secret: What the bridge says.
+        secret: The secret that the bridge sends.
     """
     import rich
     import viser
     from viser import _messages
 
-    rich.get_console().quiet = True  # viser prints its own address, which is not for users
+    rich.get_console().quiet = True  # viser prints its own address, which users must not open
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     inner: Any = server._websock_server
 
@@ -38,10 +38,10 @@ def start_viser(secret: str) -> Any:
             inner._client_state_from_id.pop(client.client_id, None)
             if connection is not None:
                 await connection.close(1008, "only the workbench's bridge may connect")
-            raise asyncio.CancelledError  # which ends this connection's task, and nothing else
+            raise asyncio.CancelledError  # ends only the task of this connection
 
     inner._client_connect_cb.insert(0, check)
-    # Any browser could ask for a tunnel that opens this server to the world.
+    # Any browser could ask for a tunnel that exposes this server to the internet.
     inner.unregister_handler(_messages.ShareUrlRequest)
     inner.unregister_handler(_messages.ShareUrlDisconnect)
     inner.disconnect_all_clients()
@@ -50,23 +50,23 @@ def start_viser(secret: str) -> Any:
 
 
 def tell(server: Any, name: str, value: Any) -> None:
-    """Tells every browser something of the scene that viser has no message for: it calls `scene.tell(name, value)` there.
+    """Sends every browser scene data that viser has no message for: it calls `scene.tell(name, value)` there.
 
-    It arrives with what is drawn in the same `server.atomic()`; a browser that comes later, or is slow, gets the newest of each name.
+    The data arrives with what is drawn in the same `server.atomic()`; a late or slow browser gets only the newest value of each name.
     """
     from viser import _messages
 
     message = _messages.RunJavascriptMessage(f"scene.tell({json.dumps(name)},{json.dumps(value, allow_nan=False)})")
-    # Viser keeps every message of this type for browsers that come later, for they may differ; these replace each other.
+    # Viser keeps every message of this type for later browsers, as they may differ; with one key, newer ones replace older ones.
     message.redundancy_key = lambda: f"scene {name}"
     server._websock_server.queue_message(message)
 
 
 class Moments:
-    """Numbers what is shown, so that each browser knows which moment its shapes are of.
+    """Numbers the states that are shown, so that each browser knows which state its shapes belong to.
 
-    A browser moves shapes a picture or more after their places have arrived, all at once. The number is the place of one more shape,
-    which nobody sees, and so is known just when the others have moved.
+    A browser moves all shapes at once, one or more frames after their poses have arrived. The number is the position of one more,
+    invisible shape, so a browser knows it exactly when the other shapes have moved.
 
     Args:
         server: Viser's server.
@@ -78,7 +78,7 @@ class Moments:
         self._handle: Any = None
 
     def begin(self) -> None:
-        """Adds the shape to a scene that was reset."""
+        """Adds the invisible shape after the scene was reset."""
         self._handle = self._server.scene.add_batched_meshes_simple(
             "/moment",
             vertices=np.zeros((3, 3), dtype=np.float32),
@@ -91,13 +91,13 @@ class Moments:
         )
 
     def next(self) -> int:
-        """Returns the number of what is shown from now on; to be sent with it in one `server.atomic()`."""
+        """Returns the number of the next state; must be sent with that state in one `server.atomic()`."""
         number = next(self._numbers)
         self._handle.batched_positions = np.array([[number, 0.0, 0.0]])
         return number
 
 
 def header_of(server: Any, client: Any, name: str) -> str:
-    """Returns what a header said with which a client has connected; an empty text where it is gone, or said nothing."""
+    """Returns a header that a client sent when it connected; empty if the client is gone or did not send it."""
     connection = server._websock_server._live_connections.get(client.client_id)
     return connection.request.headers.get(name, "") if connection is not None else ""

@@ -1,1 +1,1 @@
-"""A recorded run as one HTML file that needs nothing else: its 3D scene playing, and the trace beside it."""
+"""Exports a recorded run as one self-contained HTML file that plays its 3D scene beside its trace."""

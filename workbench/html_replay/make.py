@@ -1,4 +1,4 @@
-"""Makes the replay of a recording."""
+"""Creates the HTML replay of a recording."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from workbench.palette import palette
 from workbench.stage import Stage
 
 RATE = 30
-"""About so many moments of each second of simulated time are shown; between them everything moves evenly."""
+"""About this many frames per second of simulated time are stored; the page interpolates between them."""
 MOST_FRAMES = 20_000
 MOST_NUMBERS = 7_000_000
-"""Of longer runs, or those with more bodies, fewer moments are shown: no more numbers than these, 4 bytes each."""
+"""Maximum number of pose values, 4 bytes each; long runs, or those with many bodies, get fewer frames."""
 MOST_EVENTS = 50_000
-"""So many events are told; of more, the first."""
+"""Maximum number of events; only the first are included."""
 MOST_STAGED = 2_000
-"""Of more corners of what is to be seen at first, those of the box around all are told."""
+"""If the stage has more corners, those of its bounding box are used instead."""
 LONGEST = 400
-"""No more of what an event tells is shown [characters]."""
+"""Maximum length of an event's text [characters]."""
 
 
 def write_replay(path: Path, to: Path) -> None:
@@ -45,7 +45,7 @@ def write_replay(path: Path, to: Path) -> None:
     with Recorded(path) as recorded:
         facts = _facts(recorded)
         told = {**facts, "palette": palette(), "events": _events(recorded), "scene": _scene(recorded)}
-    # Nothing that a model says can end the element in which it stands.
+    # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(told).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
     page = (folder / "page.html").read_text(encoding="utf-8")
@@ -77,7 +77,7 @@ def _facts(recorded: Recorded) -> dict[str, Any]:
 
 
 def _events(recorded: Recorded) -> dict[str, Any]:
-    """Returns the events as lists of columns, the result apart, and how many are left out."""
+    """Returns the events as rows, the number of events left out, and the result separately."""
     rows: list[tuple[float, str, str, str]] = []
     result: dict[str, Any] | None = None
     for event in recorded.events():
@@ -94,7 +94,7 @@ def _plain(values: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _text(event: TraceEvent) -> str:
-    """Returns what an event tells, in a line."""
+    """Returns the content of an event as one line."""
     data = event.data
     if event.kind == "fire":
         text = str(data.get("production"))
@@ -108,7 +108,7 @@ def _text(event: TraceEvent) -> str:
 
 
 def _chunk(slots: Any) -> str:
-    """Returns a chunk as a modeller writes one."""
+    """Returns a chunk in the notation of models."""
     if not isinstance(slots, Mapping):
         return "empty" if slots is None else str(slots)
     named = cast("Mapping[str, Any]", slots)
@@ -120,7 +120,7 @@ def _word(value: Any) -> str:
 
 
 def _scene(recorded: Recorded) -> dict[str, Any] | None:
-    """Returns the shapes, and how they stand at each moment that is shown; None without a world."""
+    """Returns the shapes and their poses in each stored frame; None without a world."""
     facts = recorded.facts
     if "compiled" not in facts:
         return None
@@ -150,7 +150,7 @@ def _scene(recorded: Recorded) -> dict[str, Any] | None:
 
 
 def _stage(model: MjModel, bodies: list[int]) -> dict[str, Any]:
-    """Returns what is to be seen at first, and which of the shapes the view goes along with: the body that moves, or what is next of it."""
+    """Returns the part of the scene that is shown first, and the shape that the view follows: the moving body, or the next one after it."""
     stage = Stage(model)
     low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
     corners = stage.corners if len(stage.corners) <= MOST_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))

@@ -1,4 +1,4 @@
-"""The shapes of a compiled scene and how they move, as numbers that a page can draw: `solids.js` makes triangles of them."""
+"""Converts the shapes of a compiled scene and their poses to numbers that a page can draw; `solids.js` makes triangles of them."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from actr3d.errors import RecordingError
 from workbench.curves import INTEGRATION
 
 MOST_CORNERS = 1_500_000
-"""A scene may have no more corners and triangles than these; three 4-byte numbers each."""
+"""Maximum total number of corners and triangles in a scene; each has three 4-byte numbers."""
 CORNERS = {"box": 20, "sphere": 1_500, "ellipsoid": 1_500, "capsule": 1_600, "cylinder": 260}
-"""So many corners and triangles a page makes of a shape that has a name."""
+"""Number of corners and triangles that the page creates for each kind of primitive shape."""
 KINDS = {
     int(mjtGeom.mjGEOM_SPHERE): ("sphere", 1),
     int(mjtGeom.mjGEOM_CAPSULE): ("capsule", 2),
@@ -24,24 +24,24 @@ KINDS = {
     int(mjtGeom.mjGEOM_CYLINDER): ("cylinder", 2),
     int(mjtGeom.mjGEOM_BOX): ("box", 3),
 }
-"""What MuJoCo's shapes are called, and how many numbers tell their size [m]: radius, half length; half axes; half edges."""
+"""Names of MuJoCo's primitive shapes, with the number of size values [m]: radius, half length; half axes; half edges."""
 MESHES = (int(mjtGeom.mjGEOM_MESH), int(mjtGeom.mjGEOM_SDF))
 _COLOURS = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
 
 
 def packed(numbers: Any, kind: str) -> str:
-    """Returns numbers as text: base64 of their bytes, of a NumPy type such as `<f4`."""
+    """Returns numbers as base64 text of their bytes, in a NumPy type such as `<f4`."""
     return base64.b64encode(np.ascontiguousarray(numbers, dtype=kind).tobytes()).decode("ascii")
 
 
 class Shapes:
-    """What is drawn of a scene, one shape a MuJoCo body; level planes are left out.
+    """Collects what is drawn of a scene, one shape for each MuJoCo body, without planes.
 
     Args:
         model: The compiled scene.
 
     Raises:
-        RecordingError: If there is too much.
+        RecordingError: If the scene has too many triangles.
     """
 
     def __init__(self, model: MjModel) -> None:
@@ -49,11 +49,11 @@ class Shapes:
         self._corners = 0
         self._numbers: dict[tuple[int, int], int] = {}
         self.meshes: list[dict[str, str]] = []
-        """Corners [m] and triangles of whatever has no name; each once, though many shapes may have it."""
+        """Corners [m] and triangles of meshes and height fields; each is stored once, even if several shapes use it."""
         self.bodies: list[int] = []
         """The MuJoCo body of each shape."""
         self.parts: list[list[dict[str, Any]]] = []
-        """What each shape is made of, in the frame of its body."""
+        """The parts of each shape, in the frame of its body."""
         seen = (model.geom_type != mjtGeom.mjGEOM_PLANE) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)
         for body in range(model.nbody):
             own = np.flatnonzero(seen & (model.geom_bodyid == body)).tolist()
@@ -63,7 +63,7 @@ class Shapes:
                 self.parts.append(parts)
 
     def _part(self, geom: int) -> dict[str, Any] | None:
-        """Returns what a page needs to draw a geom; None for a kind that is never drawn."""
+        """Returns the data with which a page draws a geom; None for a kind that is never drawn."""
         model, kind = self._model, int(self._model.geom_type[geom])
         if kind in KINDS:
             name, numbers = KINDS[kind]
@@ -77,7 +77,7 @@ class Shapes:
         return {**shape, "place": place, "turn": turn, "colour": _colour(model, geom)}
 
     def _mesh(self, kind: int, number: int) -> int:
-        """Returns the number of a mesh or a height field among those that the page is given."""
+        """Returns the index of a mesh or height field in `meshes`; adds it if necessary."""
         known = self._numbers.get((kind, number))
         if known is None:
             places, faces = _height_field(self._model, number) if kind == mjtGeom.mjGEOM_HFIELD else _triangles(self._model, number)
@@ -116,7 +116,7 @@ def _height_field(model: MjModel, field: int) -> tuple[Any, Any]:
 
 
 def _colour(model: MjModel, geom: int) -> list[int]:
-    """Returns the colour of a geom, 0 to 255; of a texture, its mean."""
+    """Returns the colour of a geom, 0 to 255; for a texture, its mean colour."""
     material = int(model.geom_matid[geom])
     colour = np.array(model.geom_rgba[geom] if material < 0 else model.mat_rgba[material])
     texture = -1 if material < 0 else int(model.mat_texid[material, _COLOURS])
@@ -128,7 +128,7 @@ def _colour(model: MjModel, geom: int) -> list[int]:
 
 
 def grounds_of(model: MjModel) -> list[float]:
-    """Returns how high the level planes of a scene lie [m]."""
+    """Returns the heights of the planes of a scene [m]."""
     plane = int(mjtGeom.mjGEOM_PLANE)
     return sorted(
         {float(model.geom_pos[geom, 2]) for geom in np.flatnonzero(model.geom_type == plane).tolist() if not model.geom_bodyid[geom]}
@@ -136,7 +136,7 @@ def grounds_of(model: MjModel) -> list[float]:
 
 
 def poses_of(model: MjModel, bodies: list[int], states: Iterable[bytes]) -> Any:
-    """Returns how bodies stand in some states: places [m] and quaternions, `(states, bodies, 7)`."""
+    """Returns the poses of bodies in some states: positions [m] and quaternions, `(states, bodies, 7)`."""
     data = MjData(model)
     poses: list[Any] = []
     for state in states:

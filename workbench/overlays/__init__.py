@@ -1,4 +1,4 @@
-"""What is drawn over the 3D scene, one kind a file."""
+"""Overlays of the 3D scene, one kind per file."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ __all__ = ["Overlay", "make_overlays"]
 
 
 def make_overlays(server: Any, scene: Any, model: MjModel, world: dict[str, Any], look: Look) -> dict[OverlayName, Overlay]:
-    """Returns the overlays of a scene by the names under which they are switched.
+    """Returns the overlays of a scene, by the names under which they are switched on and off.
 
     Args:
         server: Viser's server.
-        scene: What draws the scene itself.
+        scene: The `ViserMujocoScene` that draws the world.
         model: The compiled scene.
-        world: What is in it, as `Facts.world` tells it.
-        look: Which are shown at first.
+        world: The contents of the world, as in `Facts.world`.
+        look: The overlays that are shown at first.
     """
     overlays: dict[OverlayName, Overlay] = {
         "frustum": Frustum(server, model, world),

@@ -1,4 +1,4 @@
-"""Where bodies touch something."""
+"""Shows where bodies touch something."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from workbench.overlays.overlay import Overlay
 
 
 class Contacts(Overlay):
-    """The points of contact, and how hard it presses there.
+    """Shows the contact points and the contact forces.
 
     Args:
-        scene: What draws the scene, and draws contacts itself.
+        scene: The `ViserMujocoScene` of the world, which draws contacts itself.
     """
 
     asked = False
@@ -25,5 +25,5 @@ class Contacts(Overlay):
         """Does nothing: the scene draws them."""
 
     def switch(self) -> None:
-        """Shows or hides them."""
+        """Shows or hides the contacts."""
         self._scene.show_contact_points = self._scene.show_contact_forces = self.visible

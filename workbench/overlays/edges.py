@@ -1,4 +1,4 @@
-"""The edges that an eye sees, as lines in the world, in the colours of the retina."""
+"""Shows the edges that an eye sees as lines in the world, in the colours of the retina."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from workbench.palette import label_colours
 
 
 class Edges(Overlay):
-    """The edges of the present view of each eye, at their distances.
+    """Shows the edges in the current view of each eye, at their distances.
 
     Args:
         server: Viser's server.
@@ -23,12 +23,12 @@ class Edges(Overlay):
         self._lines.show(False)
 
     def draw(self, data: MjData, drawn: dict[str, dict[str, bytes]] | None) -> None:
-        """Draws what is seen now."""
+        """Draws the edges that are seen now."""
         if drawn is not None:
             lines, labels = (b"".join(eye[part] for eye in drawn.values()) for part in ("lines", "labels"))
             colours = label_colours(np.frombuffer(labels, dtype=np.int64))
             self._lines.set(np.frombuffer(lines, dtype=np.float32).reshape(-1, 2, 3), np.repeat(colours[:, None], 2, axis=1))
 
     def switch(self) -> None:
-        """Shows or hides them."""
+        """Shows or hides the edges."""
         self._lines.show(self.visible)

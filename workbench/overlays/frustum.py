@@ -1,4 +1,4 @@
-"""What part of the world an eye looks at."""
+"""Shows the part of the world that is in an eye's field of view."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from mujoco import MjData, MjModel
 from workbench.overlays.overlay import Overlay
 
 SCALE = 0.6
-"""How long the pyramid is drawn [m]."""
+"""Length of the drawn pyramid [m]."""
 COLOUR = (91, 127, 166)
 
 
 class Frustum(Overlay):
-    """The field of view of each eye.
+    """Shows the field of view of each eye.
 
     Args:
         server: Viser's server.
         model: The compiled scene.
-        world: What is in it, as `Facts.world` tells it.
+        world: The contents of the world, as in `Facts.world`.
     """
 
     def __init__(self, server: Any, model: MjModel, world: dict[str, Any]) -> None:
         self._server = server
         eyes = {name: body["eye"] for name, body in world["bodies"].items() if body["eye"] is not None}
         self.sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, eye) for name, eye in eyes.items()}
-        """The numbers of the eyes by body."""
+        """The site numbers of the eyes, by body."""
         self.fields: dict[str, tuple[float, float]] = {}
-        """How wide and how high each eye sees [rad]."""
+        """The horizontal and vertical field of view of each eye [rad]."""
         self._handles: dict[str, Any] = {}
         self._heads = [geom for site in self.sites.values() if (geom := _head(model, site)) is not None]
         self._sizes = model.geom_rbound
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
-        """Moves them with the eyes, whose x points forward and z up; a frustum's z points forward and y down."""
+        """Moves the frustums with the eyes. An eye's x axis points forward and z up; a frustum's z axis points forward and y down."""
         for number, (name, site) in enumerate(self.sites.items()):
             field = (drawn or {}).get(name)
             if field is not None and tuple(field) != self.fields.get(name):
@@ -61,7 +61,7 @@ class Frustum(Overlay):
                 self._handles[name].wxyz, self._handles[name].position = quaternion, np.array(data.site_xpos[site])
 
     def eye(self, data: MjData) -> dict[str, Any] | None:
-        """Returns where the first eye is, where it looks, and how high it sees [rad]; None where there is none."""
+        """Returns the position, direction and vertical field of view [rad] of the first eye; None if there is none."""
         name, site = next(iter(self.sites.items()), ("", -1))
         if site < 0 or name not in self.fields:
             return None
@@ -70,17 +70,17 @@ class Frustum(Overlay):
         return {**{key: value.round(5).tolist() for key, value in told.items()}, "fov": self.fields[name][1]}
 
     def heads(self, data: MjData) -> list[list[float]]:
-        """Returns the spheres around the heads that carry eyes, which no label is to cover: x, y, z, radius [m]."""
+        """Returns the spheres around the heads that carry eyes, which labels must not cover: x, y, z, radius [m]."""
         return [[*data.geom_xpos[geom].round(3).tolist(), round(float(self._sizes[geom]), 3)] for geom in self._heads]
 
     def switch(self) -> None:
-        """Shows or hides them."""
+        """Shows or hides the fields of view."""
         for handle in self._handles.values():
             handle.visible = self.visible
 
 
 def _head(model: MjModel, site: int) -> int | None:
-    """Returns the largest geom of the part that carries an eye, or of the nearest part above it that is seen; None if there is none."""
+    """Returns the largest visible geom of the body part that carries an eye, or of the nearest parent with one; None if there is none."""
     body = int(model.site_bodyid[site]) if site >= 0 else 0
     while body > 0:
         own = np.flatnonzero((model.geom_bodyid == body) & (model.geom_rgba[:, 3] > 0))

@@ -1,4 +1,4 @@
-"""What all overlays have in common."""
+"""Defines the base of all overlays, and lines that they share."""
 
 from __future__ import annotations
 
@@ -9,40 +9,40 @@ from mujoco import MjData
 
 
 class Overlay(ABC):
-    """Something drawn over the scene, of all bodies."""
+    """Base of all overlays: draws something over the scene for all bodies."""
 
     asked = True
-    """Whether the worker has to tell what there is to draw."""
+    """Whether the overlay needs data from the worker."""
     visible = False
 
     @abstractmethod
     def draw(self, data: MjData, drawn: Any) -> None:
-        """Draws it as it is now.
+        """Draws the overlay for the current state.
 
         Args:
-            data: The present state, its geometry up to date.
-            drawn: What the worker tells of it, by body; None where it tells nothing, as just after it was switched on.
+            data: The current state, with up-to-date geometry.
+            drawn: The worker's data by body; None if there is none yet, for example just after the overlay was switched on.
         """
 
     def show(self, visible: bool) -> None:
-        """Shows or hides it."""
+        """Shows or hides the overlay."""
         if visible != self.visible:
             self.visible = visible
             self.switch()
 
     @abstractmethod
     def switch(self) -> None:
-        """Lets what is drawn already be seen, or not, as `visible` says."""
+        """Shows or hides what is already drawn, according to `visible`."""
 
 
 class Lines:
-    """Line segments in the scene, sent again only where they have changed.
+    """Draws line segments in the scene; they are sent again only if they have changed.
 
     Args:
         server: Viser's server.
-        name: What they are called in viser's tree.
+        name: Their name in viser's tree.
         colour: Red, green, blue, 0 to 255.
-        width: In pixels.
+        width: Line width [pixels].
     """
 
     def __init__(self, server: Any, name: str, colour: tuple[int, int, int], width: float) -> None:
@@ -52,11 +52,11 @@ class Lines:
         self._visible = True
 
     def set(self, points: Any, colours: Any = None) -> None:
-        """Draws these lines in place of those before.
+        """Replaces the lines.
 
         Args:
-            points: `(n, 2, 3)`, 4-byte numbers [m].
-            colours: Those of their ends, `(n, 2, 3)`, 0 to 255; None for the same for all.
+            points: The ends of the lines `(n, 2, 3)`, 4-byte floats [m].
+            colours: The colours of the ends `(n, 2, 3)`, 0 to 255; None for the same colour for all.
         """
         data = points.tobytes() + (b"" if colours is None else colours.tobytes())
         if data == self._last:
@@ -75,7 +75,7 @@ class Lines:
                     self._handle.colors = colours
 
     def show(self, visible: bool) -> None:
-        """Shows or hides them."""
+        """Shows or hides the lines."""
         self._visible = visible
         if self._handle is not None:
             self._handle.visible = visible and bool(self._last)

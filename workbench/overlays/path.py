@@ -1,4 +1,4 @@
-"""The way that bodies have come."""
+"""Shows the paths that bodies have walked."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from mujoco import MjData
 from workbench.overlays.overlay import Lines, Overlay
 
 HEIGHT = 0.012
-"""How far above the floor it is drawn [m], so that it can be seen."""
+"""Height of the line above the floor [m], so that it is visible."""
 
 
 class Path(Overlay):
-    """The way of each body from the start of the run up to the present, whoever watched.
+    """Shows the path of each body from the start of the run to the present, whether or not anyone watched.
 
     Args:
         server: Viser's server.
@@ -25,7 +25,7 @@ class Path(Overlay):
         self._lines.show(False)
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
-        """Draws it as far as it goes."""
+        """Draws the paths up to the present."""
         if drawn is None:
             return
         pieces = [np.zeros((0, 2, 3), dtype=np.float32)]
@@ -37,5 +37,5 @@ class Path(Overlay):
         self._lines.set(np.concatenate(pieces))
 
     def switch(self) -> None:
-        """Shows or hides it."""
+        """Shows or hides the paths."""
         self._lines.show(self.visible)

@@ -1,4 +1,4 @@
-"""The posture that a body is commanded to, as a translucent copy of what still moves there."""
+"""Shows the posture that a body is commanded to take, as a translucent copy of the parts that are still moving there."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from mujoco import MjData, MjModel
 from workbench.overlays.overlay import Overlay
 
 SLIGHT = 1e-3
-"""What differs less than this is there already [m], and of the axes of a part."""
+"""A part counts as arrived if its position [m] and axes differ by less than this in total."""
 COLOUR = (60, 170, 90)
 
 
 class Posture(Overlay):
-    """The parts that are on their way, where they are commanded to be when the body stands where it stands now.
+    """Shows the moving parts at their commanded positions, relative to the body's current position.
 
     Args:
         server: Viser's server.
         model: The compiled scene.
-        world: What is in it, as `Facts.world` tells it.
+        world: The contents of the world, as in `Facts.world`.
     """
 
     def __init__(self, server: Any, model: MjModel, world: dict[str, Any]) -> None:
@@ -30,7 +30,7 @@ class Posture(Overlay):
         self._seen: set[int] = set()
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
-        """Draws what differs from the present posture."""
+        """Draws the parts that differ from the current posture."""
         targets = [target for body in (drawn or {}).values() for target in body]
         self._seen = self._pose(data, targets) if targets else set()
         for number in self._seen - self._handles.keys():
@@ -42,7 +42,7 @@ class Posture(Overlay):
         self.switch()
 
     def _pose(self, data: MjData, targets: list[Any]) -> set[int]:
-        """Brings the copy into the posture that is commanded; returns the MuJoCo bodies that are elsewhere then."""
+        """Computes the commanded posture; returns the MuJoCo bodies whose pose differs from the current one."""
         now, then = data, self._data
         then.qpos[:], then.mocap_pos[:], then.mocap_quat[:] = now.qpos, now.mocap_pos, now.mocap_quat
         for place, target in targets:
@@ -52,7 +52,7 @@ class Posture(Overlay):
         return set(np.flatnonzero(off > SLIGHT).tolist())
 
     def _copy(self, number: int) -> Any:
-        """Makes a translucent copy of a part; None of one that has no shape."""
+        """Returns a translucent copy of a part; None if the part has no shape."""
         from mjviser.conversions import merge_geoms
 
         geoms = [
@@ -66,7 +66,7 @@ class Posture(Overlay):
         )
 
     def switch(self) -> None:
-        """Shows or hides them."""
+        """Shows or hides the copies."""
         for number, handle in self._handles.items():
             visible = self.visible and number in self._seen
             if handle is not None and handle.visible != visible:

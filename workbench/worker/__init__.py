@@ -1,1 +1,1 @@
-"""The process in which one run of one model lives: whatever the model does, the server goes on."""
+"""The worker process, in which one run of one model lives: whatever the model does, the server keeps running."""

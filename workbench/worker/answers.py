@@ -1,4 +1,4 @@
-"""What models are asked: why, what a memory holds, what has happened. Nothing changes by asking."""
+"""Answers questions about a run: explanations, contents of memories, past events. Asking changes nothing."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from workbench.worker.tops import Top
 
 
 def answer(question: Any, trace: Trace | None, tops: Sequence[Top]) -> Any:
-    """Returns what is asked, as plain values.
+    """Returns the answer to a question as plain values.
 
     Args:
         question: One of `protocol.Question`.
-        trace: The trace up to now.
+        trace: The trace so far.
         tops: The top models, or the agents of a simulation.
 
     Raises:
-        Actr3dError: If there is nothing of that name, or it cannot be told.
+        Actr3dError: If there is nothing of that name, or the question cannot be answered.
     """
     match question:
         case say.Explain():
@@ -61,7 +61,7 @@ def _explain(question: say.Explain, tops: Sequence[Top]) -> list[dict[str, Any]]
 
 
 def _agents(model: Model) -> Iterator[ProductionSystem]:
-    """Yields the production systems that stand in no other one."""
+    """Yields the production systems that are not part of another production system."""
     if isinstance(model, ProductionSystem):
         yield model
     else:

@@ -1,4 +1,4 @@
-"""Bounds to what is shown: a model may make texts and lists of any length, and pages are to show them all the same."""
+"""Limits the size of what is shown: a model may create texts and lists of any length, and pages must still work."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from actr3d.trace import TraceEvent
 from actr3d.values import plain_to_json, to_json
 
 LARGEST = 200_000
-"""One event, or all parts together, are no longer as JSON [characters]; what is longer is shown in part, and recorded whole."""
+"""Maximum length of an event, or of all parts together, as JSON [characters]; longer values are cut for display but recorded completely."""
 LONGEST_TEXT = 2_000
 MOST_ENTRIES = 200
 
 
 def bounded_json(value: Any, most: int = LARGEST, *, whole: Callable[[Any], str] = to_json) -> bytes:
-    """Returns a value as JSON: as it is, or with its long texts and collections cut, or that it is too long.
+    """Returns a value as JSON; if it is too long, its long texts and collections are cut, or a message takes its place.
 
     Args:
-        value: Anything that has JSON.
-        most: How long that may be [characters].
-        whole: Makes JSON of it.
+        value: Any value that can be written as JSON.
+        most: Maximum length [characters].
+        whole: Converts the uncut value to JSON.
     """
     text = whole(value)
     if len(text) > most:
@@ -31,12 +31,12 @@ def bounded_json(value: Any, most: int = LARGEST, *, whole: Callable[[Any], str]
 
 
 def event_json(event: TraceEvent) -> bytes:
-    """Returns an event as pages take it: time [us], source, kind, data."""
+    """Returns an event as JSON for pages: time [us], source, kind, data."""
     return bounded_json(list(event), whole=plain_to_json)
 
 
 def cut(value: Any) -> Any:
-    """Returns a value with all that is long in it cut, and what says so."""
+    """Returns a value in which long texts and collections are cut, with a note of how much is missing."""
     if isinstance(value, str):
         left = len(value) - LONGEST_TEXT
         return value if left <= 0 else f"{value[:LONGEST_TEXT]} … ({left:,} more characters)"
@@ -52,7 +52,7 @@ def cut(value: Any) -> Any:
 
 
 def _told(value: Any, reason: str) -> Any:
-    """Returns the frame of a value that is too long even so: of an event its time, source and kind."""
+    """Returns a placeholder for a value that is too long even after cutting; for an event, with its time, source and kind."""
     if isinstance(value, list):
         entries: list[Any] = list(value)  # pyright: ignore[reportUnknownArgumentType]
         return [entry if isinstance(entry, (int, float)) else {"…": reason} if isinstance(entry, dict) else cut(entry) for entry in entries]

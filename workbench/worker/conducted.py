@@ -1,4 +1,4 @@
-"""What a conductor conducts: a run, whatever it is of."""
+"""Defines what a conductor needs of a run, whether it is a simulation or a program."""
 
 from __future__ import annotations
 
@@ -10,72 +10,72 @@ from workbench.worker.watch import Touches
 
 
 class Conducted(Protocol):
-    """What is conducted."""
+    """A run that a conductor controls."""
 
     @property
     def clock(self) -> int:
-        """How much time has passed since its start [us]."""
+        """The time since the start of the run [us]."""
         ...
 
     @property
     def furthest(self) -> int:
-        """How far it has come [us]."""
+        """The furthest time that the run has reached [us]."""
         ...
 
     @property
     def period(self) -> int:
-        """A tick [us]."""
+        """The length of a tick [us]."""
         ...
 
     @property
     def trace(self) -> Trace | None:
-        """The trace up to now."""
+        """The trace so far."""
         ...
 
     def do(self, command: Any) -> None:
-        """Does what a user wants of the run itself.
+        """Carries out a command that changes the run itself.
 
         Raises:
-            Exception: Says why it cannot be done.
+            Exception: If the command cannot be carried out; its text says why.
         """
         ...
 
     def flush(self) -> None:
-        """Writes what is still to be recorded: who sees where the run is held finds it in its recording."""
+        """Writes buffered data to the recording, so that a paused run's recording is complete up to that moment."""
         ...
 
     def forget_ahead(self) -> None:
-        """Forgets that it has been further than it is now."""
+        """Removes the knowledge of times after the present."""
         ...
 
     def answer(self, question: Any) -> Any:
-        """Returns what is asked, as plain values.
+        """Returns the answer to a question as plain values.
 
         Raises:
-            Exception: Says why it cannot be told.
+            Exception: If the question cannot be answered; its text says why.
         """
         ...
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
-        """Returns the physics' state, and how wide apertures are."""
+        """Returns the state of the physics, and the widths of apertures [m]."""
         ...
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns what overlays show of the present, by kind."""
+        """Returns the current data of overlays, by kind."""
         ...
 
     def result(self) -> dict[str, Any] | None:
-        """Returns what was measured of the run, if anything was."""
+        """Returns the measured result of the run, if any."""
         ...
 
     def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns what all parts are like."""
+        """Returns the current state of all parts."""
         ...
 
     def names(self) -> Names:
-        """Returns at what it can be stopped."""
+        """Returns the names at which the run can be stopped."""
         ...
 
     def touches(self) -> Touches:
-        """Returns what touches a body now, the ground left out."""
+        """Returns the current contacts of bodies with anything but the ground."""
         ...

@@ -1,4 +1,4 @@
-"""Conducts a run: on, hold, a step, a speed; and shows the server how it goes."""
+"""Controls a run: continues, pauses, steps and paces it as users command, and sends its state to the server."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from workbench.worker.trouble import told_of
 from workbench.worker.watch import Watch
 
 SHOWN = 1 / 30
-"""How often a run that goes on is shown [s]; ours, as often as a page can be drawn with ease."""
+"""Interval at which the state of a running run is sent [s]. Chosen here: pages can easily draw at this rate."""
 HURRIED = 1 / 15
-"""The same of a run that is to go as fast as it can: what is shown takes time from it. Ours."""
+"""The same interval for a run without a speed limit, which sending slows down [s]. Chosen here."""
 
 
 class Leaving(EndOfRun):
-    """Ends a run because the worker is to leave; no model catches it by `except Exception`."""
+    """Ends a run because the worker must end; a model's `except Exception` does not catch it."""
 
 
 class Conductor:
-    """Says when a run goes on and when it waits, does what users say meanwhile, and shows its state and events.
+    """Decides when a run continues and when it waits, carries out users' commands in between, and sends its state and events.
 
     Args:
-        link: The wire to the server.
+        link: The connection to the server.
     """
 
     def __init__(self, link: Link) -> None:
@@ -50,35 +50,35 @@ class Conductor:
         self.watch = Watch(breakpoints=frozenset(start.breakpoints))
         self.pacer = Pacer(start.factor)
         self.leaving = False
-        """Whether the worker is to leave."""
+        """Whether the worker must end."""
         self.run: Conducted
         link.busy = self.show_busy
         self._sent = 0
-        """How many events the server has been given."""
+        """Number of events that the server has been sent."""
         self._last: State | None = None
-        """The state that was shown last."""
+        """The state that was sent last."""
         self._foreknown: Foreknown | None = None
-        """The recorded run that is lived through again."""
+        """The recorded run that this run repeats; None if there is none, or this run differs from it."""
         self._compared = 0
-        """So many events have been compared with the recorded ones."""
+        """Number of events that have been compared with the recorded ones."""
         self._telling = threading.Lock()
-        """Held by the thread that gives events to the server."""
+        """Held by the thread that sends events to the server."""
         self._seen = 0
-        """How many events have been looked at for what is watched."""
+        """Number of events that have been checked against the stop conditions."""
         self._shown = 0.0
         self._drawn: tuple[str, ...] = ()
-        """The kinds of overlays that are shown where somebody looks."""
+        """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
     def conduct(self, run: Conducted) -> None:
-        """Takes the run that is to be conducted; its names are known by now."""
+        """Sets the run to control; its names are known by now."""
         self.run = run
         self.link.events = self._count
-        if self.watch.breakpoints:  # else the names need not be looked for
+        if self.watch.breakpoints:  # without breakpoints, no names need to be collected
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.link.post(lost)
 
     def know(self, foreknown: Foreknown) -> None:
-        """Shows all that a recorded run did, before this run, which lives through it again, has come to it."""
+        """Sends all events of a recorded run before this run, which repeats it, has reached them."""
         with self._telling:
             self._foreknown = foreknown
             self._sent = foreknown.count
@@ -87,26 +87,26 @@ class Conductor:
 
     @property
     def relives(self) -> bool:
-        """Whether the run lives through a recorded one again, and nothing has been changed in it."""
+        """Whether the run repeats a recorded one and still agrees with it."""
         return self._foreknown is not None
 
     def embodied(self) -> None:
-        """Takes note that the run has a body: it goes at real time, unless a speed was chosen."""
+        """Records that the run has a body: it goes in real time unless a speed was chosen."""
         if self.link.start.real_time:
             self.pacer.set(1.0)
 
     def _count(self) -> int:
-        """Returns how many events there are."""
+        """Returns the number of events."""
         trace = self.run.trace
         return 0 if trace is None else len(trace)
 
-    # -- what the run asks
+    # -- calls from the run
 
     def attend(self) -> None:
-        """Does what users have said meanwhile; while the run is held, waits for more. Returns when it may go on.
+        """Carries out the commands that have arrived; while the run is paused, waits for more. Returns when it may continue.
 
         Raises:
-            Leaving: If the worker is to leave.
+            Leaving: If the worker must end.
         """
         self._check_events()
         if self.watch.goal is not None and self.run.clock >= self.watch.goal and self.status == "running":
@@ -121,7 +121,7 @@ class Conductor:
                 return
 
     def pace(self, clock: int) -> bool:
-        """Waits until it is time for a moment of the run [us]; tells whether nothing has been said meanwhile."""
+        """Waits until a moment of the run [us] is due; returns False if a command arrived in the meantime."""
         while (early := self.pacer.early(self.run.clock, clock)) > 0:
             self.show_if_due()
             message = self.link.receive(min(early, SHOWN))
@@ -131,7 +131,7 @@ class Conductor:
         return True
 
     def passed(self) -> None:
-        """Takes note that ticks have passed."""
+        """Checks the stop conditions after some ticks have been run, and sends the state if due."""
         self._check_events()
         if self.watch.contact is not None and self.status == "running":
             found = self.watch.touched(self.run.touches())
@@ -140,31 +140,31 @@ class Conductor:
         self.show_if_due()
 
     def pause(self, reason: str) -> None:
-        """Holds the run."""
+        """Pauses the run."""
         self.status, self.reason = "paused", whole(reason)
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
-        """Takes note that the run is over, and tells what it was to go on for and has not come."""
+        """Records the end of the run; the reason names the stop condition that was not met, if any."""
         trace = self.run.trace
         news = trace.since(self._seen) if trace is not None and self.watch.of_events else []
-        missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # it may come with the very end
+        missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # the condition may be met at the very end
         self.status, self.reason = status, whole(f"{reason}; {missed}" if missed else reason)
         self._halt()
 
     def went_back(self) -> None:
-        """Takes note that the run stands at another time, whose events were all known."""
+        """Records that the run is now at another time, whose events were all known."""
         trace = self.run.trace
         self._seen = 0 if trace is None else len(trace)
         self.status, self.reason = "paused", "went to this time"
         self._halt()
 
     def goes_another_way(self, events: int, changed: str | None) -> None:
-        """Tells the server that what was known of the run after the present moment holds no more.
+        """Informs the server that what was known after the present moment is no longer valid.
 
         Args:
-            events: How many events there were until this moment.
-            changed: What has become of the run beyond this moment; None where it had not been there.
+            events: Number of events up to this moment.
+            changed: What happened to the later part of the run; None if there was none.
         """
         with self._telling:
             self._foreknown = None
@@ -174,7 +174,7 @@ class Conductor:
                 self._sent = min(self._sent, events)
                 self.link.cut(Cut(events=events), events)
 
-    # -- what users say
+    # -- commands from users
 
     def _hear(self, message: Do | Draw | Leave) -> None:
         if isinstance(message, Leave):
@@ -189,7 +189,7 @@ class Conductor:
         except EndOfRun:
             self.link.post(Reply(id=message.id))
             raise
-        except Exception as error:  # noqa: BLE001 - whatever it is, who has said it is told
+        except Exception as error:  # noqa: BLE001 - any error is reported to the sender
             self.link.post(Reply(id=message.id, error=told_of(error)))
             return
         self.link.post(Reply(id=message.id, result=to_json(result).encode()))
@@ -202,12 +202,12 @@ class Conductor:
                 if self.status == "running":
                     self.pause("by the user")
             case say.Step():
-                # Steps that come faster than they are made add up.
+                # Steps that arrive before earlier steps are finished add up.
                 under_way = self.status == "running" and self.watch.goal is not None
                 begin = (self.watch.goal or 0) if under_way else self.run.clock
                 self._go(goal=(begin // self.run.period + said.ticks) * self.run.period, goal_reason="after a step")
             case say.Cycle():
-                # As steps do, cycles that are asked for before one is over add up.
+                # Like steps, cycles that are requested before the previous one is finished add up.
                 if self.status == "running" and self.watch.cycles > 0 and self.watch.system == said.system:
                     self.watch.cycles += 1
                 else:
@@ -262,7 +262,7 @@ class Conductor:
             self.show()
 
     def _check_events(self) -> None:
-        """Pauses where an event says so that has not been looked at yet."""
+        """Pauses the run if a new event meets a stop condition."""
         trace = self.run.trace
         if trace is not None and self.status == "running" and self.watch.of_events and len(trace) > self._seen:
             found = self.watch.found(trace.since(self._seen))
@@ -270,17 +270,17 @@ class Conductor:
             if found is not None:
                 self.pause(found)
 
-    # -- what is shown
+    # -- what is sent to the server
 
     def show_if_due(self) -> None:
-        """Shows the run now and then while it goes on."""
+        """Sends the state at regular intervals while the run is going on."""
         now = perf_counter()
         due = HURRIED if self.pacer.factor is None else SHOWN
         if now - self._shown >= due and self.status == "running" and self.link.idle:
             self.show()
 
     def show(self) -> None:
-        """Shows the run as it is now, and all that has happened."""
+        """Sends the current state of the run and all new events."""
         run = self.run
         self._shown = perf_counter()
         trace = run.trace
@@ -305,11 +305,11 @@ class Conductor:
             self._tell(state, trace)
 
     def show_busy(self) -> None:
-        """Shows what has happened until the model became busy, as in an endless loop; called by the thread that hears the server.
+        """Sends what happened before the model became busy, for example in an endless loop; the thread that listens to the server calls it.
 
-        Only events and the time are told: parts may be changing just now.
+        Only events and the time are sent: the parts may be changing at this moment.
         """
-        # Whatever is amiss in a model that is in the middle of something, the thread must go on.
+        # The model may be in an inconsistent state, and this thread must go on in any case.
         with suppress(Exception), self._telling:
             trace, last = self.run.trace, self._last
             if last is None or trace is None or self.status != "running" or len(trace) <= self._sent:
@@ -319,17 +319,17 @@ class Conductor:
             self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
     def say_all(self) -> None:
-        """Records and sends what has happened up to now, from whatever thread of the model: it may be about to end its process."""
-        if not self.link.left:  # a copy of the process has nothing to send
+        """Records and sends all events so far, from any thread of the model, as it may be about to end its process."""
+        if not self.link.left:  # a forked copy of the process has nothing to send
             with suppress(Exception):  # there may be no run yet
                 self.run.flush()
             self.show_busy()
             self.link.flush()
 
     def _tell(self, state: State, trace: Trace | None) -> None:
-        """Gives the server a state and the events up to it that it does not have."""
+        """Sends the server a state, and the events up to it that it does not have yet."""
         count = state.events
-        on_its_thread = threading.current_thread() is threading.main_thread()  # else the run may be in the middle of something
+        on_its_thread = threading.current_thread() is threading.main_thread()  # otherwise the run may be in the middle of a tick
         if self._foreknown is not None and trace is not None and on_its_thread:
             state = self._compare(self._foreknown, state, trace)
         news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
@@ -337,7 +337,7 @@ class Conductor:
         self._sent, self._last = max(self._sent, count), state
 
     def _compare(self, foreknown: Foreknown, state: State, trace: Trace) -> State:
-        """Compares what has happened with the recording; returns the state, which tells of nothing ahead where they differ."""
+        """Compares new events with the recording; if they differ, returns the state without any time ahead."""
         events = trace.since(self._compared)[: max(0, state.events - self._compared)]
         found = foreknown.difference(self._compared, events)
         is_over = state.status in ("ended", "failed")

@@ -1,4 +1,4 @@
-"""Where the edges that an eye sees are in the world: its view, put back into space at its distances."""
+"""Computes the 3D positions of the edges that an eye sees, by projecting its view back into space at the seen distances."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Places = NDArray[np.float64]
 
 
 def points_of(view: View) -> Places:
-    """Returns where the two edges of each extent are, in the upright frame of the view with the eye as origin [m], `(n, 2, 3)`."""
+    """Returns the points of the two edges of each extent, in the upright frame of the view with the eye as origin [m], `(n, 2, 3)`."""
     extents, parameters = view.extents, view.parameters
     v = _tangent(1 - (2 * extents["row"] + 1) / parameters.rows, parameters.vertical_fov, view)[:, None]
     u = _tangent(2 * np.stack((extents["x1"], extents["x2"]), axis=1) - 1, parameters.horizontal_fov, view)
@@ -25,7 +25,7 @@ def points_of(view: View) -> Places:
 
 
 def contours_of(view: View) -> tuple[Places, list[int]]:
-    """Returns the lines that the edges of objects make from row to row, and where objects begin and end, and the label of each.
+    """Returns the lines along the edges of objects, including where objects begin and end, and the label of each line.
 
     The lines `(n, 2, 3)` are in the upright frame of the view, with the eye as origin [m].
     """
@@ -42,20 +42,20 @@ def contours_of(view: View) -> tuple[Places, list[int]]:
             upper, lower = above.get(label, []), below.get(label, [])
             if len(upper) == len(lower):
                 lines += [points[[one, other], side] for one, other in zip(upper, lower, strict=True) for side in (0, 1)]
-            else:  # where it begins, ends or parts, nobody knows which edge goes on in which
+            else:  # where an object begins, ends or splits, it is unknown which edge continues which
                 lines += [points[number] for number in (*upper, *lower)]
             labels += [label] * (len(lines) - len(labels))
     return np.array(lines).reshape(-1, 2, 3), labels
 
 
 def into_world(points: Places, stand: Stand) -> Places:
-    """Returns points of an upright frame in the world's, given how the eye stands that is its origin."""
+    """Converts points from the upright frame of an eye to the world frame, given the pose of that eye."""
     c, s = math.cos(stand.heading), math.sin(stand.heading)
     return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]) + np.array(stand[:3])
 
 
 def _tangent(part: Any, fov: float, view: View) -> Any:
-    """Returns the tangents at parts of half the screen, from -1 to 1; on a retina equal parts are equal parts of the cortex."""
+    """Returns tangents for fractions of half the screen (-1 to 1); on a retina, equal fractions are equal parts of the cortex."""
     most, parameters = math.tan(fov / 2), view.parameters
     if not parameters.retinotopic:
         return part * most

@@ -1,4 +1,4 @@
-"""What a worker tells for overlays of the 3D view: only what is switched on where somebody looks is computed."""
+"""Computes the data of 3D view overlays; only visible overlays of a watched view are computed."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from workbench.worker.sightings import told_sightings
 from workbench.worker.walked import Walked
 
 NEARER = 0.995
-"""Edges are drawn by so much nearer to the eye, so that the surfaces on which they lie do not hide them."""
+"""Edges are drawn at this fraction of their distance to the eye, so that the surfaces on which they lie do not hide them."""
 
 
 class Drawings:
-    """Tells by kind and body what is drawn of the present.
+    """Computes, by kind and body, the data from which overlays are drawn.
 
-    `frustum`: the fields of view [rad], across and up; `edges`: `lines` in the world, as 4-byte numbers `(n, 2, 3)` [m], and `labels`
-    of the objects that they belong to, as 8-byte numbers; `features`: see
-    `told_sightings`; `path`: where the body's root was on the floor [m]; `posture`: targets of joints by where they are in `qpos`.
+    `frustum`: horizontal and vertical field of view [rad]; `edges`: `lines` in the world as 4-byte floats `(n, 2, 3)` [m] and the
+    `labels` of their objects as 8-byte integers; `features`: see `told_sightings`; `path`: positions of the body's root on the floor [m];
+    `posture`: commanded joint positions with their index in `qpos`.
 
     Args:
         simulation: The simulation.
-        eyesight: Returns how the agent of a body sees.
-        walked: The paths that are kept of it.
+        eyesight: Returns the camera parameters of a body's agent.
+        walked: The recorded paths of its bodies.
     """
 
     def __init__(self, simulation: Simulation, eyesight: Callable[[str], CameraParameters], walked: Walked) -> None:
@@ -37,7 +37,7 @@ class Drawings:
         self._walked = walked
 
     def told(self, kinds: Collection[str]) -> dict[str, Any]:
-        """Returns what is to be drawn of these kinds; of others nothing is computed."""
+        """Returns the overlay data of these kinds; nothing is computed for other kinds."""
         bodies = self._simulation.world.bodies
         told: dict[str, Any] = {}
         if "frustum" in kinds:
@@ -68,6 +68,6 @@ class Drawings:
 
 
 def _targets(body: Body) -> list[list[float]]:
-    """Returns where joints are commanded to go, and are on their way: places in `qpos`, and positions [rad] or [m]."""
+    """Returns the positions to which joints are moving, as index in `qpos` and position [rad] or [m]."""
     targets = body.motion.targets
     return [[int(joint.q), targets[name][0]] for name, joint in body.joints.items() if name in targets]

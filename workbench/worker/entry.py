@@ -1,4 +1,4 @@
-"""Where a worker process begins: its limits, its output, its one run, and what is told when that fails."""
+"""Starts a worker process: sets its limits and output, runs its one job, and reports a failure."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ from workbench.worker.trouble import notice_of
 
 
 def main(wire: socket.socket, output: int, memory: int) -> None:
-    """Serves one run.
+    """Runs one job for the server.
 
     Args:
         wire: The socket to the server.
-        output: The file descriptor to which everything goes that the process prints without the model's `print`.
-        memory: How much memory the model may take beyond what the worker has [MB]; 0 for no limit.
+        output: The file descriptor for everything that the process prints other than by the model's `print`.
+        memory: Maximum memory that the model may use in addition to the worker's own [MB]; 0 for no limit.
     """
     _settle(output)
     adopt()
@@ -50,7 +50,7 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
         _run(link, conductor)
     except EndOfRun:
         pass
-    except BaseException as error:  # noqa: BLE001 - SystemExit, too, is how a model ended
+    except BaseException as error:  # noqa: BLE001 - a model may also end with SystemExit
         if link.left:
             _leave_copy(error)
         link.post(notice_of(error))
@@ -60,11 +60,11 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
         wire.shutdown(socket.SHUT_WR)
     with suppress(OSError, ValueError):
         sys.stderr.flush()
-    end_at_once(0)  # threads that the model has left do not keep the process
+    end_at_once(0)  # threads left behind by the model must not keep the process alive
 
 
 def _leave_copy(error: BaseException) -> NoReturn:
-    """Ends a copy of the process that the model has made, as Python would."""
+    """Ends a forked copy of the process that the model has made, as Python would end it."""
     code = error.code if isinstance(error, SystemExit) else 1
     with suppress(OSError, ValueError):
         sys.stdout.flush()
@@ -82,7 +82,7 @@ def _run(link: Link, conductor: Conductor) -> None:
 
         {"replay": recorded.replay_again, "make": recorded.make, "list": recorded.summarize}[start.job](link)
         return
-    compile_source(start.source, start.path)  # what is wrong with the text is told before anything else
+    compile_source(start.source, start.path)  # errors in the text are reported before anything else
     check_build(start.source, start.path)
     listing = listing_of(start.source, start.path)
     if start.job == "check":
@@ -101,7 +101,7 @@ def _run(link: Link, conductor: Conductor) -> None:
 
 
 def _settle(output: int) -> None:
-    """Makes the process its own: no terminal, no keyboard, its own group of processes."""
+    """Detaches the process: no terminal, no keyboard, its own process group."""
     with suppress(OSError):
         os.setsid()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -112,24 +112,24 @@ def _settle(output: int) -> None:
     os.close(nothing)
     if output > 2:
         os.close(output)
-    sys.stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - it stays
-    # What the model prints is told as events of its run; this is for what is written past them.
+    sys.stdin = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - it stays open
+    # The model's `print` is recorded as events; these streams are for output that bypasses it.
     sys.stdout = sys.__stdout__ = io.TextIOWrapper(_PAST_PRINT, encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
     sys.stderr = sys.__stderr__ = io.TextIOWrapper(io.FileIO(2, "w", closefd=False), encoding="utf-8", errors="replace", write_through=True)  # type: ignore[misc]
     faulthandler.enable(file=2)
 
 
 class _PastPrint(io.RawIOBase):
-    """Takes what the model prints, which is told as events already, and forgets it; in copies of the process, whose events nobody
-    hears, it is told as what is printed past them, a line at a time.
+    """Discards what the model prints, as it is recorded as events already. A forked copy of the process sends no events; there, the
+    output is passed on as other output, line by line.
     """
 
     def __init__(self) -> None:
         self._rest: bytes | None = None
-        """The beginning of a line; None where nothing is told."""
+        """The beginning of an unfinished line; None if output is discarded."""
 
     def open(self) -> None:
-        """Tells what is printed from now on."""
+        """Passes output on from now on."""
         self._rest = b""
 
     def writable(self) -> bool:
@@ -148,10 +148,10 @@ class _PastPrint(io.RawIOBase):
     def flush(self) -> None:
         if self._rest:
             rest, self._rest = self._rest, b""
-            self._tell(rest + b"\n")  # it is told as a line, whatever comes after it
+            self._tell(rest + b"\n")  # passed on as a line, whatever follows
 
     def _tell(self, data: bytes) -> None:
-        with suppress(OSError):  # the model may have closed it
+        with suppress(OSError):  # the model may have closed the file
             while data:
                 data = data[os.write(1, data) :]
 
@@ -160,7 +160,7 @@ _PAST_PRINT = _PastPrint()
 
 
 def _told_to(link: Link) -> Any:
-    """Returns what takes the place of `warnings.showwarning`."""
+    """Returns a replacement for `warnings.showwarning` that sends warnings to the server."""
 
     def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:
         link.post(notice("warning", str(message), filename, lineno))

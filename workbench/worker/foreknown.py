@@ -1,4 +1,4 @@
-"""What a recorded run did, known to a run that lives through it again: its events, how far it came, and its physics."""
+"""Holds what a recorded run did, for a run that repeats it: its events, its duration, and its physics."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from workbench.worker.bounds import event_json
 from workbench.worker.messages import Notice, notice
 
 MOST_EVENTS = 50_000
-"""So many of the last events are shown before the run has come to them; as many as the server has at hand."""
+"""Maximum number of events that are shown before the run reaches them; the server keeps as many in memory."""
 
 
 class Foreknown:
-    """Reads a recording once.
+    """Reads a recording and compares events with it.
 
     Args:
         path: The recording.
-        keep: Is given the physics at the end of each tick, of a single simulation.
+        keep: Called with the tick and the physics state at the end of each tick of a single simulation.
 
     Raises:
-        RecordingError: If it cannot be read.
+        RecordingError: If the recording cannot be read.
     """
 
     def __init__(self, path: Path, keep: Callable[[int, bytes], object] | None = None) -> None:
         self._digests = array("q")
-        """What tells each event from others."""
+        """A hash of each event."""
         self.events: list[bytes] = []
-        """The last events, as pages take them."""
+        """The last events, as JSON for pages."""
         with Recorded(path) as recorded:
             self.facts: dict[str, Any] = recorded.facts
             self.ticks: int = recorded.ticks
@@ -43,16 +43,16 @@ class Foreknown:
                 for _, tick, data, _ in recorded.states():
                     keep(tick, data)
         self.time = sum(times)
-        """How long it took, of all its runs one after the other [us]."""
+        """The duration of the recording, summed over all its runs [us]."""
 
     @property
     def count(self) -> int:
-        """How many events there are."""
+        """The number of events in the recording."""
         return len(self._digests)
 
     @property
     def first(self) -> int:
-        """The number of the first of `events`."""
+        """The number of the first event in `events`."""
         return self.count - len(self.events)
 
     def _take(self, event: TraceEvent, times: list[int]) -> None:
@@ -66,22 +66,22 @@ class Foreknown:
             del self.events[:-MOST_EVENTS]
 
     def difference(self, number: int, events: Sequence[TraceEvent]) -> int | None:
-        """Returns the number of the first event that is not the recorded one; None where all are.
+        """Returns the number of the first event that differs from the recorded one; None if all agree.
 
         Args:
-            number: The number of the first of the events.
-            events: What happens now.
+            number: The number of the first of the given events.
+            events: The events of the current run.
         """
         known = zip(self._digests[number : number + len(events)], events, strict=False)
         return next((n for n, (digest, event) in enumerate(known, number) if hash(event_json(event)) != digest), None)
 
 
 def difference_notice(now: float, event: TraceEvent | None) -> Notice:
-    """Returns what the user is told where a run does something else than its recording.
+    """Returns the notice that a run differs from its recording.
 
     Args:
-        now: When [s].
-        event: What it does; None where it has ended and the recording has not.
+        now: The current time of the run [s].
+        event: The event that differs; None if the run has ended before its recording.
     """
     when = now if event is None else seconds(event.time_us)
     does = (

@@ -1,4 +1,4 @@
-"""Sends what a model has printed before it ends or stops its own process, as nothing of that process can send it afterwards."""
+"""Sends what a model has printed before the model ends or stops its own process, as nothing can be sent afterwards."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from functools import wraps
 from typing import Any, Final
 
 _ENDING = ((os, ("_exit", "abort", "kill", "killpg", "execv", "execve")), (signal, ("raise_signal", "pthread_kill")))
-"""With these a process may end or stop itself."""
+"""The functions with which a process may end or stop itself."""
 end_at_once: Final = os._exit
-"""Ends the process without last words, as where nobody hears them."""
+"""Ends the process without sending anything first."""
 
 
 def say_before_the_end(say: Callable[[], object]) -> None:
-    """Lets everything with which a model may end its process call something first.
+    """Makes every function with which a model may end its process call `say` first.
 
     Args:
-        say: Sends what is still to be sent.
+        say: Sends what has not been sent yet.
     """
     for module, names in _ENDING:
         for name in names:

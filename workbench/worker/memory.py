@@ -1,4 +1,4 @@
-"""Ends a worker whose model takes more memory than it may, so that neither the server nor the machine suffers."""
+"""Ends a worker whose model uses more memory than allowed, to protect the server and the machine."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from pathlib import Path
 from workbench.worker.last_words import end_at_once
 
 TOO_MUCH_MEMORY = 87
-"""With this exit code a worker ends that has taken too much."""
+"""Exit code of a worker that has used too much memory."""
 EVERY = 0.1
-"""How often it is looked [s]."""
+"""Interval between two checks [s]."""
 MEGABYTE = 1 << 20
 
 
 def watch_memory(megabytes: int) -> None:
-    """Sees to it that this process takes no more memory than so much beyond what it has [MB]; 0 for no limit.
+    """Limits the memory that this process may use in addition to its present use [MB]; 0 for no limit.
 
-    On Linux the system refuses more, which a model sees as `MemoryError`. Other systems take no notice of such a limit: there,
-    and where compiled code takes memory in other ways, the process is ended when it has too much.
+    On Linux, the system refuses further memory, which a model sees as `MemoryError`. Other systems ignore such a limit: there, and
+    if compiled code gets memory in other ways, the process is ended once it exceeds the limit.
     """
     if not megabytes:
         return
@@ -33,25 +33,25 @@ def watch_memory(megabytes: int) -> None:
 
 
 def relieve() -> None:
-    """Lets this process have memory to tell what has happened, once it was refused some; it still ends where it takes too much."""
+    """Lifts the address space limit so that the process can report a `MemoryError`; the process is still ended if it uses too much."""
     if sys.platform == "linux":
         _, hard = resource.getrlimit(resource.RLIMIT_AS)
         resource.setrlimit(resource.RLIMIT_AS, (hard, hard))
 
 
 def _watch(most: int) -> None:
-    """Ends this process once it has had more memory [bytes]."""
+    """Ends this process once its peak memory exceeds a limit [bytes]."""
     while peak() <= most:
         time.sleep(EVERY)
     end_at_once(TOO_MUCH_MEMORY)
 
 
 def peak() -> int:
-    """Returns how much memory this process has had at most [bytes]."""
+    """Returns the peak memory use of this process [bytes]."""
     told = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return told if sys.platform == "darwin" else 1024 * told
 
 
 def _reserved() -> int:
-    """Returns how much of its address space this process has taken [bytes]."""
+    """Returns the size of this process's address space [bytes]."""
     return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()

@@ -1,4 +1,4 @@
-"""What the server and a worker say to each other: frozen types in MessagePack, each with its length before it."""
+"""Defines the messages between server and worker: frozen types in MessagePack, each preceded by its length."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ Status = Literal["loading", "paused", "running", "ended", "failed"]
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_field="type"):
-    """The base of all messages."""
+    """Base of all messages."""
 
 
 def whole(text: str, most: int = 10_000) -> str:
-    """Returns a text that can be sent: half characters, which no encoding has, as escapes, and a long one without its middle."""
+    """Returns a text that can be sent: unpaired surrogates are escaped, and the middle of a long text is removed."""
     told = str(text)
     if len(told) > most:
         told = f"{told[: most // 2]}\n… ({len(told) - most:,} more characters) …\n{told[-(most // 2) :]}"
@@ -23,7 +23,7 @@ def whole(text: str, most: int = 10_000) -> str:
 
 
 def digest_of(text: str) -> str:
-    """Returns what tells a text from others."""
+    """Returns a hash that identifies a text."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
@@ -31,152 +31,153 @@ def digest_of(text: str) -> str:
 
 
 class Start(Message, frozen=True, kw_only=True):
-    """Begins a run; the first message."""
+    """Starts a job; the first message to a worker."""
 
     job: Literal["run", "check", "replay", "make", "list"] = "run"
-    """`check` loads the model, builds what it describes and runs nothing; `replay` runs a recording again and compares; `make` writes
-    a file that is made of recordings; `list` reads summaries of recordings."""
+    """`check` loads the model and builds what it describes without running it; `replay` runs a recording again and compares; `make`
+    makes a file from recordings; `list` reads summaries of recordings.
+    """
     path: str = ""
-    """The model; or the recording that is run again."""
+    """The model file, or the recording to replay."""
     source: str = ""
     folder: str = ""
     recordings: tuple[str, ...] = ()
-    """The recordings that are read."""
+    """The recordings to read."""
     form: str = ""
-    """What is made of them: one of `workbench.forms`."""
+    """The kind of file to make: one of `workbench.forms`."""
     to: str = ""
-    """The file that is made."""
+    """The path of the file to make."""
     settings: dict[str, Any] = {}
     seed: int | str | None = None
     record: str | None = None
     commands: list[tuple[int, dict[str, Any]]] = []
-    """What users did in an earlier run, to be done again: after which tick, and what (`Command.to_data`)."""
+    """The commands of users in an earlier run, to be applied again: tick after which each was given, and its data (`Command.to_data`)."""
     recorded: str | None = None
-    """The recording of the earlier run that is lived through again; None for a new run."""
+    """The recording of the earlier run that is repeated; None for a new run."""
     helpers: dict[str, tuple[str, str]] = {}
-    """The file and text of each helper module of an earlier run, by name; others are read from the folder."""
+    """The file and text of each helper module of an earlier run, by name; other modules are read from the folder."""
     factor: float | None = None
     real_time: bool = False
-    """Whether a run that has a body goes at real time, whatever `factor` is: no speed has been chosen yet."""
+    """Whether a run with a body goes in real time regardless of `factor`, as no speed has been chosen yet."""
     breakpoints: tuple[str, ...] = ()
     run: bool = False
     attempt: int = 0
-    """Which of its session's attempts to begin a run this is, from 1."""
+    """The number of this attempt to start a run in its session, from 1."""
     version: str = ""
-    """Tells the model's text from others; see `ModelFile.version`."""
+    """Identifies the model's text; see `ModelFile.version`."""
 
 
 class Do(Message, frozen=True, kw_only=True):
-    """A command or question of a page."""
+    """A command or question from a page."""
 
     id: int
     say: bytes
-    """As JSON; see `protocol`."""
+    """The command as JSON; see `protocol`."""
 
 
 class Leave(Message, frozen=True, kw_only=True):
-    """Asks the worker to end in good order."""
+    """Asks the worker to end normally."""
 
 
 class Draw(Message, frozen=True, kw_only=True):
-    """Says of which kinds of overlays every state is to tell from now on; see `worker.drawings`."""
+    """Sets the kinds of overlays whose data each state contains from now on; see `worker.drawings`."""
 
     kinds: tuple[str, ...]
 
 
 class Where(Message, frozen=True, kw_only=True):
-    """Asks at which line of the model the worker is."""
+    """Asks which line of the model the worker is at."""
 
 
 # -- from the worker
 
 
 class Facts(Message, frozen=True, kw_only=True):
-    """What is known of a run once it is built; of a program once more whenever another one of its simulations is shown."""
+    """The facts of a run once it is built; a program sends them again whenever another of its simulations is shown."""
 
     kind: Literal["simulation", "program"]
     seed: int | str
     period: float
-    """A tick [s]."""
+    """Length of a tick [s]."""
     parameters: bytes
-    """JSON: their values by name."""
+    """JSON: the values of parameters by name."""
     world: bytes
     """JSON: bodies and apertures; null without a world."""
     mj_model: bytes | None
-    """The compiled scene, as MuJoCo saves it."""
+    """The compiled scene in MuJoCo's binary format; None without a world."""
 
 
 class State(Message, frozen=True, kw_only=True):
-    """What the run is like at a moment; a newer one replaces it."""
+    """The state of the run at a moment; a newer state replaces it."""
 
     status: Status
     reason: str
-    """Why it is paused, has ended or failed."""
+    """Why the run is paused, has ended or failed."""
     tick: int
     time: float
-    """[s]"""
+    """Time of the run [s]."""
     furthest: float
-    """How far it has come [s]."""
+    """The furthest time that the run has reached [s]."""
     wanted: float | None
     measured: float | None
-    """How many times as fast as real time; None where it stands."""
+    """Measured speed as a multiple of real time; None if the run is not going on."""
     events: int
-    """How many events there are up to this moment."""
+    """Number of events up to this moment."""
     parts: bytes
     """JSON: see `actr3d.actr.explain.snapshot`."""
     apertures: dict[str, float]
-    """Free widths by name [m]."""
+    """Free widths of apertures by name [m]."""
     result: bytes
-    """JSON: what was measured of a run that has ended; null where nothing was, or it goes on."""
+    """JSON: the measured result of a run that has ended; null if there is none, or the run has not ended."""
     physics: bytes | None
     """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
     drawn: dict[str, Any] = {}
-    """What overlays show of it, by kind: what a `Draw` has asked for."""
+    """The data of overlays by kind, as requested by a `Draw`."""
 
 
 class News(Message, frozen=True, kw_only=True):
-    """Events, in order."""
+    """New events, in order."""
 
     first: int
-    """The number of the first, counted from 0; more than one after the last before where some were left out."""
+    """The number of the first event, counted from 0; there is a gap to the previous message if some events were left out."""
     events: list[bytes]
-    """JSON of each: time [us], source, kind, data."""
+    """JSON of each event: time [us], source, kind, data."""
 
 
 class Cut(Message, frozen=True, kw_only=True):
-    """The run goes another way: events from a number on are no more."""
+    """The run continues differently: the events from a number on no longer exist."""
 
     events: int
 
 
 class Branched(Message, frozen=True, kw_only=True):
-    """The run goes another way from a moment on; how it had gone on is kept as a recording of its own."""
+    """The run continues differently from a moment on; its previous continuation is kept as a separate recording."""
 
     recording: str
-    """Its name."""
+    """The name of that recording."""
     at: float
-    """The moment [s]."""
+    """The moment of the change [s]."""
     until: float
-    """How far the run had come [s]."""
+    """The furthest time that the run had reached [s]."""
 
 
 class Loaded(Message, frozen=True, kw_only=True):
     """The model has loaded a helper module."""
 
     file: str
-    """Where it lies."""
+    """The path of the module."""
     digest: str
-    """Tells its text from others; see `digest_of`."""
+    """Identifies its text; see `digest_of`."""
 
 
 class Share(Message, frozen=True, kw_only=True):
-    """So much of a job is done, from 0 to 1."""
+    """The finished share of a job, from 0 to 1."""
 
     done: float
 
 
 class Notice(Message, frozen=True, kw_only=True):
-    """Something to tell the user."""
+    """A message to the user."""
 
     level: Literal["info", "warning", "error"]
     text: str
@@ -184,27 +185,27 @@ class Notice(Message, frozen=True, kw_only=True):
     line: int | None = None
     detail: str = ""
     events: int | None = None
-    """How many events there were when it was told; None where that is not known."""
+    """Number of events when the notice was made; None if unknown."""
 
 
 def notice(
     level: Literal["info", "warning", "error"], text: str, file: str | None = None, line: int | None = None, detail: str = ""
 ) -> Notice:
-    """Returns a notice of any texts, such as models make."""
+    """Returns a notice; the texts may be of any length and content, as models make them."""
     return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail, 100_000))
 
 
 class Reply(Message, frozen=True, kw_only=True):
-    """What came of a `Do`."""
+    """The reply to a `Do`."""
 
     id: int
     result: bytes = b"null"
-    """JSON."""
+    """The result as JSON."""
     error: str | None = None
 
 
 class At(Message, frozen=True, kw_only=True):
-    """Where the worker is: the innermost line that is the modeller's."""
+    """The position of the worker: the innermost line of the modeller's code."""
 
     file: str | None
     line: int | None
@@ -212,7 +213,7 @@ class At(Message, frozen=True, kw_only=True):
 
 
 class Over(Message, frozen=True, kw_only=True):
-    """The worker ends in good order."""
+    """The worker ends normally."""
 
 
 ToWorker = Start | Do | Draw | Leave | Where
@@ -222,14 +223,14 @@ _ENCODER = msgspec.msgpack.Encoder()
 TO_WORKER: msgspec.msgpack.Decoder[ToWorker] = msgspec.msgpack.Decoder(ToWorker)
 FROM_WORKER: msgspec.msgpack.Decoder[FromWorker] = msgspec.msgpack.Decoder(FromWorker)
 LENGTH = 4
-"""How many bytes tell a message's length."""
+"""Number of bytes of a message's length prefix."""
 LONGEST = 200_000_000
-"""No message is longer [bytes]; a compiled scene with large meshes is the largest."""
+"""Maximum size of a message [bytes]; a compiled scene with large meshes is the largest."""
 LONGEST_ANSWER = 20_000_000
-"""No answer to a question is longer [bytes]."""
+"""Maximum size of an answer to a question [bytes]."""
 
 
 def framed(message: Message) -> bytes:
-    """Returns a message as it goes over the wire."""
+    """Returns a message as bytes with its length prefix."""
     data = _ENCODER.encode(message)
     return len(data).to_bytes(LENGTH, "big") + data

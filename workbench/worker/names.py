@@ -1,4 +1,4 @@
-"""The names at which a run can be stopped: of productions, buffers and bodies."""
+"""Collects the names of productions, buffers and bodies at which a run can be stopped, and checks names against them."""
 
 from __future__ import annotations
 
@@ -19,28 +19,29 @@ from workbench.worker.slots import check_slots
 from workbench.worker.tops import Top
 
 MOST_TOLD = 12
-"""So many names are told of where one is not known."""
+"""Maximum number of known names in an error message about an unknown one."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Names:
-    """What there is in a run, by name."""
+    """Holds the names of things in a run."""
 
     productions: frozenset[str] = frozenset()
     buffers: frozenset[str] = frozenset()
-    """Their paths."""
+    """Paths of the buffers."""
     bodies: frozenset[str] = frozenset()
     modules: frozenset[str] = frozenset()
-    """The Python modules from which their parts come."""
+    """The Python modules from which the models' parts come."""
     growing: frozenset[str] = frozenset()
-    """Of what there may be more later, `production` or `buffer`, as of a program, which makes its models as it goes on: then only a
-    name that looks misspelt is refused."""
+    """Kinds (`production`, `buffer`) of which more may appear later, as in a program that creates models while it runs; for these, a
+    name is refused only if it looks misspelt.
+    """
 
     def buffer(self, name: str) -> str:
-        """Returns the path of the buffer that is called so: by its path, or by the name that its agent gives it.
+        """Returns the path of a buffer, given its path or the name that its agent gives it.
 
         Raises:
-            Actr3dError: If there is none, or there are several.
+            Actr3dError: If there is no such buffer, or several.
         """
         found = [name] if name in self.buffers else sorted(path for path in self.buffers if path.endswith(f".{name}"))
         if len(found) > 1:
@@ -50,11 +51,11 @@ class Names:
         return found[0] if found else name
 
     def check(self, what: str, name: str) -> None:
-        """Checks that there is a thing of this name, or may be.
+        """Checks that a thing of this name exists, or may exist later.
 
         Args:
             what: `production`, `buffer` or `body`.
-            name: Its name; of a production that is learned from others, as it is or will be called.
+            name: The name; for a production that is compiled from others, the name it has or will have.
 
         Raises:
             Actr3dError: If there is none.
@@ -69,26 +70,26 @@ class Names:
             raise Actr3dError(f"no {what} '{name}'{near or _there_are(known)}")
 
     def check_new(self, productions: Iterable[str], before: Iterable[str]) -> None:
-        """Checks that there are the productions of these names, but for those that were named before.
+        """Checks that productions of these names exist, except those that were named before.
 
         Raises:
-            Actr3dError: If there is one not.
+            Actr3dError: If one does not exist.
         """
         for name in sorted(set(productions).difference(before)):
             self.check("production", name)
 
 
 def check_until(said: Until, names: Names, sources: Iterable[str], folder: str = "") -> None:
-    """Checks that there is what a run is to go on for, before it goes on.
+    """Checks, before a run continues, that the condition it is to stop at can occur.
 
     Args:
-        said: Until when.
-        names: What there is.
+        said: The stop condition.
+        names: The names in the run.
         sources: The texts of the model.
-        folder: Where its helper modules are.
+        folder: The folder of its helper modules.
 
     Raises:
-        Actr3dError: If there is no such thing, or the pattern cannot be read, or names a slot that no chunk can have.
+        Actr3dError: If a name is unknown, the pattern is invalid, or it names a slot that no chunk can have.
     """
     if said.buffer:
         names.buffer(said.buffer)
@@ -101,7 +102,7 @@ def check_until(said: Until, names: Names, sources: Iterable[str], folder: str =
 
 
 def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notice]:
-    """Yields what is told of breakpoints whose productions are no more, as after an edit."""
+    """Yields a warning for each breakpoint whose production no longer exists, for example after an edit."""
     for name in sorted(productions):
         try:
             names.check("production", name)
@@ -110,13 +111,13 @@ def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notic
 
 
 def _learned(name: str, known: frozenset[str]) -> bool:
-    """Tells whether a production could be called so that is compiled from known ones; see `actr3d.actr.procedural.compilation`."""
+    """Returns whether a name may belong to a production compiled from known ones; see `actr3d.actr.procedural.compilation`."""
     first, *more = (part for part in name.split("-") if not part.isdecimal())
     return bool(more) and known.issuperset((first, *more))
 
 
 def _numbered(name: str, known: frozenset[str]) -> bool:
-    """Tells whether a buffer is called so in a later model of a class that is known: `goal#2`."""
+    """Returns whether a name belongs to a buffer in a later model of a known class, such as `goal#2`."""
     return re.sub(r"#\d+", "", name) in known
 
 
@@ -127,7 +128,7 @@ def _there_are(known: Iterable[str]) -> str:
 
 
 def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
-    """Returns what there is in models.
+    """Returns the names of the things in models.
 
     Args:
         tops: The top models, or the agents of a simulation.
@@ -146,14 +147,14 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
 
 
 def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: Listing, source: str, folder: Path) -> Names:
-    """Returns what there is in a program, as far as it has come.
+    """Returns the names of the things in a program, as far as it has run.
 
     Args:
-        tops: The models that it has made.
-        bodies: The bodies of the simulation that is shown.
-        listing: What its text says of itself.
+        tops: The models created so far.
+        bodies: The bodies of the simulation on screen.
+        listing: The description read from its text.
         source: Its text.
-        folder: Where its helper modules are.
+        folder: The folder of its helper modules.
     """
     made = names_of(tops, bodies)
     written = {name.rpartition(".")[2] for name in listing.productions}
@@ -164,7 +165,7 @@ def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: Listin
 
 
 def _has_helpers(source: str, folder: Path) -> bool:
-    """Tells whether a text loads modules that lie in its folder: models may come from there."""
+    """Returns whether a text imports modules from its folder, which may define models."""
     roots: set[str] = set()
     for node in ast.walk(syntax_tree(source)):
         if isinstance(node, ast.Import):

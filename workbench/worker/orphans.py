@@ -1,4 +1,4 @@
-"""Processes that a model has left behind: they come to who has adopted them, and are ended. On Linux only."""
+"""Ends processes that a model has left behind: this process adopts and kills them. On Linux only."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PR_SET_CHILD_SUBREAPER = 36
 
 
 def adopt() -> None:
-    """Lets processes whose parents have ended come to this one, not to the first of the system: also those that hide as daemons."""
+    """Makes this process the parent of orphaned descendants, instead of the system's first process; this includes daemons."""
     if sys.platform == "linux":
         import ctypes
 
@@ -22,7 +22,7 @@ def adopt() -> None:
 
 
 def end_orphans(known: Container[int]) -> None:
-    """Ends all children of this process that are not known; their own children come next time."""
+    """Ends all children of this process that are not in `known`; their own children follow at the next call."""
     for pid in _children() if sys.platform == "linux" else ():
         if pid not in known:
             with suppress(OSError):
@@ -32,11 +32,11 @@ def end_orphans(known: Container[int]) -> None:
 
 
 def _children() -> list[int]:
-    """Returns the children of this process, of whichever thread."""
+    """Returns the child processes of this process, started by any thread."""
     found: list[int] = []
     for folder in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
-            # After the name, which may hold anything: the state, and the parent's number.
+            # After the name, which may contain any character: the state, and the parent's number.
             if int((folder / "stat").read_bytes().rpartition(b")")[2].split()[1]) == os.getpid():
                 found.append(int(folder.name))
     return found

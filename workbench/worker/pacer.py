@@ -1,4 +1,4 @@
-"""Holds a run to a speed, and measures the one it has."""
+"""Limits the speed of a run, and measures its actual speed."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ from time import perf_counter
 from actr3d.clock import MICROSECONDS
 
 WINDOW = 1.0
-"""Over how long the speed is measured [s]."""
+"""Interval over which the speed is measured [s]."""
 SHORTEST = 1 / 60
-"""Over less than this nothing is measured [s]; ours, half of the time between two pictures."""
+"""Minimum interval for a measurement [s]; chosen here as half of the time between two pictures."""
 LATE = 0.25
-"""Who is later than this [s] does not catch up."""
+"""A run that is later than this does not catch up [s]."""
 
 
 class Pacer:
-    """Tells how long a run is to wait, and how many times as fast as real time it has gone lately.
+    """Computes how long a run must wait, and measures its recent speed as a multiple of real time.
 
     Args:
-        factor: How many times as fast as real time it is to go; None for as fast as it can.
+        factor: The maximum speed as a multiple of real time; None for no limit.
     """
 
     def __init__(self, factor: float | None) -> None:
         self.factor = factor
         self._anchor: tuple[float, int] | None = None
-        """A time of the day [s], and the run's own [us] that belongs to it."""
+        """A wall-clock time [s] and the corresponding time of the run [us]."""
         self._marks: deque[tuple[float, int]] = deque()
-        """Such times of the last while."""
+        """Such pairs of recent times."""
 
     def halt(self) -> None:
-        """Takes note that the run waits for something else than its time: what comes then is held and measured anew."""
+        """Restarts pacing and measuring, because the run has waited for something other than its time."""
         self._anchor = None
         self._marks.clear()
 
     def set(self, factor: float | None) -> None:
-        """Holds the run to another speed from now on."""
+        """Sets another speed from now on."""
         self.factor, self._anchor = factor, None
 
     def early(self, clock: int, goal: int) -> float:
-        """Returns how much too early it is for a moment of a run [s]; at most 0 where it may come.
+        """Returns how long a run must wait for a moment [s]; 0 or less if it is due.
 
         Args:
-            clock: Where the run is [us].
+            clock: The current time of the run [us].
             goal: The moment [us].
         """
         if self.factor is None:
@@ -57,7 +57,7 @@ class Pacer:
         return early
 
     def measure(self, clock: int) -> float | None:
-        """Returns the speed of a run that is at a time [us] now; None where it has only begun."""
+        """Returns the speed of a run, given its current time [us]; None if it has only just started."""
         now = perf_counter()
         self._marks.append((now, clock))
         while now - self._marks[0][0] > WINDOW:

@@ -1,4 +1,4 @@
-"""What a worker keeps of its run's past: the physics at the ends of ticks, from which curves are made."""
+"""Stores the past of a worker's run: the physics states at the ends of ticks, from which curves are computed."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from actr3d.world import World
 from workbench.curves import stride
 
 MOST_BYTES = 48_000_000
-"""Of more states every second one is left out, so that a long run needs no more memory than a short one; a walker's are 1.8 kB each."""
+"""Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
 
 
 class Past:
-    """Keeps the states of a run, whoever watches; also those ahead of the present after it has gone back."""
+    """Stores the states of a run, whether or not anyone watches, including those ahead of the present after it has gone back."""
 
     def __init__(self) -> None:
         self._states: list[bytes] = []
         self._every = 1
-        """One of so many ticks is kept."""
+        """Only every n-th tick is stored."""
         self._last: tuple[int, bytes] = (-1, b"")
 
     def keep(self, tick: int, world: World) -> None:
-        """Takes the end of a tick, or the start of the run (tick 0); what is known already stays."""
+        """Stores the state at the end of a tick, or at the start of the run (tick 0); known ticks are skipped."""
         if tick > self._last[0]:
             self.add(tick, world.state_bytes())
 
     def add(self, tick: int, state: bytes) -> None:
-        """Takes the state at the end of a tick; what is known already stays."""
+        """Stores a state at the end of a tick; known ticks are skipped."""
         if tick <= self._last[0]:
             return
         self._last = tick, state
@@ -38,19 +38,19 @@ class Past:
             self._every *= 2
 
     def cut(self, tick: int) -> None:
-        """Forgets what came after a tick: the run goes another way."""
+        """Removes the states after a tick, because the run continues differently."""
         if tick < self._last[0]:
             del self._states[tick // self._every + 1 :]
             kept = len(self._states) - 1
             self._last = kept * self._every, self._states[kept]
 
     def within(self, first: int, last: int | None, most: int) -> Iterator[tuple[int, bytes]]:
-        """Yields the ticks of a stretch with their states, evenly spread, no more than `most`; the last one is among them.
+        """Yields the ticks of an interval with their states, evenly spaced, at most `most`, including the last one.
 
         Args:
-            first: The first tick of the stretch.
-            last: The last one; None for the furthest that the run has come.
-            most: At least 2.
+            first: The first tick of the interval.
+            last: The last tick; None for the furthest that the run has reached.
+            most: Maximum number of states, at least 2.
         """
         end = self._last[0] if last is None else min(last, self._last[0])
         if end < first:

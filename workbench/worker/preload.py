@@ -1,4 +1,4 @@
-"""What the process has loaded from which all workers are forked, so that a run begins at once."""
+"""Imports and compiles what models need, in the process from which all workers are forked, so that runs start at once."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ import workbench.worker.program  # pyright: ignore[reportUnusedImport] # noqa: F
 from actr3d.camera import glance
 from actr3d.world import Floor, Mannequin, Scene, World
 
-# The camera is compiled, or read from its cache, when it first looks.
+# The first view compiles the camera or loads it from its cache.
 glance(World(Scene(parts=(Floor(), Mannequin(name="walker")))).bodies["walker"])

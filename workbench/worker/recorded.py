@@ -1,4 +1,4 @@
-"""What a worker does with recordings: runs one again, makes files of them, or reads their summaries."""
+"""Runs the worker jobs for recordings: replays one, makes files from them, or reads their summaries."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from workbench.worker.memory import relieve
 from workbench.worker.messages import Reply, Share, whole
 
 STEP = 0.001
-"""It is told whenever so much more is done."""
+"""Progress is reported in steps of this share."""
 MOST_TEXT = 20_000
-"""No more is told of where a run differs [characters]."""
+"""Maximum length of the text about the differences [characters]."""
 LEAST_ROOM = 1_000_000_000
-"""What is made of recordings may always be so large [bytes],"""
+"""Minimum limit for the size of a file made from recordings [bytes]."""
 ROOM = 10
-"""and so many times as large as they are: a table of text is larger than numbers and packed text."""
+"""The limit is also this multiple of the recordings' size: text tables are larger than numbers and compressed text."""
 
 
 def replay_again(link: Link) -> None:
-    """Runs a recording again; answers whether every byte agrees (None where that cannot be told), and what the comparison says."""
+    """Runs a recording again; replies whether every byte agrees (None if that is unknown), and with the text of the comparison."""
     path = Path(link.start.path)
     told = 0.0
 
@@ -40,7 +40,7 @@ def replay_again(link: Link) -> None:
 
     try:
         with Recorded(path) as recorded:
-            comparison = replay(recorded, trust=True, progress=progress, within=Path(link.start.to))  # the server has asked
+            comparison = replay(recorded, trust=True, progress=progress, within=Path(link.start.to))  # the server has checked the trust
         found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
         found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"'{path}'", "it")}
@@ -48,7 +48,7 @@ def replay_again(link: Link) -> None:
 
 
 def make(link: Link) -> None:
-    """Makes a file of recordings; answers how large it is [bytes], or why it cannot be made."""
+    """Makes a file from recordings; replies with its size [bytes], or with the reason why it cannot be made."""
     start = link.start
     paths, to = [Path(path) for path in start.recordings], Path(start.to)
 
@@ -63,13 +63,13 @@ def make(link: Link) -> None:
 
 
 def summarize(link: Link) -> None:
-    """Answers with the summary of each recording, in order."""
+    """Replies with the summary of each recording, in order."""
     for number, path in enumerate(map(Path, link.start.recordings)):
         link.post(_answer(number, lambda path=path: summary_json(path), [path]))
 
 
 def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:
-    """Returns what comes of some work, or in words why nothing did."""
+    """Returns a reply with the result of some work, or with the reason for its failure."""
     try:
         return Reply(id=number, result=work())
     except MemoryError:
@@ -79,7 +79,7 @@ def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:
         problem = str(error)
     except OSError as error:
         problem = f"it cannot be read or written: {error.strerror or error}"
-    except Exception as error:  # noqa: BLE001 - whatever is in the file
+    except Exception as error:  # noqa: BLE001 - a damaged file may raise anything
         which = "the recording" if len(paths) == 1 else "one of the recordings"
         problem = f"{which} is damaged: {type(error).__name__}: {error}"
     for path in paths:

@@ -1,4 +1,4 @@
-"""A recording of a program that is run again where its user goes back: each thing is written once."""
+"""Records a program that is run again when its user goes back: each item is written only once."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from actr3d.trace import TraceEvent
 
 
 class RecordedOnce:
-    """Hands on what one time through a program tells, unless it is known from an earlier time; the same things come in the same order.
+    """Passes items of one pass through a program to the recording, except those known from an earlier pass; the order is always the same.
 
     Args:
-        recording: What has been told up to now.
-        left: Tells whether the program is being left: what it does then, as in `finally`, is nothing that it does by itself.
+        recording: The recording with the items so far.
+        left: Returns whether the program is being left: what it does then, as in `finally`, is not recorded.
     """
 
     def __init__(self, recording: Recording, left: Callable[[], bool]) -> None:
@@ -23,33 +23,33 @@ class RecordedOnce:
         self._events = self._states = self._answers = self._commands = 0
 
     def event(self, event: TraceEvent) -> None:
-        """Takes an event.
+        """Records an event.
 
         Raises:
-            RecordingError: If the file cannot be written any more.
+            RecordingError: If the file can no longer be written.
         """
         self._events += 1
         if self._events > self._recording.events and not self._left():
             self._recording.event_alone(event)
 
     def state(self, run: int, tick: int, data: bytes) -> None:
-        """Takes the physics at the start of a run, or at the end of a tick.
+        """Records the physics at the start of a run, or at the end of a tick.
 
         Raises:
-            RecordingError: If the file cannot be written any more.
+            RecordingError: If the file can no longer be written.
         """
         self._states += 1
         if self._states > self._recording.states and not self._left():
             self._recording.state(run, tick, data)
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
-        """Takes what a body answered."""
+        """Records a body's answer to a query."""
         self._answers += 1
         if self._answers > self._recording.answers and not self._left():
             self._recording.answer(run, tick, body, word, value)
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
-        """Takes what a user did."""
+        """Records a command of a user."""
         self._commands += 1
         if self._commands > self._recording.commands and not self._left():
             self._recording.command(run, tick, data)

@@ -1,4 +1,4 @@
-"""What is shown of one simulation, whoever runs it: its scene, overlays, curves, and answers to questions. Nothing changes by asking."""
+"""Computes what is shown of one simulation: its scene, overlays, curves, and answers to questions. Asking changes nothing."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from workbench.worker.widths import widths
 
 
 class Kept:
-    """What is kept of a simulation's past. It may serve a simulation that is made once more, and then does the same again.
+    """Stores the past of a simulation. It can also serve the same simulation when it is run again.
 
     Args:
-        period: A tick [us].
+        period: Length of a tick [us].
     """
 
     def __init__(self, period: int) -> None:
@@ -44,43 +44,43 @@ class Kept:
         self.walked = Walked(period)
 
     def keep(self, tick: int, world: World) -> None:
-        """Takes the end of a tick, or the start of the run (tick 0); what is known already stays."""
+        """Stores the end of a tick, or the start of the run (tick 0); known ticks are skipped."""
         self.states.keep(tick, world)
         self.walked.keep(tick, world)
 
     def cut(self, tick: int) -> None:
-        """Forgets what came after a tick: the run goes another way."""
+        """Removes what came after a tick, because the run continues differently."""
         self.states.cut(tick)
         self.walked.cut(tick)
 
 
 class Shown:
-    """Shows a simulation.
+    """Provides what pages show of a simulation.
 
     Args:
         simulation: The simulation, at its start.
-        kept: What is known of its past and future from an earlier time through it.
+        kept: The past and future that are known from an earlier pass through it.
     """
 
     def __init__(self, simulation: Simulation, kept: Kept | None = None) -> None:
         self.simulation = simulation
         self.period = microseconds(simulation.period)
-        """A tick [us]."""
+        """Length of a tick [us]."""
         self.kept = kept or Kept(self.period)
         self.kept.keep(0, simulation.world)
         simulation.event_log.keeper = self.kept
         self.mj_model = saved(simulation.world.mj_model)
-        """The compiled scene at the start, as MuJoCo saves it."""
+        """The compiled scene at the start, in MuJoCo's binary format."""
         self.surroundings = surroundings(simulation.world)
         self._openings = self.scene()[1]
-        """How wide apertures are at the start [m]."""
+        """The widths of apertures at the start [m]."""
         self._drawings = Drawings(simulation, self.eyesight, self.kept.walked)
 
     def world(self, parameters: Iterable[Parameter] | None = None) -> dict[str, Any]:
-        """Returns what pages must know of the world, as plain values.
+        """Returns the description of the world for pages, as plain values.
 
         Args:
-            parameters: Those of the model, which say how wide doorways can be set while it runs; None where they cannot be.
+            parameters: The model's parameters, which limit the widths of doorways during the run; None if widths cannot be changed.
         """
         return {
             **self.surroundings,
@@ -89,24 +89,24 @@ class Shown:
         }
 
     def scene(self) -> tuple[bytes, dict[str, float]]:
-        """Returns the state of the physics, and how wide apertures are."""
+        """Returns the state of the physics, and the widths of apertures [m]."""
         world = self.simulation.world
         names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
         return world.state_bytes(), {name: world.aperture_width(name) for name in names}
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns what overlays show of the present, by kind; nothing where it cannot be computed, as after a physics that diverged."""
+        """Returns the current data of overlays by kind; empty if it cannot be computed, for example after the physics has diverged."""
         with suppress(Actr3dError):
             return self._drawings.told(kinds)
         return {}
 
     def result(self) -> dict[str, Any] | None:
-        """Returns what was measured of the run, if anything was."""
+        """Returns the measured result of the run, if any."""
         result = self.simulation.result()
         return None if result is None else asdict(result)
 
     def touches(self) -> Touches:
-        """Returns what touches a body now, the ground left out."""
+        """Returns the current contacts of bodies with anything but the ground."""
         world = self.simulation.world
         ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
         return frozenset(
@@ -116,10 +116,10 @@ class Shown:
     # -- questions
 
     def answer(self, question: Any) -> Any:
-        """Returns what is asked, as plain values.
+        """Returns the answer to a question as plain values.
 
         Raises:
-            Actr3dError: If there is nothing of that name, or it cannot be told.
+            Actr3dError: If there is nothing of that name, or the question cannot be answered.
         """
         match question:
             case say.Look():
@@ -132,11 +132,11 @@ class Shown:
                 return answer(question, self.simulation.trace, [Top(mind) for mind in self.simulation.minds.values()])
 
     def curves(self, question: say.Curves, begin: int = 0) -> dict[str, Any]:
-        """Returns curves of all that is known of the run.
+        """Returns curves of the known run.
 
         Args:
-            question: Which, and from when on.
-            begin: When the simulation began, for the page [us].
+            question: The names of the curves, and the interval.
+            begin: The time at which the simulation began, as pages count it [us].
         """
         first, last = stretch(question.first, question.last, self.period, begin)
         moments = ((seconds(begin + tick * self.period), state) for tick, state in self.kept.states.within(first, last, question.most))
@@ -144,11 +144,11 @@ class Shown:
 
     @cached_property
     def _curves(self) -> Curves:
-        """What makes curves of its past, once somebody asks; from a copy of the scene."""
+        """Computes curves from the past, on a copy of the scene; created at the first request."""
         return Curves(loaded(self.mj_model), self.surroundings)
 
     def eyesight(self, name: str) -> CameraParameters:
-        """Returns how an agent sees with the eye of its body: as its vision does, or else as it has looked first."""
+        """Returns how an agent sees with its body's eye: as its vision module does, or else as in the body's first view."""
         mind, body = self.simulation.minds.get(name), self.simulation.world.bodies[name]
         own = None if mind is None else next((vision.eyesight for vision in visions(mind)), None)
         return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
@@ -170,7 +170,7 @@ class Shown:
 
 
 def _stand(body: Body) -> dict[str, Any]:
-    """Returns how a body stands."""
+    """Returns the pose, joints, contacts and bounding box of a body."""
     limits = {joint.name: joint.limits for joint in body.joints.values()}
     joints = plain_answer(SENSORS["joints"](body))
     box = body.bounding_box("body")

@@ -1,4 +1,4 @@
-"""What a mind's vision has found last, as it is drawn in the world: each feature's outline, and what was measured of it."""
+"""Computes how the features that an agent's vision found last are drawn in the world: outlines and measured values."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from actr3d.world.body import Body
 from workbench.worker.contours import Places, into_world, points_of
 
 MOST = 24
-"""So many features of one search are told of."""
+"""Maximum number of features of one search that are drawn."""
 DIAMOND = 0.08
-"""Half the height of the mark of a feature that has no size [m]."""
+"""Half the height of the mark of a feature without a size [m]."""
 LEAST = 0.01
-"""An obstacle that has no height is drawn as high as this [m]."""
+"""Minimum height at which an obstacle without a height is drawn [m]."""
 
 
 def told_sightings(mind: Model, body: Body) -> list[dict[str, Any]]:
-    """Returns the features that a mind's last searches have noticed: `text`, `place`, `lines`, and whether it has `chosen` it."""
+    """Returns the features found in an agent's last searches: `text`, `place`, `lines`, and whether the agent has `chosen` it."""
     told: list[dict[str, Any]] = []
     for _, search in groupby(sightings(mind, body), key=lambda one: (one.module, one.bottom_up)):
         found = list(islice(search, MOST))
@@ -36,7 +36,7 @@ def told_sightings(mind: Model, body: Body) -> list[dict[str, Any]]:
 
 
 def _text(feature: Feature) -> str:
-    """Returns what was measured, for people: centimetres up to a metre."""
+    """Returns a label with the measured values; sizes below one metre are in centimetres."""
     width, distance = getattr(feature, "width", None), f"{feature.distance:.1f} m away"
     if not isinstance(width, (int, float)) or not math.isfinite(width):
         return f"{feature.called()} {distance}"
@@ -45,14 +45,14 @@ def _text(feature: Feature) -> str:
 
 
 def _outline(sighting: Sighting, points: Places) -> Places:
-    """Returns the lines that show a feature, `(n, 2, 3)`; the first is the one that is measured.
+    """Returns the lines that show a feature, `(n, 2, 3)`; the first is the measured one.
 
-    Of an opening: across it, and its sides. Where its edges are not found, it is drawn square to the line of sight. Of an obstacle:
-    upright, at its nearest point. Of what a model's own detectors find: see `_frame`.
+    An opening has a line across it and its two sides. If its edges are not found, it is drawn perpendicular to the line of sight. An
+    obstacle has an upright line at its nearest point. For the features of a model's own detectors, see `_frame`.
 
     Args:
-        sighting: What was noticed.
-        points: Those of its view.
+        sighting: The feature as it was seen.
+        points: The points of its view, from `points_of`.
     """
     upper_left, upper_right, lower_right, lower_left = np.array(sighting.corners)
     if isinstance(sighting.feature, Obstacle):
@@ -69,7 +69,7 @@ def _outline(sighting: Sighting, points: Places) -> Places:
 
 
 def _frame(sighting: Sighting) -> Places:
-    """Returns a frame as wide and as high as a feature says that it is; a line where it says one of these, a small diamond where none."""
+    """Returns a rectangle with the width and height of a feature; a line if only one of them is known, a small diamond if neither is."""
     corners = np.array(sighting.corners)
     wide, high = bool((corners[0] != corners[1]).any()), bool(corners[0, 2] > corners[2, 2])
     if wide != high:
@@ -82,7 +82,7 @@ def _frame(sighting: Sighting) -> Places:
 
 
 def _edges(opening: Opening, view: View, points: Places) -> Places | None:
-    """Returns the places of the left and the right edge between which an opening's middle was measured, from the eye, `(2, 3)`."""
+    """Returns the left and right edge points between which an opening's middle was measured, relative to the eye, `(2, 3)`."""
     labels, rows = view.extents["label"], view.extents["row"]
     lefts, rights = np.flatnonzero(labels == opening.left), np.flatnonzero(labels == opening.right)
     one, other = (index.ravel() for index in np.meshgrid(lefts, rights))

@@ -1,4 +1,4 @@
-"""Which slots chunks can have: a run that waits for a chunk with any other slot waits for ever."""
+"""Checks the slots in a pattern: a run that waits for a chunk with a slot that no chunk can have would wait forever."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.errors import Actr3dError, did_you_mean
 
 LIBRARY = "actr3d."
-"""What the names of the library's modules begin with; their chunks may have any slot that the texts of the package name."""
+"""The prefix of the library's module names; chunks of its modules may have any slot that is named in the text of their package."""
 _WORD = re.compile(r"[^\W\d]\w*")
 _SLOT = re.compile(r"(?<![\w?])([^\W\d]\w*):(?=\S)")
 MOST_TOLD = 12
 
 
 def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], folder: str = "") -> None:
-    """Checks that a chunk can have the slots that a pattern names. What is only computed cannot be known, and is let through.
+    """Checks that chunks can have the slots that a pattern names. Slot names that are computed are unknown, so the check then passes.
 
     Args:
         pattern: The pattern.
         sources: The texts of the model.
         modules: The names of the Python modules from which its parts come.
-        folder: Where its helper modules are; an empty text for nowhere.
+        folder: The folder of its helper modules; an empty text for none.
 
     Raises:
-        Actr3dError: If there is one that no text of the model names; with what is like it.
+        Actr3dError: If no text of the model names a slot; the message lists similar names.
     """
     wanted = {slot for slot, _, _ in parse(pattern) if isinstance(slot, str)}
     sources = [*sources, *_helpers(folder)]
@@ -49,12 +49,12 @@ def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], fo
 
 
 def _texts(modules: Iterable[str]) -> Iterable[str]:
-    """Yields the texts of modules; of one of the library those of its whole package, for what its chunks hold is named elsewhere."""
+    """Yields the texts of modules; for a library module, those of its whole package, as slots may be named elsewhere in it."""
     names = set(modules)
     packages = {".".join(name.split(".")[:2]) for name in names if name.startswith(LIBRARY)}
     for name, module in list(sys.modules.items()):
         if name in names or any(name == package or name.startswith(f"{package}.") for package in packages):
-            with suppress(OSError, TypeError):  # a model of which there is no file; its text is known otherwise
+            with suppress(OSError, TypeError):  # a model without a file; its text is among the sources
                 yield inspect.getsource(module)
 
 
@@ -68,7 +68,7 @@ def _helpers(folder: str) -> Iterable[str]:
 
 
 def _slots(text: str) -> set[str]:
-    """Returns the slots that the patterns and chunks of a text name."""
+    """Returns the slots that are named in the patterns and chunks of a text."""
     with suppress(SyntaxError, ValueError, RecursionError):
         nodes = ast.walk(syntax_tree(text))
         texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str) and "\n" not in node.value]
@@ -77,7 +77,7 @@ def _slots(text: str) -> set[str]:
 
 
 def _computes_slots(text: str) -> bool:
-    """Tells whether a text makes names of slots, as by `f"{name}:{value}"`."""
+    """Returns whether a text computes slot names, for example by `f"{name}:{value}"`."""
     with suppress(SyntaxError, ValueError, RecursionError):
         for node in ast.walk(syntax_tree(text)):
             parts = node.values if isinstance(node, ast.JoinedStr) else []

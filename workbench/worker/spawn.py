@@ -1,4 +1,4 @@
-"""Starts the process from which workers are forked. It imports nothing of weight, so that this process loads while the server does."""
+"""Starts the process from which workers are forked. It imports no large packages, so that process loads while the server does."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 MEMORY = 4_000
-"""How much memory a model may take beyond what a worker has at its start [MB], unless told otherwise."""
+"""Default maximum memory of a model in addition to the worker's own at its start [MB]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Zygote:
-    """The process, as the server has it."""
+    """Holds the server's handle of the process from which workers are forked."""
 
     process: subprocess.Popen[bytes]
     control: socket.socket
-    """Where it is told what to do; it ends where this is closed."""
+    """The socket for requests to the process, which ends when the socket is closed."""
 
     def end(self, wait: float = 3.0) -> None:
-        """Ends it, and with it all workers; waits for it so long at most [s] before it is killed."""
+        """Ends the process and all workers; kills it if it has not ended within `wait` [s]."""
         self.control.close()
         with suppress(subprocess.TimeoutExpired):
             self.process.wait(wait)
@@ -32,13 +32,13 @@ class Zygote:
 
 
 def spawn() -> Zygote:
-    """Starts it; it loads meanwhile."""
+    """Starts the process, which then loads in the background."""
     ours, theirs = socket.socketpair()
-    # Whoever is started by it goes through sets in the same order each time, as `actr3d run` does; numpy's threads would
-    # not outlive a fork, and are of no use here.
+    # A fixed hash seed gives all workers the same order of sets, as in `actr3d run`; numpy's threads would
+    # not survive a fork, and are of no use here.
     environment = {**os.environ, "PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-m", "workbench.worker.zygote", str(theirs.fileno())]
-    # In a session of its own it is not interrupted where a user interrupts the server.
+    # In a session of its own, it is not interrupted when a user interrupts the server.
     fds = [theirs.fileno()]
     process = subprocess.Popen(command, pass_fds=fds, env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
     theirs.close()

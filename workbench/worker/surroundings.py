@@ -1,4 +1,4 @@
-"""What pages, curves and overlays must know of a world: its bodies, doorways and ground, by MuJoCo's numbers."""
+"""Describes a world for pages, curves and overlays: its bodies, doorways and ground, with MuJoCo's numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from actr3d.world import Aperture, Floor, World
 
 
 def surroundings(world: World) -> dict[str, Any]:
-    """Returns what is in a world, as plain values; it is the same at all times."""
+    """Returns a description of a world's constant contents, as plain values."""
     bodies = {
         name: {
             "shoulders": body.anatomy.shoulders,

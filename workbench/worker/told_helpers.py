@@ -1,4 +1,4 @@
-"""The helper modules of a run: the server is told which texts of which files it has loaded."""
+"""Keeps the helper modules of a run, and reports to the server which texts of which files it has loaded."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from workbench.worker.messages import Loaded, digest_of
 
 
 class ToldHelpers(HelperTexts):
-    """Keeps the texts of helper modules, and tells the server of each.
+    """Keeps the texts of helper modules, and reports each to the server.
 
     Args:
-        link: The wire to the server.
-        known: What was loaded in an earlier run, whatever the files hold now.
+        link: The connection to the server.
+        known: The modules loaded in an earlier run, which are used even if the files have changed.
     """
 
     def __init__(self, link: Link, known: Mapping[str, Sequence[str]]) -> None:
@@ -25,18 +25,18 @@ class ToldHelpers(HelperTexts):
         self._link = link
 
     def keep(self, name: str, file: str, folder: Path | None, text: str) -> None:
-        """Takes the text of a module that is about to run."""
+        """Stores the text of a module that is about to run, and reports it."""
         super().keep(name, file, folder, text)
         self._link.post(Loaded(file=file, digest=digest_of(text)))
 
 
 @contextmanager
 def helpers_of(link: Link, known: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
-    """Yields the helper modules of a run: of one that is lived through again those in its recording alone, of others those in its folder.
+    """Yields the helper modules of a run: only those in its recording for a repeated run, otherwise those in its folder.
 
     Args:
-        link: The wire to the server.
-        known: What was loaded in an earlier run, whatever the files hold now.
+        link: The connection to the server.
+        known: The modules loaded in an earlier run, which are used even if the files have changed.
     """
     start = link.start
     if start.recorded is None:

@@ -1,4 +1,4 @@
-"""The top models of a run, with the names that their parts have in its trace."""
+"""Holds the top models of a run, and the names that their parts have in its trace."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, subtree
 
 PATHS = frozenset(("agent", "system", "memory", "module"))
-"""What answers call the paths of parts."""
+"""The keys under which answers contain paths of parts."""
 
 
 class Top(NamedTuple):
-    """A top model, or the agents of a simulation."""
+    """Holds a top model, or an agent of a simulation."""
 
     model: Model
     prefix: str = ""
-    """What stands before the paths of its parts in the trace of a program: `top#2` of its second run, if that is a simulation."""
+    """The prefix of its parts' paths in the trace of a program, such as `top#2` for its second run if that is a simulation."""
 
     def parts(self) -> Iterator[tuple[str, Any]]:
         """Yields all its parts with their names."""
@@ -29,7 +29,7 @@ class Top(NamedTuple):
         return path if not self.prefix else self.prefix if path == "top" else f"{self.prefix}.{path}"
 
     def named(self, told: Any) -> Any:
-        """Returns an answer in plain values with the names of parts in place of their paths."""
+        """Returns an answer in plain values in which the paths of parts are replaced by their names."""
         if not self.prefix:
             return told
         if isinstance(told, dict):

@@ -1,4 +1,4 @@
-"""What is told of an error in a worker."""
+"""Formats errors in a worker for the user."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from workbench.worker.messages import Notice, notice, whole
 _HERE = str(Path(__file__).parents[1])
 
 UNFORESEEN = (Exception, SystemExit, KeyboardInterrupt)
-"""Whatever a model may raise, which is told to its author; not what ends a run from outside."""
+"""All exceptions that a model may raise and that are reported to its author, but not those that end a run from outside."""
 
 
 def told_of(error: BaseException) -> str:
-    """Returns an error in a few words."""
+    """Returns a short description of an error."""
     if isinstance(error, MemoryError):
         return "the model used more memory than it may"
     if isinstance(error, SystemExit):
@@ -29,12 +29,12 @@ def told_of(error: BaseException) -> str:
 
 
 def notice_of(error: BaseException) -> Notice:
-    """Returns what the user is told of an error, with the line of the model where it was."""
+    """Returns the notice for the user about an error, with the line of the model where it occurred."""
     if isinstance(error, MemoryError):
         relieve()
     try:
         told = complaint(error, _HERE)
-        text = told_of(error).removeprefix(f"{told.file}:{told.line}: ")  # where it is, is told beside it
+        text = told_of(error).removeprefix(f"{told.file}:{told.line}: ")  # the notice has the position in separate fields
         return notice("error", text, told.file, told.line, told.text)
     except MemoryError:
         return notice("error", told_of(error))

@@ -1,4 +1,4 @@
-"""The paths that the bodies of a simulation have walked."""
+"""Records the paths that the bodies of a simulation have walked."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from actr3d.world import World
 from workbench.curves import INTEGRATION
 
 STEP = 50_000
-"""A path has a point for each so long a time [us]."""
+"""Interval between two points of a path [us]."""
 MOST_POINTS = 1_000
-"""Of more points every second one is left out, and so on."""
+"""Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
 
 class Walked:
-    """Keeps where bodies were on the floor, also ahead of the present after the run has gone back.
+    """Stores the positions of bodies on the floor, including those ahead of the present after the run has gone back.
 
     Args:
-        period: A tick [us].
+        period: Length of a tick [us].
     """
 
     def __init__(self, period: int) -> None:
         self._every = max(1, STEP // period)
-        """One of so many ticks has a point."""
+        """Only every n-th tick has a point."""
         self._points: dict[str, array[float]] = {}
-        """By body: x and y of each [m]."""
+        """By body: x and y of each point [m]."""
         self._count = 0
         self._data: MjData | None = None
 
     def keep(self, tick: int, world: World) -> None:
-        """Takes the end of a tick, or the start of the run (tick 0); what is known already stays."""
+        """Stores the positions at the end of a tick, or at the start of the run (tick 0); known ticks are skipped."""
         if tick != self._count * self._every:
             return
         for name, place in self._places(world).items():
@@ -42,13 +42,13 @@ class Walked:
         self._count += 1
 
     def cut(self, tick: int) -> None:
-        """Forgets what came after a tick: the run goes another way."""
+        """Removes what came after a tick, because the run continues differently."""
         self._count = min(self._count, tick // self._every + 1)
         for points in self._points.values():
             del points[2 * self._count :]
 
     def up_to(self, tick: int, world: World) -> dict[str, list[list[float]]]:
-        """Returns the paths up to the present tick, by body: places (x, y) [m]."""
+        """Returns the paths up to the current tick, by body: positions (x, y) [m]."""
         count = tick // self._every + 1
         stride = 1
         while count > MOST_POINTS * stride:
@@ -57,7 +57,7 @@ class Walked:
         return {name: [*_pairs(points, count, stride), *([here[name]] if here else [])] for name, points in self._points.items()}
 
     def _places(self, world: World) -> dict[str, list[float]]:
-        """Returns where bodies are. What the world itself has computed is of the positions before its last step."""
+        """Returns the positions of the bodies. They are computed here, as those in the world's data are from before its last step."""
         if self._data is None:
             self._data = MjData(world.mj_model)
         numbers = np.frombuffer(world.state_bytes())

@@ -1,4 +1,4 @@
-"""What a run is to stop for: a time, a production that fires, a buffer that matches, a touch."""
+"""Defines the conditions at which a run stops: a time, a production that fires, a buffer that matches, a contact."""
 
 from __future__ import annotations
 
@@ -12,49 +12,49 @@ from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
 
 Touches = frozenset[tuple[str, str, str]]
-"""Which touch: body, part, and with what."""
+"""Contacts: the body, its part, and the other object."""
 
 
 @dataclass
 class Watch:
-    """What ends the present stretch of a run, beside the user."""
+    """Holds the conditions at which the run stops next, apart from users' commands."""
 
     goal: int | None = None
-    """A time [us]."""
+    """Stops at this time [us]."""
     goal_reason: str = ""
     cycles: int = 0
-    """The how manieth production that fires from now on ends it; 0 for none."""
+    """Stops after this number of further firings; 0 for no such condition."""
     system: str | None = None
-    """Of which system these are to be; None for any."""
+    """The production system whose firings are counted; None for any."""
     production: str | None = None
     buffer: str | None = None
     called: str = ""
-    """How the user calls the buffer."""
+    """The user's name of the buffer."""
     pattern: str = ""
     contact: str | None = None
-    """The body whose touch ends it; an empty text for any body."""
+    """Stops when this body touches something; an empty text means any body."""
     breakpoints: frozenset[str] = frozenset()
     touching: Touches = field(default_factory=frozenset[tuple[str, str, str]])
-    """What touched already when this began, or does still."""
+    """The contacts that existed at the last check, which do not count as new."""
 
     def begin(self, **wanted: object) -> None:
-        """Forgets all but the breakpoints, and watches for what is given."""
+        """Sets new stop conditions; all others except the breakpoints are cleared."""
         fresh = Watch(breakpoints=self.breakpoints)
         self.__dict__.update({**fresh.__dict__, **wanted})
 
     @property
     def of_events(self) -> bool:
-        """Whether events have to be looked at."""
+        """Whether events must be checked."""
         return self.cycles > 0 or bool(self.breakpoints) or self.production is not None or self.buffer is not None
 
     @property
     def fine(self) -> bool:
-        """Whether each single tick has to be looked at."""
+        """Whether every single tick must be checked."""
         return self.of_events or self.contact is not None
 
     @property
     def pending(self) -> str:
-        """What the run goes on for, where a user has said so."""
+        """A text that says until when the run goes on."""
         parts = [] if self.goal is None else [f"{seconds(self.goal):g} s"]
         if self.production is not None:
             parts.append(f"{self.production} fires")
@@ -66,7 +66,7 @@ class Watch:
 
     @property
     def missed(self) -> str:
-        """What has not come of what is watched for, for a run that is over; an empty text where there is nothing to say."""
+        """A text that says which conditions have not been met, for a run that is over; empty if there is nothing to say."""
         missed = [f"{self.production} did not fire"] if self.production is not None else []
         if self.buffer is not None:
             came = f"come to match '{self.pattern}'" if self.pattern.strip() else "change"
@@ -76,7 +76,7 @@ class Watch:
         return "; ".join(missed)
 
     def found(self, events: Iterable[TraceEvent]) -> str | None:
-        """Returns why the run is to stop because of events; None where it is not."""
+        """Returns why the run stops because of events; None if it does not."""
         for event in events:
             if event.kind == "fire":
                 name = event.data["production"]
@@ -91,7 +91,7 @@ class Watch:
         return None
 
     def touched(self, touches: Touches) -> str | None:
-        """Returns why the run is to stop because of touches; None where there is no new one."""
+        """Returns why the run stops because of a new contact; None if there is none."""
         new, self.touching = touches - self.touching, touches
         found = sorted(touch for touch in new if self.contact in ("", touch[0]))
         return f"{found[0][1]} of {found[0][0]} touches {found[0][2]}" if found else None

@@ -1,4 +1,4 @@
-"""How wide doorways can be set by a slider."""
+"""Computes the widths to which a slider can set doorways."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Iterable
 from workbench.loader import Parameter
 
 WIDEST = 300
-"""A doorway of which no parameter says how wide it can be is set up to this [cm]. Ours."""
+"""Default maximum width of a doorway [cm], if no parameter limits it. Chosen here."""
 
 
 def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:
-    """Returns the least and the greatest width that each doorway can be set to [cm], as the parameter says that sets doorways."""
+    """Returns the minimum and maximum width of each doorway [cm], from the bounds of the parameter that sets doorways."""
     setting = [one for one in parameters if one.live is not None and one.live.word == "aperture"]
     least = [math.ceil(100 * one.least) for one in setting if one.least is not None]
     least += [math.floor(100 * one.above) + 1 for one in setting if one.above is not None]

@@ -1,4 +1,4 @@
-"""Starts and ends worker processes, and hears how they ended; the server's side of the zygote."""
+"""Starts and ends worker processes and receives their exit codes; the server's side of the zygote."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from workbench.worker.spawn import Zygote, spawn
 from workbench.worker.zygote import ANSWER, ASK, BORN, DEAD, HALTED, READY
 
 GRACE = 0.7
-"""How long a worker may take to end in good order [s]; then it is told by the system."""
+"""How long a worker may take to end normally [s]; then it gets SIGTERM."""
 MORE_GRACE = 0.4
-"""How long after that until it is killed [s]: in all less than the 2 s that a user is promised."""
+"""How long after that it is killed [s]. Both together are less than the 2 s that users are promised."""
 PRINTED = 8192
-"""So much of what a worker prints past its model's `print` is read at once [bytes]."""
+"""How much of a worker's other output (not by its model's `print`) is read at a time [bytes]."""
 LOST = 1000
-"""How a worker ended of which that is not known: the process from which it was forked has been ended."""
+"""Exit status of a worker whose real status is unknown because the process from which it was forked has ended."""
 NO_MORE = "no worker can be started: the process that starts them has ended"
 
 
@@ -27,13 +27,13 @@ Output = tuple[asyncio.StreamReader, asyncio.BaseTransport]
 
 
 class Worker:
-    """One worker process, as the server has it.
+    """Holds the server's connection to one worker process.
 
     Args:
-        pid: Its process number, which is that of its group, too.
-        reader: What it says.
-        writer: Where it is told things.
-        output: What it prints past its model's `print`.
+        pid: Its process id, which is also that of its process group.
+        reader: Receives its messages.
+        writer: Sends messages to it.
+        output: What it prints other than by its model's `print`.
     """
 
     def __init__(self, pid: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, output: Output) -> None:
@@ -42,20 +42,20 @@ class Worker:
         self._reader = reader
         self._writer = writer
         self.exit: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        """How it ended: its exit code, or the negative number of a signal."""
+        """Its exit code, or the negative number of a signal."""
         self.halted = 0
-        """The signal that has stopped it, so that it stands still; 0 where it does not."""
+        """The signal that has stopped (paused) it; 0 if it is not stopped."""
 
     def send(self, message: Message) -> None:
-        """Tells it something; nothing, where it is gone."""
+        """Sends a message; does nothing if the worker is gone."""
         if not self._writer.is_closing():
             self._writer.write(framed(message))
 
     async def receive(self) -> FromWorker | None:
-        """Returns what it says next; None where it is gone.
+        """Returns its next message; None if the worker is gone.
 
         Raises:
-            ValueError: If it says what is no message: the model has written to its wire.
+            ValueError: If the data is not a valid message, because the model has written to the connection.
         """
         try:
             size = int.from_bytes(await self._reader.readexactly(LENGTH), "big")
@@ -66,7 +66,7 @@ class Worker:
             return None
 
     async def stop(self) -> None:
-        """Ends it, whatever it does: asks, then terminates, then kills it and all that it has started."""
+        """Ends the worker whatever it is doing: asks, then terminates, then kills it and all processes that it has started."""
         self.send(Leave())
         for wait, sign in ((GRACE, signal.SIGTERM), (MORE_GRACE, signal.SIGKILL)):
             if await self._ended(wait):
@@ -76,12 +76,12 @@ class Worker:
         self.kill()
 
     def kill(self) -> None:
-        """Ends it at once, and all processes that its model has started."""
+        """Kills the worker and all processes that its model has started."""
         self._signal(signal.SIGKILL)
         self._writer.close()
 
     def release(self) -> None:
-        """Lets go of what it was spoken to by; it is gone."""
+        """Closes the connections of a worker that has ended."""
         self._writer.close()
         self._pipe.close()
 
@@ -96,11 +96,11 @@ class Worker:
 
 
 class Workers:
-    """All worker processes of a server.
+    """Manages all worker processes of a server.
 
     Args:
-        memory: How much memory each may take [MB]; 0 for no limit.
-        zygote: The process from which they are forked, where it has been started already.
+        memory: Maximum memory of each worker's model [MB]; 0 for no limit.
+        zygote: The process from which workers are forked, if it has been started already.
     """
 
     def __init__(self, memory: int = 0, zygote: Zygote | None = None) -> None:
@@ -109,7 +109,7 @@ class Workers:
         self._control: socket.socket | None = None
         self._alive: dict[int, Worker] = {}
         self._early: dict[int, int] = {}
-        """How workers ended of which the server had not heard yet."""
+        """Exit statuses of workers that ended before the server knew of them."""
         self._born: asyncio.Queue[int] = asyncio.Queue()
         self._ready = asyncio.Event()
         self._launching = asyncio.Lock()
@@ -117,7 +117,7 @@ class Workers:
         self._going: asyncio.Task[None] | None = None
 
     def begin(self) -> None:
-        """Begins to listen to the process from which workers are forked, and starts it where that has not been done."""
+        """Listens to the process from which workers are forked, and starts it if necessary."""
         if self._zygote is None:
             self._zygote = spawn()
         self._control = self._zygote.control
@@ -128,21 +128,21 @@ class Workers:
 
     @property
     def ready(self) -> bool:
-        """Whether what workers need has been loaded, so that they begin at once."""
+        """Whether everything that workers need is loaded, so that they start at once."""
         return self._ready.is_set()
 
     async def launch(self, memory: int | None = None) -> Worker:
-        """Returns a new worker.
+        """Starts a new worker.
 
         Args:
-            memory: How much memory it may take [MB]; None for as much as every model may.
+            memory: Maximum memory of its model [MB]; None for the default of this server.
 
         Raises:
-            OSError: If the system has no more processes or files to give, or workers are to come no more.
+            OSError: If the system has no more processes or files, or no more workers can be started.
         """
         ours, theirs = socket.socketpair()
         reading, writing = os.pipe()
-        # Who waits may leave; the process that is being born is heard of all the same, and ends where its wire is closed.
+        # The caller may be cancelled; the new process is registered all the same, and ends when its connection is closed.
         birth = asyncio.create_task(self._birth(theirs, writing, self.memory if memory is None else memory))
         try:
             pid = await asyncio.shield(birth)
@@ -159,7 +159,7 @@ class Workers:
         return worker
 
     async def _birth(self, wire: socket.socket, output: int, memory: int) -> int:
-        """Lets a worker be born that has these; returns its process number."""
+        """Requests a new worker with this connection and output, and returns its process id."""
         try:
             await self._ready.wait()
             async with self._launching:
@@ -200,14 +200,14 @@ class Workers:
             worker.exit.set_result(status)
 
     async def _keep_going(self, zygote: Zygote) -> None:
-        """Lets the process from which workers are forked go on, now and then: a model may have stopped it by a signal."""
+        """Sends SIGCONT at intervals to the process from which workers are forked, as a model may have stopped it by a signal."""
         while True:
             await asyncio.sleep(GRACE)
             with suppress(OSError):
                 os.kill(zygote.process.pid, signal.SIGCONT)
 
     async def _begin_again(self, zygote: Zygote) -> None:
-        """Starts another process from which workers are forked, as a model has ended this one; runs end with it."""
+        """Starts a new process from which workers are forked after a model has ended the previous one; all runs end with it."""
         if self._going is not None:
             self._going.cancel()
         useful = self._ready.is_set()
@@ -219,12 +219,12 @@ class Workers:
             if not worker.exit.done():
                 worker.exit.set_result(LOST)
         await asyncio.to_thread(zygote.end)
-        if useful:  # one that cannot even load would not load again
+        if useful:  # a process that failed to load would fail again
             self._zygote = None
             self.begin()
 
     def _say_ended(self) -> None:
-        """Lets those know who wait for a worker that none will come."""
+        """Informs those who wait for a worker that none can be started."""
         self._control = None
         self._ready.set()
         self._born.put_nowait(-1)

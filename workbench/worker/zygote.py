@@ -1,8 +1,8 @@
-"""The process from which workers are forked: it has everything loaded, so that a run begins within milliseconds.
+"""Forks workers from a process that has loaded everything, so that a run starts within milliseconds.
 
-It is told by its own socket: each message has two file descriptors, the wire and the output of a new worker, and how much
-memory that may take. It answers with the worker's process number, and later with how that ended. When the server is gone
-it ends all workers, and itself.
+Requests arrive on a socket: each has two file descriptors (the connection and the output of a new worker) and the maximum memory
+of its model. The replies are the worker's process id and later its exit status. When the server is gone, this process ends all workers
+and itself.
 """
 
 from __future__ import annotations
@@ -20,22 +20,23 @@ from contextlib import suppress
 from workbench.worker.orphans import adopt, end_orphans
 
 ANSWER = struct.Struct("!Bqi")
-"""What is told (BORN, DEAD, HALTED or READY), the process number, and of a dead one its status as `os.waitstatus_to_exitcode` gives it,
-of one that stands still the signal that has stopped it; 0 where it goes on again."""
+"""A reply: its kind (BORN, DEAD, HALTED or READY), the process id, and a status. For DEAD, the status is that of
+`os.waitstatus_to_exitcode`; for HALTED, the signal that has stopped the worker, or 0 if it continues.
+"""
 BORN, DEAD, READY, HALTED = 1, 2, 3, 4
 ASK = struct.Struct("!i")
-"""How much memory a new worker may take [MB]."""
+"""A request: the maximum memory of a new worker's model [MB]."""
 FAREWELL = 1.0
-"""So long it takes at most to see its workers end [s]."""
+"""Maximum time to wait for the end of its workers at shutdown [s]."""
 
 
 def main(number: int) -> None:
-    """Serves until the server is gone.
+    """Serves requests until the server is gone.
 
     Args:
         number: The file descriptor of the socket to the server.
     """
-    gc.disable()  # nothing that is loaded is garbage
+    gc.disable()  # nothing that is loaded here is garbage
     import workbench.worker.preload  # pyright: ignore[reportUnusedImport] # noqa: F401
 
     gc.enable()
@@ -72,7 +73,7 @@ def main(number: int) -> None:
 
 
 def _end_all(control: socket.socket, children: set[int]) -> None:
-    """Ends all workers, and what they leave behind; for a moment only, as nobody is left who waits for it."""
+    """Ends all workers and the processes they leave behind; stops waiting after `FAREWELL`, as the server is gone."""
     for pid in children:
         with suppress(OSError):
             os.killpg(pid, signal.SIGKILL)
@@ -80,20 +81,20 @@ def _end_all(control: socket.socket, children: set[int]) -> None:
     while time.monotonic() < end:
         _bury(control, children)
         if not children:
-            time.sleep(0.01)  # for those whom the last one has left
+            time.sleep(0.01)  # for processes that the last worker has left behind
             end_orphans(children)
             return
         time.sleep(0.005)
 
 
 def _answer(control: socket.socket, *what: int) -> None:
-    """Tells the server something; that it is gone is found out where it is heard next."""
+    """Sends the server a reply; if the server is gone, the next read from it shows that."""
     with suppress(OSError):
         control.sendall(ANSWER.pack(*what))
 
 
 def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int], memory: int) -> int:
-    """Forks a worker, and returns its process number; in the worker it does not return."""
+    """Forks a worker and returns its process id; does not return in the worker."""
     from workbench.worker.entry import main as work
 
     pid = os.fork()
@@ -107,18 +108,18 @@ def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int],
         try:
             work(socket.socket(fileno=wire), output, memory)
         finally:
-            os._exit(1)  # it has ended by itself, unless it could not even do that
+            os._exit(1)  # reached only if the worker failed to end itself
     for descriptor in descriptors:
         os.close(descriptor)
     return pid
 
 
 def _woken(_: int, __: object) -> None:
-    """Does nothing: that a signal came is read from the pipe."""
+    """Does nothing: the wakeup pipe reports the signal."""
 
 
 def _bury(control: socket.socket, children: set[int]) -> None:
-    """Tells the server of the children that have died, and of those that a signal has stopped."""
+    """Reports to the server which children have died, and which a signal has stopped or continued."""
     for pid in list(children):
         with suppress(ChildProcessError):
             done, status = os.waitpid(pid, os.WNOHANG | os.WUNTRACED | os.WCONTINUED)
@@ -127,7 +128,7 @@ def _bury(control: socket.socket, children: set[int]) -> None:
             elif done:
                 children.discard(pid)
                 with suppress(OSError):
-                    os.killpg(pid, signal.SIGKILL)  # whom it has left in its group
+                    os.killpg(pid, signal.SIGKILL)  # processes left in its group
                 _answer(control, DEAD, pid, os.waitstatus_to_exitcode(status))
     end_orphans(children)
 
