@@ -17,7 +17,7 @@ export function Toasts() {
     settle("shown");
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [list]);
-  const shown = toast.value; // not if it belongs to a run that was shown before
+  const shown = toast.value; // a message of a previously shown run no longer matters
   useEffect(() => {
     if (!shown) return undefined;
     const timer = setTimeout(() => (toast.value = null), SHOWN);
