@@ -1,4 +1,4 @@
-"""The command `actr3d`: runs models, and measures how fast they run."""
+"""The command `actr3d`: runs models, replays recordings, and measures how fast models run."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from actr3d.values import to_json
 
 
 def event_line(event: TraceEvent) -> str:
-    """Returns an event as a line that a person reads."""
+    """Returns an event as a human-readable line."""
     words = " ".join(f"{key}={value}" for key, value in event.data.items())
     return f"{event.time:10.3f}  {event.source:<20} {event.kind:<10} {words}"
 
@@ -42,7 +42,7 @@ def run_command(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace, out: TextIO) -> int:
-    """Runs a model file; its events, and with --json its own lines, go to `out`."""
+    """Runs a model file; its events, and with --json its printed lines, go to `out`."""
     level = options.trace or ("all" if options.json else "none")
     trace = Trace("all" if options.record else level, keep=False)
     limits = RunLimits(seed=options.seed, until=options.until, trace=trace if trace.level != "none" else None)
@@ -51,7 +51,7 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         printed = ModelOutput(lambda text: print(TraceEvent(limits.clock(), "model", "output", {"text": text}).to_json(), file=out))
     if level != "none":
         show = TraceEvent.to_json if options.json else event_line
-        # Lines that the model prints are shown as they are, or by `printed`; a result at the end.
+        # Lines that the model prints are shown unchanged, or by `printed`; a result is shown at the end.
         trace.listen(lambda event: None if out.closed or event.kind in ("output", "result") else print(show(event), file=out), level)
     limits.last_resort = partial(_leave, out, printed)
     trouble: BaseException | None = None
@@ -64,12 +64,12 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
         if unwritten := all_written(out, printed):
             return _complain_of_output(unwritten)
         raise
-    except BaseException as error:  # noqa: BLE001 - whatever a model raises is shown to its author
+    except BaseException as error:  # noqa: BLE001 - every error of a model is shown to its author
         trouble = error
     if result is not None and not out.closed:
         if printed is not None:
             printed.finish()
-        with suppress(OSError):  # told below
+        with suppress(OSError):  # reported below
             print(to_json({"event": "result", **asdict(result)}) if options.json else result, file=out)
     unwritten = all_written(out, printed)
     if trouble is not None and not (unwritten and isinstance(trouble, OSError)):
@@ -80,12 +80,12 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
 
 
 def _settings(options: argparse.Namespace, fields: Sequence[Field]) -> dict[str, Any]:
-    """Returns the values of parameters that the command line gives."""
+    """Returns the parameter values given on the command line."""
     return {**read_settings(options.set, fields), **read_options(options.words, fields, options.parser._option_string_actions)}
 
 
 def _help(run: argparse.ArgumentParser, file: str | None) -> int:
-    """Tells of the options of a model file, if one is named, besides those that all have."""
+    """Prints the help: the general options, and those of a model file if one is named."""
     run.print_help()
     if file is None:
         return 0
@@ -98,15 +98,15 @@ def _help(run: argparse.ArgumentParser, file: str | None) -> int:
             with RunLimits(), printing_to(sys.stderr):
                 fields = Blueprint(source, file, Path(file).parent).fields
             print(f"\noptions of {file}, after its name:\n{options_help(fields) or '  none'}")
-    except Exception as error:  # noqa: BLE001 - whatever a model raises is shown to its author
+    except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
         return _complain(error)
     return 0
 
 
 def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
-    """Ends the whole command as if the model had come to its end.
+    """Ends the whole command as if the model had ended.
 
-    For a model that goes on asking for time after its last moment and catches whatever it is told: no error reaches us
+    For a model that keeps asking for time after its end and catches every exception: no error reaches the command
     from there.
     """
     with suppress(Exception):
@@ -120,36 +120,36 @@ def _leave(out: TextIO, printed: ModelOutput | None) -> NoReturn:
 
 
 def _complain_of_output(error: OSError) -> int:
-    """Says why the output cannot be written, unless only nobody reads it any more."""
+    """Prints why the output cannot be written, unless its reader has only closed it."""
     if not isinstance(error, BrokenPipeError):
         print(f"error: cannot write the output: {error.strerror}", file=sys.stderr)
     return 1
 
 
 def replay_command(options: argparse.Namespace) -> int:
-    """Runs a recording again, and says whether every byte agrees: returns 0 where it does, 1 where not, 2 where that cannot be told."""
+    """Replays a recording and compares every byte: returns 0 if all are equal, 1 if not, 2 if that cannot be determined."""
     from actr3d.running.verdict import UNKNOWN, verdict_of
 
     verdict = verdict_of(options.file, trust=options.trust, any_version=options.any_version)
     out = sys.stderr if verdict.code == UNKNOWN else sys.stdout
-    encoding = out.encoding or "utf-8"  # a stream in memory has none
+    encoding = out.encoding or "utf-8"  # a stream in memory has no encoding
     out.write(verdict.text.encode(encoding, "backslashreplace").decode(encoding))
     return verdict.code
 
 
 def _complain(error: BaseException) -> int:
-    """Prints an error, and what caused it, with the modeller's own lines only."""
+    """Prints an error and its causes, with the modeller's own lines only."""
     print(complaint(error).text, end="", file=sys.stderr)
     return 1
 
 
 def _show_warning(
     message: Warning | str,
-    category: type[Warning],  # noqa: ARG001 - what `warnings` gives
+    category: type[Warning],  # noqa: ARG001 - an argument of `warnings.showwarning`
     filename: str,
     lineno: int,
     file: TextIO | None = None,
-    line: str | None = None,  # noqa: ARG001 - what `warnings` gives
+    line: str | None = None,  # noqa: ARG001 - an argument of `warnings.showwarning`
 ) -> None:
     print(f"{filename}:{lineno}: warning: {message}", file=file or sys.stderr)
 
@@ -226,8 +226,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
     if arguments is None and sys.argv[1:2] == ["run"]:
         _order_sets()
-    if sys.stdout is None:  # it was closed before we came
-        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays until the end
+    if sys.stdout is None:  # it was closed before the command started
+        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
     parser = _parser()
     options, words = parser.parse_known_args(arguments)
     if options.command == "run":
@@ -244,7 +244,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _check_run(options: argparse.Namespace, words: list[str], arguments: list[str]) -> None:
-    """Makes sure that a model file is named, and that what it is to read itself comes after its name."""
+    """Checks that a model file is named, and that the model's own arguments come after its name."""
     file: str | None = options.file
     if file is None:
         options.parser.error("the following arguments are required: FILE")
@@ -254,10 +254,10 @@ def _check_run(options: argparse.Namespace, words: list[str], arguments: list[st
 
 
 def _order_sets() -> None:
-    """Starts the command again where the order of sets of texts would differ between two runs of one seed.
+    """Restarts the command if the order of sets of texts would differ between two runs with one seed.
 
-    Whatever PYTHONHASHSEED is, models run with 0. A Python that is told not to read the environment (`-E`, `-I`) cannot be
-    told this either.
+    Models run with PYTHONHASHSEED=0, whatever its value is. A Python that ignores the environment (`-E`, `-I`) cannot be
+    restarted in this way.
     """
     if sys.flags.hash_randomization and not sys.flags.ignore_environment:
         os.environ["PYTHONHASHSEED"] = "0"

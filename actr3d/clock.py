@@ -1,4 +1,4 @@
-"""Time as whole microseconds, and the queue of what is to happen when."""
+"""Time in whole microseconds, and the queue of future events."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def microseconds(seconds: float, what: str = "a time") -> int:
 
     Args:
         seconds: A finite number of seconds [s].
-        what: How an error message calls the value.
+        what: The name of the value in an error message.
 
     Raises:
         SchedulerError: If the value is not a finite number.
@@ -39,13 +39,13 @@ def seconds(time: int) -> float:
 
 
 NO_PART = 1e-15
-"""A smaller part of a duration's microseconds is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
+"""A smaller fraction of a duration's microseconds is a floating-point rounding error: 0.07 s are 70000.00000000001 us."""
 
 
 class Ends:
-    """Finds where runs end that follow one another: never more than half a microsecond from the exact end of them all.
+    """Computes the ends of successive runs: each within half a microsecond of the exact sum of all durations.
 
-    What rounding leaves over of one run, the next takes in, if it begins where that one was to end.
+    The rounding error of one run is added to the next, if that one begins where the first was to end.
     """
 
     __slots__ = ("_at", "_duration", "_left", "_length")
@@ -53,15 +53,15 @@ class Ends:
     def __init__(self) -> None:
         self._left = 0.0
         self._at = 0
-        self._duration = 0.0  # the latest of whole microseconds; most calls ask for the same again
+        self._duration = 0.0  # the latest one of whole microseconds; most calls repeat it
         self._length = 0
 
     def after(self, now_us: int, duration: float) -> int:
-        """Returns when a run that starts now is to end [us].
+        """Returns the end of a run that starts now [us].
 
         Args:
-            now_us: The present [us].
-            duration: How long the run is to be [s].
+            now_us: The current time [us].
+            duration: The duration of the run [s].
 
         Raises:
             SchedulerError: If the duration is negative or not a finite number.
@@ -87,20 +87,20 @@ class Ends:
 
 
 STRAY_US = 100
-"""A sum of delays that is farther from its event's time than this [us] no longer says which of two events comes first."""
+"""A sum of delays that differs from its event's time by more than this [us] no longer determines the order of two events."""
 
 
 class EventQueue(Generic[T]):
     """Holds events ordered by (time, -priority, serial).
 
-    At one time the event of higher priority comes first, and among equals the one that was put in first:
+    At the same time, events of higher priority come first, and events of equal priority in the order of insertion:
     simultaneous events have one defined order.
 
     Args:
-        first_come: Whether equals come in the order they were put in. Without it they come as models written for
-            python_actr know it, which is defined too, though harder to foresee: its clock adds delays up as floating
-            point numbers, so that 20 times 0.05 s comes just after 1 s. Events of one microsecond are put in order by
-            these sums, then by priority, and then as the heap has them. Events are compared for that, and must say that
+        first_come: Whether events of equal priority come in the order of insertion. Otherwise they come in the order that models
+            written for python_actr expect, which is defined too, but harder to predict: its clock adds delays as floating
+            point numbers, so that 20 times 0.05 s comes just after 1 s. Events of one microsecond are ordered by these sums,
+            then by priority, and then by their position in the heap. This compares the events themselves, which must say that
             none is less than another.
     """
 
@@ -108,17 +108,17 @@ class EventQueue(Generic[T]):
 
     def __init__(self, first_come: bool = True) -> None:
         self.heap: list[tuple[int, float, float, T]] = []
-        """Each event with its time [us], minus its priority and its serial; with its sum [s] and minus its priority instead."""
+        """Each event with its time [us], minus its priority and its serial; or with its sum [s] and minus its priority instead."""
         self.first_come = first_come
         self.sum = 0.0
-        """The present as a sum of delays [s]."""
+        """The current time as a sum of delays [s]."""
         self._serials = count(1)
 
     def __len__(self) -> int:
         return len(self.heap)
 
     def push(self, time: int, event: T, priority: float = 0, delay: float = 0.0) -> None:
-        """Puts an event in, at `time` [us], which is `delay` [s] from now."""
+        """Adds an event at `time` [us], which is `delay` [s] from now."""
         if self.first_come:
             heappush(self.heap, (time, -priority, next(self._serials), event))
             return
@@ -130,11 +130,11 @@ class EventQueue(Generic[T]):
         heappush(self.heap, (time, total, -priority, event))
 
     def pop(self) -> T:
-        """Takes the next event out; its time is the present."""
+        """Removes and returns the next event; its time becomes the current time."""
         _, self.sum, _, event = heappop(self.heap)
         return event
 
     def take(self) -> tuple[int, float, T]:
-        """Takes the next event out, and returns its time [us], its priority, and itself."""
+        """Removes the next event, and returns its time [us], its priority, and the event."""
         time, first, second, event = heappop(self.heap)
         return time, -(first if self.first_come else second), event

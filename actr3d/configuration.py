@@ -1,4 +1,4 @@
-"""The base of every configuration: frozen values whose types and bounds are checked once, here."""
+"""The base class of every configuration: frozen values whose types and bounds are checked once, on creation."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from actr3d.errors import ConfigurationError, did_you_mean
 
 
 class Live:
-    """Stands in a field's type: what changes while a run goes on, by which command.
+    """Marks a field's type: the value can be changed during a run, by the given command.
 
     `width: Annotated[float, Gt(0), Live("aperture")]` is changed by `simulation.command("aperture", width)`;
-    `Live("parameter", "walker.speed")` by `simulation.command("parameter", "walker.speed", speed)`. What it means for a run
-    that begins is up to who builds it.
+    `Live("parameter", "walker.speed")` by `simulation.command("parameter", "walker.speed", speed)`. The code that builds a run
+    decides what the value means at its start.
 
     Args:
         word: The command.
-        before: What it takes before the value.
-        body: The body it is said to, for a word that more than one body takes.
+        before: The arguments of the command before the value.
+        body: The body that receives the command, if more than one body accepts it.
     """
 
     def __init__(self, word: str, *before: str, body: str | None = None) -> None:
@@ -37,18 +37,18 @@ class Live:
 
 
 class Configuration:
-    """Checks the fields of a frozen dataclass against the types and bounds they are declared with.
+    """Checks the fields of a frozen dataclass against their declared types and bounds.
 
-    A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds stand in its type, as
-    `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MultipleOf`), its unit and source in the
-    docstring below it. Whole numbers are taken for `float`; NaN and infinities are refused unless bounds say `None`.
+    A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds are part of its type, such as
+    `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MultipleOf`); its unit and source are in the
+    docstring below it. Whole numbers are accepted for `float`; NaN and infinities are rejected unless bounds are `None`.
     """
 
     def __post_init__(self) -> None:
         """Checks every field.
 
         Raises:
-            ConfigurationError: Names the class and field, what was given, and what would be right.
+            ConfigurationError: Names the class and field, the given value, and what is allowed.
         """
         hints = _hints(type(self))
         for field in fields(self):  # pyright: ignore[reportArgumentType] # subclasses are dataclasses
@@ -59,10 +59,10 @@ class Configuration:
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, Any]) -> Any:
-        """Makes a configuration from names and values, as they come from a file or a page.
+        """Creates a configuration from names and values, as read from a file or a page.
 
         Raises:
-            ConfigurationError: If a name is not a field, or a value is not what its field takes.
+            ConfigurationError: If a name is not a field, or a value is not valid for its field.
         """
         known = [field.name for field in fields(cls)]  # pyright: ignore[reportArgumentType]
         for name in values:
@@ -77,7 +77,7 @@ def _hints(of: type) -> dict[str, Any]:
 
 
 def _checked(value: Any, declared: Any, where: str) -> Any:
-    """Returns the value as its declared type has it (an int for a float becomes a float, a list a tuple)."""
+    """Returns the value converted to its declared type (an int for a float becomes a float, a list a tuple)."""
     origin = get_origin(declared)
     if origin is Annotated:
         inner, *bounds = get_args(declared)
@@ -117,7 +117,7 @@ def _plain(value: Any, declared: Any, where: str) -> Any:
 
 
 def is_finite(value: Any) -> bool:
-    """Tells whether a number is finite, as a float too: not every whole number has one."""
+    """Checks whether a number is finite, also as a float: some whole numbers are too large for one."""
     try:
         return math.isfinite(value)
     except OverflowError:
@@ -143,7 +143,7 @@ def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
         raise ConfigurationError(f"{where}: must be a tuple (got {value!r})")
     try:
         values: tuple[Any, ...] = tuple(value)
-    except TypeError:  # an array of no dimension
+    except TypeError:  # a zero-dimensional array
         raise ConfigurationError(f"{where}: must be a tuple (got {value!r})") from None
     if len(items) == 2 and items[1] is Ellipsis:
         items = (items[0],) * len(values)
@@ -153,10 +153,10 @@ def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
 
 
 def hold(bound: object, value: Any, where: str) -> None:
-    """Checks a value against one bound of a type, such as `Gt(0)`; what is no bound holds.
+    """Checks a value against one bound of a type, such as `Gt(0)`; anything that is not a bound is ignored.
 
     Raises:
-        ConfigurationError: If it does not hold.
+        ConfigurationError: If the value is out of bounds.
     """
     if value is None:
         return

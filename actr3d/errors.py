@@ -1,4 +1,4 @@
-"""Every exception and warning of the library, and the «did you mean» they share."""
+"""Every exception and warning of the library, and the «did you mean» hints of their messages."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ class Actr3dError(Exception):
 
 
 class PatternException(Actr3dError):
-    """A pattern cannot be read; the message quotes the pattern and the text that is wrong."""
+    """A pattern cannot be parsed; the message quotes the pattern and the invalid text."""
 
 
 class ChunkError(Actr3dError):
-    """A chunk cannot be made or changed as asked: unknown contents, slot, or variable."""
+    """A chunk cannot be created or changed as requested: unknown contents, slot, or variable."""
 
 
 class ProductionException(Actr3dError):
@@ -23,7 +23,7 @@ class ProductionException(Actr3dError):
 
 
 class SchedulerError(Actr3dError):
-    """Something was yielded or scheduled that the scheduler cannot wait for."""
+    """A value was yielded or scheduled that the scheduler cannot wait for."""
 
 
 class ParameterError(Actr3dError):
@@ -35,19 +35,19 @@ class ConfigurationError(Actr3dError):
 
 
 class SettingError(ConfigurationError):
-    """A model's parameter is set that it does not have, or to a value that it does not take."""
+    """A model's parameter does not exist, or was given an invalid value."""
 
 
 class WorldError(Actr3dError):
-    """A scene cannot be built, or something in a world is not there or cannot be done."""
+    """A scene cannot be built, or an object or action in a world does not exist or is not possible."""
 
 
 class MeshError(WorldError):
-    """A mesh cannot be read, or is not fit for a world."""
+    """A mesh cannot be read, or is not suitable for a world."""
 
 
 class SimulationError(Actr3dError):
-    """A simulation cannot be set up, stepped or brought to a time, as asked."""
+    """A simulation cannot be set up, stepped or moved to a time as requested."""
 
 
 class RecordingError(Actr3dError):
@@ -55,23 +55,23 @@ class RecordingError(Actr3dError):
 
 
 class UntrustedError(RecordingError):
-    """A recording that another installation made, or that was changed, is to be run; whoever trusts it must say so."""
+    """A recording that another installation made, or that was changed, is not run unless the user declares it trusted."""
 
 
 class GridError(Actr3dError):
-    """A grid world cannot be made, or a body in it placed or moved, as asked."""
+    """A grid world cannot be created, or a body in it placed or moved as requested."""
 
 
 class PlanError(Actr3dError):
-    """A planning unit cannot be declared, begun, interrupted or resumed as asked."""
+    """A planning unit cannot be declared, started, interrupted or resumed as requested."""
 
 
 class CameraError(Actr3dError):
-    """A camera cannot be made, or cannot look: unknown eye or geom, poses that are missing or no numbers."""
+    """A camera cannot be created, or cannot look: unknown eye or geom, poses that are missing or not finite."""
 
 
 class VisionError(Actr3dError):
-    """A vision module cannot be made, or look for something, as asked: unknown feature, slot, parameter or comparison."""
+    """A vision module cannot be created, or cannot search as requested: unknown feature, slot, parameter or comparison."""
 
 
 class ModelFileError(Actr3dError):
@@ -79,9 +79,9 @@ class ModelFileError(Actr3dError):
 
 
 class ModelWarning(UserWarning):
-    """Something in a model that is most likely not what its author meant.
+    """Something in a model is most likely not what its author intended.
 
-    It is only said: a warning never changes what the model does.
+    A warning never changes what the model does.
     """
 
 
@@ -93,11 +93,11 @@ def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str
 
 
 def hint_for(error: Exception, names: Iterable[object] = ()) -> str:
-    """Returns `"; did you mean 'x'?"` for the unknown name or attribute that an error tells of, or an empty string.
+    """Returns `"; did you mean 'x'?"` for the unknown name or attribute in an error, or an empty string.
 
     Args:
         error: The error.
-        names: What could be meant by an unknown name.
+        names: The candidates for an unknown name.
     """
     if isinstance(error, NameError) and error.name:
         return did_you_mean(error.name, names)

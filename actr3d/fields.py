@@ -1,6 +1,6 @@
-"""What the fields of a configuration are, for people: the meaning, unit, bounds and default of each, as written once in its class.
+"""Describes the fields of a configuration for users: the meaning, unit, bounds and default of each, as written once in its class.
 
-Options of the command, controls of a page and factors of an experiment are all made from these.
+Options of the command line, controls of a page and factors of an experiment are all made from these.
 """
 
 from __future__ import annotations
@@ -26,27 +26,27 @@ class Field:
 
     name: str
     takes: str
-    """What it takes: `number`, `whole number`, `text`, `True or False`, or something else by its type's name."""
+    """The values it accepts: `number`, `whole number`, `text`, `True or False`, or the name of another type."""
     choices: tuple[Any, ...] | None
-    """The values it can have; None where they cannot be counted."""
+    """The possible values; None if they cannot be listed."""
     bounds: tuple[str, ...]
-    """What holds for its value, as `> 0`."""
+    """The bounds of its value, such as `> 0`."""
     optional: bool
     """Whether it may be None."""
     default: Any
-    """What it is unless given; `dataclasses.MISSING` where it must be given."""
+    """Its default; `dataclasses.MISSING` if a value is required."""
     unit: str | None
-    """What stands in square brackets in its docstring first."""
+    """The first text in square brackets in its docstring."""
     meaning: str
     """Its docstring, in one line."""
 
     @property
     def option(self) -> str:
-        """Returns how the command calls it."""
+        """Returns the name of its command-line option."""
         return "--" + self.name.replace("_", "-")
 
     def value(self, text: str) -> Any:
-        """Returns the value that a text stands for; a text that is no value of Python is a value itself."""
+        """Returns the value of a text; a text that is not a Python literal is itself the value."""
         if text == "None" and self.optional:
             return None
         if self.takes == "text":
@@ -54,7 +54,7 @@ class Field:
         return literal(text)
 
     def domain(self) -> str:
-        """Says in one line what it takes: `> 0, <= 3 [m]`."""
+        """Returns the accepted values in one line: `> 0, <= 3 [m]`."""
         says = ", ".join([self.takes, *self.bounds]) if self.choices is None else " or ".join(map(str, self.choices))
         if self.optional:
             says += ", or None"
@@ -62,7 +62,7 @@ class Field:
 
 
 def literal(text: str) -> Any:
-    """Returns the number, text, tuple, True, False or None that a text stands for in Python; else the text."""
+    """Returns the value of a Python literal: a number, text, tuple, True, False or None; any other text is returned unchanged."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError):
@@ -123,7 +123,7 @@ def _says(mark: object) -> str:
 
 
 def _docstrings(kind: type[Any]) -> Mapping[str, str]:
-    """Returns the text below each field of a class and of those it is derived from, where their source is known."""
+    """Returns the docstrings below the fields of a class and of its base classes, if their source is available."""
     words: dict[str, str] = {}
     for one in reversed(kind.__mro__):
         with suppress(OSError, TypeError, SyntaxError):

@@ -1,4 +1,4 @@
-"""The kinds of events that a trace records: from which level on, who tells of them, and with what data."""
+"""The kinds of events that a trace records: the lowest level, the source, and the data of each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 LEVELS = ("none", "production", "buffer", "all")
-"""What a trace may hold: nothing; selections and firings; also buffer changes; everything."""
+"""The levels of a trace: nothing; selections and firings; also buffer changes; everything."""
 
 
 class Kind(NamedTuple):
@@ -15,9 +15,9 @@ class Kind(NamedTuple):
     level: str
     """The lowest level at which it is recorded."""
     source: str
-    """Who tells of it."""
+    """The part that emits it."""
     data: str
-    """The names of its data; those that may be missing stand in brackets, «...» for names that depend on the source."""
+    """The names of its data; optional ones are in brackets, «...» means names that depend on the source."""
     meaning: str
 
 
@@ -96,4 +96,4 @@ KINDS: Mapping[str, Kind] = {
     "add": Kind("all", "memory", "chunk merged size given", "a memory takes in a chunk, or strengthens (merges with) the equal one it has"),
     "chunks": Kind("all", "memory", "by size gone new", "a memory's chunks are changed otherwise: by which method, and which ones"),
 }
-"""Every kind of event there is."""
+"""All kinds of events."""

@@ -1,4 +1,4 @@
-"""Standard output of the command: the model's own lines and the events of its run, whatever else writes there."""
+"""Standard output of the command: keeps the model's lines and the events of its run apart from all other output."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from actr3d.printing import ModelOutput
 
 
 class StandardOutput(io.TextIOWrapper):
-    """Standard output as a file of our own, which says once what is wrong with it and takes no more from then on.
+    """Standard output as a separate file, which stores its first error and accepts no more output after it.
 
     Args:
         number: The file descriptor.
-        like: Whose encoding and buffering it has.
+        like: The stream whose encoding and buffering is used.
     """
 
     def __init__(self, number: int, like: TextIO) -> None:
@@ -28,7 +28,7 @@ class StandardOutput(io.TextIOWrapper):
 
     @property
     def trouble(self) -> OSError | None:
-        """What is wrong with it, if anything."""
+        """The error of this output, if any."""
         return self._raw.trouble
 
 
@@ -47,14 +47,14 @@ class _Raw(io.FileIO):
 
 @contextmanager
 def standard_output(apart: bool) -> Generator[TextIO]:
-    """Gives standard output to one writer inside the block.
+    """Reserves standard output for one writer inside the block.
 
     Args:
-        apart: Whether to keep everybody else away from it: what this process, or one that it starts, writes to file
-            descriptor 1 goes to standard error then, so that it cannot stand in the middle of a line.
+        apart: Whether to redirect all other output: what this process, or one that it starts, writes to file descriptor 1 then
+            goes to standard error, so that it cannot split a line.
 
     Yields:
-        What to write to: a `StandardOutput`; or `sys.stdout` as it is, where that is no file, or another.
+        The stream to write to: a `StandardOutput`; or the unchanged `sys.stdout` if that is not a file, or another file.
     """
     out = sys.stdout
     try:
@@ -75,7 +75,7 @@ def standard_output(apart: bool) -> Generator[TextIO]:
 
 @contextmanager
 def _moved(out: TextIO) -> Generator[int]:
-    """Lets file descriptor 1 be standard error inside the block, and yields another that is standard output."""
+    """Redirects file descriptor 1 to standard error inside the block, and yields another descriptor for standard output."""
     try:
         os.fstat(2)
     except OSError:  # standard error is closed
@@ -89,13 +89,13 @@ def _moved(out: TextIO) -> Generator[int]:
         yield kept
     finally:
         with suppress(OSError, ValueError):
-            out.flush()  # what a model has written past its own `sys.stdout`
+            out.flush()  # what a model wrote without its own `sys.stdout`
         os.dup2(kept, 1)
         os.close(kept)
 
 
 def all_written(out: TextIO, printed: ModelOutput | None) -> OSError | None:
-    """Writes what is still to be written; returns what is wrong with the output, if anything."""
+    """Writes the remaining output; returns its error, if any."""
     with suppress(OSError, ValueError):  # it is full, or the model has closed it
         if printed is not None:
             printed.finish()

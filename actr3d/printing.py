@@ -1,4 +1,4 @@
-"""What a model prints, line by line."""
+"""Captures what a model prints, line by line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, Self, TextIO, cast
 
 
 class _Lines(io.BufferedIOBase):
-    """Takes bytes of UTF-8, and hands on whole lines of text; closing it does nothing."""
+    """Receives UTF-8 bytes, and passes on whole lines of text; closing it has no effect."""
 
     def __init__(self, take: Callable[[str], None]) -> None:
         self._take = take
@@ -32,21 +32,21 @@ class _Lines(io.BufferedIOBase):
         return 1
 
     def close(self) -> None:
-        """Leaves it open: a wrapper that a model puts round it, and lets go, closes what it wraps."""
+        """Does nothing: a wrapper that a model creates and drops would otherwise close this stream."""
 
     def forget(self) -> None:
-        """Drops what was printed without an end of line."""
+        """Discards an unfinished line."""
         self._rest = b""
 
     def finish(self) -> None:
-        """Hands on what was printed without an end of line."""
+        """Passes on an unfinished line."""
         rest, self._rest = self._rest, b""
         if rest:
             self._take(_text(rest))
 
 
 class ModelOutput(io.TextIOWrapper):
-    """A `sys.stdout` that hands on what a model prints line by line, also what it writes through `.buffer`.
+    """A `sys.stdout` that passes on what a model prints line by line, including output through `.buffer`.
 
     Args:
         take: Called with each line.
@@ -57,15 +57,15 @@ class ModelOutput(io.TextIOWrapper):
         super().__init__(self.lines, encoding="utf-8", errors="surrogatepass", newline="\n", write_through=True)
 
     def reconfigure(self, **options: Any) -> None:
-        """Takes what a model says of its output's form; lines of JSON have one form only."""
+        """Ignores the options: lines of JSON have a fixed encoding."""
 
     def finish(self) -> None:
-        """Hands on what was printed without an end of line."""
+        """Passes on an unfinished line."""
         self.lines.finish()
 
 
 class _BothBytes(io.BufferedIOBase):
-    """Takes bytes for an output that is told of."""
+    """The byte stream of a `ToldOutput`."""
 
     def __init__(self, told: ToldOutput, out: Any) -> None:
         self._told = told
@@ -81,11 +81,11 @@ class _BothBytes(io.BufferedIOBase):
         self._out.flush()
 
     def close(self) -> None:
-        """Leaves it open, as `_Lines` does."""
+        """Does nothing, as in `_Lines`."""
 
 
 class ToldOutput:
-    """A `sys.stdout` for a `with` block, which writes where it went before, and hands on each line as well.
+    """A `sys.stdout` for a `with` block, which writes to the previous output, and also passes on each line.
 
     Args:
         take: Called with each line.
@@ -101,7 +101,7 @@ class ToldOutput:
 
     @property
     def buffer(self) -> Any:
-        """What takes bytes."""
+        """The byte stream of this output."""
         return _BothBytes(self, self._out.buffer)
 
     def write(self, text: str, /) -> int:
@@ -114,23 +114,23 @@ class ToldOutput:
             self.write(text)
 
     def take(self, write: Callable[[Any], int], data: Any, encoded: bytes) -> int:
-        """Writes something, and tells of its lines.
+        """Writes data, and passes on its lines.
 
         Args:
-            write: What writes it.
-            data: What is written.
-            encoded: The same as bytes of UTF-8.
+            write: The function that writes it.
+            data: The data.
+            encoded: The same data as UTF-8 bytes.
         """
         count = write(data)
         self._lines.write(encoded)
         return count
 
     def finish(self) -> None:
-        """Hands on what was printed without an end of line."""
+        """Passes on an unfinished line."""
         self._lines.finish()
 
     def forget(self) -> None:
-        """Drops what was printed without an end of line."""
+        """Discards an unfinished line."""
         self._lines.forget()
 
     def __enter__(self) -> Self:
@@ -143,7 +143,7 @@ class ToldOutput:
 
 @contextmanager
 def printing_to(out: TextIO) -> Generator[None]:
-    """Lets `out` be what a model prints to inside the block."""
+    """Redirects what a model prints to `out` inside the block."""
     before = sys.stdout, sys.__stdout__
     sys.stdout = sys.__dict__["__stdout__"] = out
     try:

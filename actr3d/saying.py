@@ -1,4 +1,4 @@
-"""Warns at the modeller's own place: where a model stands that is run, or where something is written in its file."""
+"""Warns at the modeller's own line: the running line of the model, or the line in its file that causes the warning."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from actr3d.errors import ModelWarning
 
 LIBRARY = str(Path(__file__).parent) + os.sep
 MODELS = f"{LIBRARY}models{os.sep}"
-"""Where an installed library has its models, which are files like any modeller's."""
+"""The folder of the models in an installed library; they count as a modeller's files."""
 
 
 def is_library(filename: str) -> bool:
-    """Tells whether a file, as a frame names it, is the library's own."""
+    """Checks whether a file name, as given in a frame, belongs to the library."""
     return filename.startswith(LIBRARY) and not filename.startswith(MODELS)
 
 
 def _of_library(code: CodeType) -> bool:
-    # A dataclass's own `__init__`, between a configuration's checks and who makes it, has no file.
+    # A dataclass's generated `__init__`, between a configuration's checks and its caller, has no file.
     return is_library(code.co_filename) or (code.co_filename == "<string>" and code.co_name == "__init__")
 
 
@@ -36,12 +36,12 @@ def warn_modeller(message: str) -> None:
 
 
 def warn_at_frame(message: str, frame: FrameType) -> None:
-    """Warns (`ModelWarning`) at the line at which a frame stands."""
+    """Warns (`ModelWarning`) at the current line of a frame."""
     registry = frame.f_globals.setdefault("__warningregistry__", {})
     warnings.warn_explicit(message, ModelWarning, frame.f_code.co_filename, frame.f_lineno, registry=registry)
 
 
 def warn_at(message: str, func: Callable[..., Any], line: int | None = None) -> None:
-    """Warns (`ModelWarning`) at a line of a modeller's function; at its first line unless one is given."""
+    """Warns (`ModelWarning`) at a line of a modeller's function; by default at its first line."""
     code = func.__code__
     warnings.warn_explicit(message, ModelWarning, code.co_filename, line or code.co_firstlineno, registry={})

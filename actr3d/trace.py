@@ -1,15 +1,15 @@
-"""The trace: the append-only record of everything that happens in one run, or in several that one program makes.
+"""The trace: the append-only record of everything that happens in one run, or in several runs of one program.
 
-A run has no trace until somebody asks for one, and then records no more than the level asked for. Whoever emits an
-event first looks at the trace's level flags, so that nothing is computed which nobody wants.
+A run has no trace unless one is requested, and then records only up to the requested level. Code that emits an event checks
+the trace's level flags first, so that nothing is computed in vain.
 
 An event's source is the dotted path of a part below the top model, such as `agent.goal`, or «top» for that model itself.
-Where one trace records several runs, as of a program that makes one model after another, the second one's top model is
-`top#2` and its parts are `top#2.goal` and so on, in the order in which the runs began to be traced. Each run's time
-begins anew.
+If one trace records several runs, for example of a program that makes one model after another, the second top model is
+`top#2` and its parts are `top#2.goal` and so on, in the order in which tracing of the runs began. The time of each run
+starts at 0.
 
-Every kind of event is described once, in `actr3d.kinds`: at which level it is recorded, who its source is, and its data.
-A trace that begins in the middle of a run begins with what everything is like: `start`, and then `state`, `buffer`,
+Every kind of event is described once, in `actr3d.kinds`: its lowest level, its source, and its data.
+A trace that begins in the middle of a run begins with the current state: `start`, and then `state`, `buffer`,
 `productions`, `observe`, `utility` and the last `request` of each part.
 """
 
@@ -25,30 +25,30 @@ from actr3d.kinds import KINDS, LEVELS
 from actr3d.values import plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
-"""The particulars of an event, or a function that makes them of what it has kept, when somebody reads them."""
+"""The data of an event, or a function that creates the data from stored values when they are first read."""
 Record = tuple[int, str, str, Data]
 
 
 class TraceEvent(NamedTuple):
-    """One thing that happened."""
+    """One event."""
 
     time_us: int
-    """When [us of simulated time]."""
+    """The time of the event [us of simulated time]."""
     source: str
-    """Who: the dotted path below the top model, or «top» for that model itself; of a later run, `top#2` and what follows."""
+    """The source: the dotted path below the top model, or «top» for that model itself; for a later run `top#2` and so on."""
     kind: str
-    """What: one of `KINDS`."""
+    """The kind: one of `KINDS`."""
     data: dict[str, Any]
-    """The particulars; plain values, lists and dicts only."""
+    """The data; plain values, lists and dicts only."""
 
     @property
     def time(self) -> float:
-        """When [s of simulated time]."""
+        """The time of the event [s of simulated time]."""
         return seconds(self.time_us)
 
     @property
     def run(self) -> int:
-        """Which of the trace's runs it belongs to, counted from 1."""
+        """The number of its run in the trace, counted from 1."""
         return int(self.source.removeprefix("top#").partition(".")[0]) if self.source.startswith("top#") else 1
 
     def to_json(self) -> str:
@@ -57,7 +57,7 @@ class TraceEvent(NamedTuple):
         Numbers that JSON does not have become the texts `inf`, `-inf` and `nan`.
         """
         line = to_json({"time": self.time, "source": self.source, "kind": self.kind, "data": self.data})
-        # Where an object's text tells where it lies in memory, that differs from run to run.
+        # An object's memory address in its text differs from run to run.
         return _ADDRESS.sub("", line) if " at 0x" in line else line
 
 
@@ -67,32 +67,32 @@ Listener = Callable[[TraceEvent], object]
 
 
 class Run(Protocol):
-    """What a trace asks of a run that it records."""
+    """The interface of a run that a trace records."""
 
     @property
     def model(self) -> Any:
-        """Its top model, to look at; None where it is over and gone."""
+        """The top model, for reading; None if the run is over and the model deleted."""
         ...
 
     def now_us(self) -> int | None:
-        """Returns its present [us]; None where it is over and gone, or has become part of another."""
+        """The current time [us]; None if the run is over and deleted, or has become part of another run."""
         ...
 
     def tell(self, trace: Trace) -> None:
-        """Tells a trace what everything is like at present."""
+        """Emits the current state to a trace."""
         ...
 
     def stop(self) -> None:
-        """Ends it once the present event is over."""
+        """Stops the run after the current event."""
         ...
 
 
 class Trace:
-    """Records the events of one program's runs and hands each to whoever listens.
+    """Records the events of one program's runs and passes each to the listeners.
 
     Args:
-        level: One of `LEVELS`; what is not asked for is neither computed nor kept.
-        keep: Whether the trace keeps its events. A long run that only streams them need not: without listeners it then
+        level: One of `LEVELS`; events above it are neither computed nor kept.
+        keep: Whether the trace keeps its events. A long run that only streams them need not; without listeners, such a trace
             costs nothing.
 
     Raises:
@@ -112,56 +112,56 @@ class Trace:
         self._set_flags()
 
     def _set_flags(self) -> None:
-        """Asks for what is kept or listened to, and no more."""
+        """Sets the level flags to what is kept or listened to."""
         wanted = max([rank for _, rank in self._listeners] + [LEVELS.index(self.level) if self.keep else 0])
         self.production = wanted >= LEVELS.index("production")
         self.buffer = wanted >= LEVELS.index("buffer")
         self.all = wanted >= LEVELS.index("all")
 
-    # -- what happens
+    # -- recording events
 
     def begin(self, run: Run) -> int:
-        """Takes in a run that begins to be traced; returns its number, counted from 1."""
+        """Adds a run that begins to be traced; returns its number, counted from 1."""
         self._runs.append(run)
         return len(self._runs)
 
     @property
     def runs(self) -> Sequence[Run]:
-        """The runs that it records, in the order in which that began."""
+        """The recorded runs, in the order in which their tracing began."""
         return self._runs
 
     def emit(self, time_us: int, source: str, kind: str, data: Data) -> None:
-        """Appends one event; the caller has looked at the level and gives `data` away."""
+        """Appends one event; the caller has checked the level and must not change `data` afterwards."""
         if not self._listeners:
             if self.keep:
                 self._records.append((time_us, source, kind, data))
             return
         event = _event((time_us, source, kind, data))
         if self.keep:
-            self._records.append(event)  # as it is now: its data is not made again for those who look later
+            self._records.append(event)  # in this form: later readers need not create its data again
         rank = _RANKS.get(kind, 0)
         for listener, level in self._listeners:
             if level >= rank:
                 try:
                     listener(event)
-                except Exception as error:  # noqa: BLE001 - it is raised where the run can bear it, see `raise_failures`
+                except Exception as error:  # noqa: BLE001 - it is raised where the run allows it, see `raise_failures`
                     self._fail(listener, event, error)
 
     def command(self, name: str, data: Mapping[str, Any] | None = None, *, run: int | None = None) -> None:
         """Sends a user's command, such as pause or a new value of a parameter, to a run.
 
-        It is recorded at the run's present time, at every level, and handed to the listeners; whoever can carry commands
-        out is one of them. This is to be called by the thread that runs the model; another one asks for it between two
-        events: `model.sch.add(trace.command, args=("pause",), thread_safe=True)`.
+        It is recorded at the run's current time, at every level, and passed to the listeners; one of them executes it. Call this only
+        in the thread that runs the model; another thread schedules it between two events:
+        `model.sch.add(trace.command, args=("pause",), thread_safe=True)`.
 
         Args:
-            name: What to do.
-            data: With what; kept as it is now.
-            run: The number of the run; None for the one that began last.
+            name: The name of the command.
+            data: Its data; copied.
+            run: The number of the run; None for the latest one.
 
         Raises:
-            ParameterError: If there is no such run any more.
-            Exception: What a listener raises.
+            ParameterError: If the run does not exist any more.
+            Exception: Any error of a listener.
         """
         known = {number: now for number, one in enumerate(self._runs, start=1) if (now := one.now_us()) is not None}
         number = max(known, default=1) if run is None else run
@@ -174,18 +174,18 @@ class Trace:
     # -- listeners
 
     def listen(self, listener: Listener, level: str | None = None) -> None:
-        """Calls `listener` with every event from now on, after telling it what everything is like in runs under way.
+        """Calls `listener` with every event from now on, after sending it the current state of the active runs.
 
-        A listener that raises an error hears no more; the run ends after the present event, and `run` raises that error.
-        It can go on afterwards.
+        A listener that raises an error is removed; the run ends after the current event, and `run` raises that error.
+        The run can be continued afterwards.
 
         Args:
-            listener: Takes an event.
-            level: Up to which level it hears events; None for the trace's own.
+            listener: A function of one event.
+            level: The highest level of events it receives; None for the trace's own.
 
         Raises:
             ParameterError: If the level is unknown, or above the trace's own.
-            Exception: What the listener raises at once.
+            Exception: Any error that the listener raises at once.
         """
         rank = _rank("Trace.listen(level)", self.level if level is None else level)
         if rank > LEVELS.index(self.level):
@@ -203,10 +203,10 @@ class Trace:
             opening.raise_failures()
 
     def ignore(self, listener: Listener) -> None:
-        """Calls a listener no more.
+        """Removes a listener.
 
         Raises:
-            ParameterError: If it does not listen.
+            ParameterError: If it is not a listener of this trace.
         """
         others = tuple(pair for pair in self._listeners if pair[0] != listener)
         if len(others) == len(self._listeners):
@@ -215,7 +215,7 @@ class Trace:
         self._set_flags()
 
     def _fail(self, listener: Listener, event: TraceEvent, error: Exception) -> None:
-        """Lets a listener go that raised an error, and ends the runs so that it can be raised."""
+        """Removes a listener that raised an error, and stops the runs so that the error can be raised."""
         who = f"{event.kind}' of {event.source} at {event.time:g} s"
         error.add_note(f"raised by a listener of the trace, {plain(listener)}, for the event '{who}; it hears no more")
         self._listeners = tuple(pair for pair in self._listeners if pair[0] != listener)
@@ -225,10 +225,10 @@ class Trace:
             run.stop()
 
     def raise_failures(self) -> None:
-        """Raises what a listener has raised; called where no event is half done.
+        """Raises the errors of listeners; called between events.
 
         Raises:
-            Exception: The first error, with a note on each other.
+            Exception: The first error, with a note on each other one.
         """
         if self._failures:
             (first, *others), self._failures = self._failures, []
@@ -236,7 +236,7 @@ class Trace:
                 first.add_note(f"another listener raised {type(other).__name__}")
             raise first
 
-    # -- what was recorded
+    # -- reading events
 
     def __len__(self) -> int:
         return len(self._records)
@@ -245,11 +245,11 @@ class Trace:
         return map(_event, self._records)
 
     def since(self, number: int) -> list[TraceEvent]:
-        """Returns the events from a number on, counted from 0; in no more time than they are many."""
+        """Returns the events from a number on, counted from 0; its cost depends only on how many these are."""
         return list(map(_event, self._records[number:]))
 
     def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
-        """Returns the events of one kind, of one source where it is named, in order."""
+        """Returns the events of one kind, optionally of one source, in order."""
         return [e for e in self if e.kind == kind and (source is None or e.source == source)]
 
 
@@ -257,7 +257,7 @@ _RANKS = {name: LEVELS.index(kind.level) for name, kind in KINDS.items()}
 
 
 def top_path(number: int) -> str:
-    """Returns the source's name of a run's top model."""
+    """Returns the source name of a run's top model."""
     return "top" if number == 1 else f"top#{number}"
 
 

@@ -1,7 +1,7 @@
-"""Plain values: what a record keeps of any value, as it is now and for good.
+"""Plain values: the immutable form in which a record keeps a copy of any value.
 
-Nothing that a modeller wrote is run for it, no `__repr__`, property or iterator of theirs: of an object that only such
-code could put into words, a record keeps the name of its class.
+Converting a value runs no code of the modeller, no `__repr__`, property or iterator: if only such code could describe an object,
+the record keeps the name of its class.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from typing import Any, cast
 from uuid import UUID
 
 BASIC = frozenset({str, float, int, bool, type(None)})
-"""The types that are plain already."""
+"""The types that are already plain."""
 WORDED = frozenset({bytes, bytearray, complex, range, Decimal, Fraction, date, datetime, time, timedelta, UUID})
-"""The types whose own text says all there is, and the same in every run."""
+"""The types whose `str` describes the value completely, and identically in every run."""
 COLLECTIONS = (dict, list, tuple, set, frozenset, deque)
-"""The types whose items are kept one by one."""
+"""The types whose items are converted one by one."""
 NAMED = (FunctionType, BuiltinFunctionType, MethodType, type)
-"""The types of what has a name of its own."""
+"""The types of objects that have a name."""
 DEEPEST = 16
-"""How many levels of lists in lists a record keeps."""
+"""The maximum depth of nested lists in a record."""
 MOST = 10_000
-"""How often a record keeps a list once more that it has kept before; beyond that it is a net in which every way would be gone."""
+"""The maximum number of repeated lists in a record; beyond it, the value is a graph whose copy could grow without limit."""
 LONGEST = 14_000
-"""How long a whole number may be to be written in decimals [bits]; JSON's readers take no longer ones."""
+"""The maximum size of a whole number that is written in decimals [bits]; JSON readers accept no longer ones."""
 UNTOLD: Mapping[str, bool] = MappingProxyType({"untold": True})
-"""The metadata of a dataclass field that traces and recordings leave out, for they have it in another place."""
+"""The metadata of a dataclass field that traces and recordings omit, because they have its value elsewhere."""
 
 _ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
 
@@ -42,7 +42,7 @@ Namer = Callable[[object], str | None]
 
 
 class Opaque(str):
-    """Stands for an object whose own text is another one, or known only to its own code."""
+    """The text of an object that has another text of its own, or one that only its own code knows."""
 
     __slots__ = ()
 
@@ -53,7 +53,7 @@ class Naming(str):
     __slots__ = ()
 
     def renamed(self, name: Callable[[str], str]) -> Naming:
-        """Returns the text with other names of the parts; `name` returns a path's."""
+        """Returns the text with renamed parts; `name` returns the new name of a path."""
         return Naming(_PATH.sub(lambda found: f"<{name(found[1])}>", self))
 
 
@@ -61,22 +61,22 @@ _PATH = re.compile(r"<([^<>\s]+)>")
 
 
 def plain(value: Any, name: Namer | None = None) -> Any:
-    """Returns what a record keeps of a value: numbers, texts, lists and dicts that nothing else can change.
+    """Returns the plain form of a value: numbers, texts, and lists and dicts that are copies.
 
-    A set becomes a sorted list; what contains itself, or lies too deep, becomes «...».
+    A set becomes a sorted list; a value that contains itself, or is nested too deeply, becomes «...».
 
     Args:
         value: Anything.
-        name: Names the objects that the caller knows; None from it for all others.
+        name: Returns the names of objects that the caller knows, and None for all others.
     """
     return value if type(value) in BASIC else _Copy(name).of(value)
 
 
 class _Copy:
-    """One value being made plain.
+    """Converts one value to its plain form.
 
     Args:
-        name: Names the objects that the caller knows.
+        name: Returns the names of objects that the caller knows.
     """
 
     def __init__(self, name: Namer | None) -> None:
@@ -87,7 +87,7 @@ class _Copy:
 
     def of(self, value: Any) -> Any:
         """Returns the plain form of the value, or of a part of it."""
-        # `isinstance` may ask an object for its class, which runs code of its own; its type may not.
+        # `isinstance` may read an object's `__class__`, which can run the modeller's code; `type` cannot.
         kind = cast("type[Any]", type(value))
         if kind in BASIC:
             return value
@@ -95,7 +95,7 @@ class _Copy:
             return self._collection(value, cast("Any", kind))
         if issubclass(kind, Enum):
             return Opaque(f"{kind.__name__}.{object.__getattribute__(value, '__dict__').get('_name_')}")
-        if issubclass(kind, str):  # a text of a class of its own
+        if issubclass(kind, str):  # a subclass of `str`
             return str.__str__(value)
         if issubclass(kind, (int, float)):
             return int.__add__(value, 0) if issubclass(kind, int) else float.__add__(value, 0)
@@ -109,7 +109,7 @@ class _Copy:
         self._above.append(id(value))
         try:
             if issubclass(kind, dict):
-                # A key is text in every record; so are the numbers of a chunk's places.
+                # Keys are text in every record, including the numbers of a chunk's positions.
                 return {key if type(key) is str else str(self.of(key)): self.of(entry) for key, entry in dict[Any, Any].items(value)}
             own = next(base for base in COLLECTIONS if issubclass(kind, base))
             items = [self.of(entry) for entry in cast("Any", own).__iter__(value)]
@@ -129,9 +129,9 @@ class _Copy:
 
 
 def to_json(value: Any) -> str:
-    """Returns any value as one line of JSON that every reader takes.
+    """Returns any value as one line of JSON that every reader accepts.
 
-    What JSON has no word for becomes what `plain` makes of it, and the numbers it does not have `"inf"`, `"-inf"` and `"nan"`.
+    Values that JSON cannot represent become their `plain` form; the numbers it does not have become `"inf"`, `"-inf"` and `"nan"`.
     """
     value = plain(value)
     try:
@@ -142,11 +142,11 @@ def to_json(value: Any) -> str:
 
 
 def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
-    """Returns what `to_json` does of a value that is plain already, as the data of events are; several times as quickly.
+    """Returns the same as `to_json`, for a value that is already plain, as the data of events are; several times faster.
 
     Args:
         value: The value.
-        otherwise: Makes JSON of it where JSON has no word for some of it.
+        otherwise: Converts the value to JSON if JSON cannot represent all of it.
     """
     try:
         line = _ENCODE(value)
@@ -156,7 +156,7 @@ def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
 
 
 def _encodable(line: str) -> str:
-    """Returns JSON in which half a character, which no encoding has, is written as JSON's own escape."""
+    """Returns JSON in which lone surrogates, which no encoding has, are written as JSON escapes."""
     return line if line.isascii() else line.encode("utf-8", "backslashreplace").decode("utf-8")
 
 

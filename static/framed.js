@@ -1,22 +1,23 @@
-// Runs before viser's own script, in its page. It keeps connecting while the page is not in front; `?panel=hidden` hides viser's panel and
-// notices, for a page that has controls of its own around it; it tells that page when the first picture is drawn; it takes what the server
-// tells of the scene; and it draws less on a machine without a graphics card. It is no module: modules may run after viser has read its address.
+// Runs before viser's own script, in its page. It keeps connecting while the page is in the background; `?panel=hidden` hides viser's
+// panel and notices, for a page with its own controls around it; it notifies that page when the first picture is drawn; it receives
+// what the server sends of the scene; and it draws less without a graphics card. It is not a module: modules may run after viser has
+// read its address.
 
 {
   document.hasFocus = () => true;
 
-  // What the server tells of the scene beside its shapes, and the view that is chosen: `scene/view.js` shows both.
+  // What the server sends of the scene besides its shapes, and the chosen view: `scene/view.js` shows both.
   const MOST_HEARD = 64;
   window.scene = {
     told: {},
-    heard: [], // what was told of the newest moments; some of them are not drawn yet
+    heard: [], // the data of the newest moments; some of them are not drawn yet
     view: "follow",
     onview: null,
     tell(name, value) {
       this.told[name] = value;
       if (name === "now") this.heard = [...this.heard, value].slice(-MOST_HEARD);
     },
-    /** Puts the camera where a view begins, also where it is that view already. */
+    /** Moves the camera to the start of a view, also if it is that view already. */
     choose(view) {
       this.view = view;
       this.onview?.();
@@ -32,10 +33,10 @@
     document.documentElement.append(style);
   }
 
-  /** Tells the page around it whether there is a picture, or, by false, that there will be none. */
+  /** Tells the surrounding page whether there is a picture, or, with false, that there will be none. */
   const tellDrawn = (drawn) => parent.postMessage({ drawn }, location.origin);
 
-  /** Tells when something is first drawn on the screen itself, not for the sake of what is drawn later. */
+  /** Detects the first drawing on the screen itself, not into an intermediate buffer. */
   function tellFirst() {
     const kind = WebGL2RenderingContext.prototype;
     for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"]) {
@@ -49,7 +50,7 @@
     }
   }
 
-  /** Whether the processor draws, in place of a graphics card. */
+  /** Whether the processor draws, without a graphics card. */
   function drawnBySoftware() {
     const gl = document.createElement("canvas").getContext("webgl2");
     if (gl) tellFirst();
@@ -60,7 +61,7 @@
     return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
   }
 
-  // Half of what a picture costs without a graphics card is its shadows, and four tenths of the rest that edges are smooth.
+  // Without a graphics card, shadows take half of a picture's time, and smooth edges four tenths of the rest.
   const bySoftware = drawnBySoftware();
   if (!asked.has("websocket") && bySoftware) {
     asked.set("websocket", `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname.replace(/\/$/, "")}?shadows=off`);
@@ -71,7 +72,7 @@
     };
   }
 
-  // While the run goes as fast as it can, it draws when the page around it does, which gives it what both go by.
+  // While the run goes as fast as possible, this draws when the surrounding page does, which provides the shared timing.
   const ask = requestAnimationFrame.bind(window);
   const forget = cancelAnimationFrame.bind(window);
   const waiting = new Map();

@@ -1,29 +1,29 @@
-// The keys of the page: one place that knows them all, so that `?` can show them.
+// The keys of the page: registered in one place, so that `?` can list them.
 
 const known = new Map();
 
-/** What keys are for, in the order in which they are shown. */
+/** The groups of keys, in the order in which they are shown. */
 export const KEY_GROUPS = ["Run", "Timeline", "3D view", "Panels", "Editor"];
 
-/** Gives a key something to do. `key` is as in KeyboardEvent, "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac) before it. Keys without
- * Mod do nothing while the user writes. Without a text it is not shown. */
+/** Binds a key to an action. `key` is as in KeyboardEvent, preceded by "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac). Keys without
+ * Mod are ignored while the user types. A key without a text is not listed. */
 export function bindKey(key, text, work, group = "Run") {
   known.set(key, { key, text, work, group });
 }
 
-/** Tells of a key that does something only in some part of the page, which attends to it itself. */
+/** Lists a key that only works in some part of the page, which handles it itself. */
 export function noteKey(key, text, group) {
   known.set(`${key} ${text}`, { key, text, group });
 }
 
-/** Returns the keys of a group with what they do, in the order in which they were bound. */
+/** Returns the keys of a group with their actions, in the order in which they were bound. */
 export function keysOf(wanted) {
   return [...known.values()].filter(({ text, group }) => text && group === wanted);
 }
 
 export const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
 
-/** Says a key as it stands on a keyboard. */
+/** Returns a key's name as on a keyboard. */
 export function keyText(key) {
   const names = { " ": "Space", Delete: "Del", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", Mod: isMac ? "⌘" : "Ctrl" };
   return key.split(/\+(?=.)/).map((part) => names[part] ?? (part.length === 1 ? part.toUpperCase() : part)).join(" ");
@@ -36,13 +36,13 @@ function isWriting(element) {
   return takesText || ["TEXTAREA", "SELECT"].includes(element?.tagName);
 }
 
-/** Keys that what has the focus attends to itself: buttons are pressed, sliders and tabs moved. */
+/** Keys that the focused element handles itself: buttons are pressed, sliders and tabs moved. */
 const OWN = {
   "Space Enter NumpadEnter": "button, a, summary, [role=tab], [type=checkbox], [type=radio]",
   "ArrowLeft ArrowRight ArrowUp ArrowDown Home End PageUp PageDown": "[role=tab], [role=separator], [role=slider], [type=range], [type=radio]",
 };
 
-/** Does what a key is bound to; returns whether it is bound and may do it now. */
+/** Runs the action of a key; returns whether it is bound and enabled. */
 function press(event) {
   const mod = isMac ? event.metaKey : event.ctrlKey;
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
@@ -61,7 +61,7 @@ function press(event) {
 const CAMERA = ["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]; // these move the camera of the 3D view
 let inner = null; // the window of the 3D view
 
-/** Hears the keys of the 3D view's window, too: they do what they do elsewhere on the page, and the 3D view gets those of the camera only. */
+/** Handles the keys of the 3D view's window too: they work as elsewhere on the page; the 3D view gets only the camera keys. */
 export function hearKeys(frame) {
   inner = frame;
   for (const kind of ["keydown", "keyup"]) {
@@ -75,7 +75,7 @@ export function hearKeys(frame) {
   }
 }
 
-/** Hands a key of the camera on to the 3D view, wherever the focus is on the page. */
+/** Passes a camera key to the 3D view, wherever the focus is on the page. */
 function handOn(event) {
   const { type, key, code, ctrlKey, metaKey, altKey } = event;
   const free = !ctrlKey && !metaKey && !altKey && !event.defaultPrevented && !isWriting(document.activeElement) && !document.querySelector("dialog[open]");
@@ -83,7 +83,7 @@ function handOn(event) {
   inner?.document?.dispatchEvent(new inner.KeyboardEvent(type, { key, code }));
 }
 
-// A list keeps the focus after a choice by mouse, and would take all letters for its own.
+// A select element keeps the focus after a choice by mouse, and would capture all letters.
 let byMouse = false;
 addEventListener("pointerdown", () => (byMouse = true), true);
 addEventListener("keydown", () => (byMouse = false), true);

@@ -1,13 +1,13 @@
-// Puts the page together.
+// Assembles the page.
 
 import { html, render } from "./vendor/preact.js";
 import { complain } from "./store.js";
 import { Workbench } from "./workbench.js";
 
-const MOST_FAULTS = 10; // a fault in what is drawn again and again would bury all other messages
+const MOST_FAULTS = 10; // a fault repeated at each drawing would hide all other messages
 const faults = new Set();
 
-/** Tells of a fault of the page itself, once. */
+/** Reports an error of the page itself, once. */
 function fault(text) {
   if (faults.has(text) || faults.size >= MOST_FAULTS) return;
   faults.add(text);

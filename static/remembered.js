@@ -1,17 +1,17 @@
-// What the page remembers from one visit to the next: sizes, the theme, which tab is open.
+// What the page remembers from one visit to the next: sizes, the theme, the open tab.
 
 import { effect, signal } from "./vendor/preact.js";
 
 const PREFIX = "actr3d.";
 
-/** Returns a signal whose value outlives the page, where the browser keeps such things. */
+/** Returns a signal whose value is stored in the browser, if possible. */
 export function remembered(name, otherwise) {
   const kept = signal(read(name, otherwise));
   effect(() => {
     try {
       localStorage.setItem(PREFIX + name, JSON.stringify(kept.value));
     } catch {
-      // A browser that keeps nothing: it holds until the page is left.
+      // If the browser stores nothing, the value lasts until the page is closed.
     }
   });
   return kept;

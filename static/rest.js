@@ -1,28 +1,28 @@
-// How often something is drawn while the run goes as fast as it can: where drawing takes long, as without a graphics card, all that is
-// drawn rests for a while after each picture, for the run needs the processor, too.
+// Limits how often the page draws while the run goes as fast as possible: if drawing is slow, for example without a graphics card, all
+// drawing pauses after each picture, because the run needs the processor too.
 
-const SMOOTH = 40; // a picture that takes no longer than this [ms] is free
-const SHARE = 1 / 6; // of the time may go into others
+const SMOOTH = 40; // a picture that takes at most this long [ms] needs no pause
+const SHARE = 1 / 6; // the maximum share of time for slower pictures
 
 export class Rest {
-  /** Whether the run goes as fast as it can. */
+  /** Whether the run goes as fast as possible. */
   hurried = false;
-  #begun = null; // when the picture was begun that is not done yet
-  #open = false; // whether more may come into that one
+  #begun = null; // the start of the current picture
+  #open = false; // whether more drawing may join that picture
   #until = 0;
 
-  /** @param ask The `requestAnimationFrame` that tells when the browser is ready for another picture. */
+  /** @param ask The `requestAnimationFrame` that calls back when the browser is ready for another picture. */
   constructor(ask = requestAnimationFrame.bind(globalThis)) {
     this.ask = ask;
   }
 
-  /** Is called as something is drawn: where that begins a picture, measures what it costs, by when the one after the next could be begun. */
+  /** Called at each drawing: at the start of a picture, measures its cost by the time when the next but one could start. */
   drawing() {
     if (!this.hurried || this.#begun !== null) return;
     this.#begun = performance.now();
     this.#open = true;
     this.ask(() => {
-      setTimeout(() => (this.#open = false)); // when everybody has been asked to draw, frames in the page, too
+      setTimeout(() => (this.#open = false)); // after all parts were asked to draw, including frames in the page
       this.ask(() => this.#done());
     });
   }
@@ -34,12 +34,12 @@ export class Rest {
     this.#open = false;
   }
 
-  /** For how long it is to rest [ms], or at least until it is asked again; 0 where something may be drawn now. */
+  /** Returns how long to pause [ms], or at least until the next call; 0 if drawing is allowed now. */
   get left() {
     if (!this.hurried || document.hidden || this.#open) return 0;
     return this.#begun === null ? Math.max(0, this.#until - performance.now()) : SMOOTH;
   }
 }
 
-/** That of this page, and of the 3D view in it: what draws at once is put together once. */
+/** The instance shared by this page and its 3D view: simultaneous drawings count as one picture. */
 export const rest = new Rest();

@@ -1,23 +1,23 @@
-// Speaks to the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
+// Communicates with the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
 import { rest } from "./rest.js";
 import { complain, connected, events, forget, hurried, known, opening, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
-const AGAIN = 1000; // how long it waits before connecting again [ms]
+const AGAIN = 1000; // the delay before a new connection [ms]
 
 let socket = null;
 let shown = null;
 let number = 0;
 let wishes = 0;
 const waiting = new Map();
-const held = []; // updates that wait until they are drawn
+const held = []; // updates that wait to be drawn
 let timer = 0;
 
-/** Calls the REST interface; returns what it tells, or throws an Error that says why not, with `status` and `told`. An AbortSignal
- * ends the waiting. */
+/** Calls the REST interface; returns the response, or throws an Error with the reason, with `status` and `told`. An AbortSignal
+ * cancels the call. */
 export async function call(method, path, body, signal) {
-  // Whatever changes something is sent as JSON with a header of ours, which no form of another site can do.
+  // Every change is sent as JSON with a custom header, which no form of another site can send.
   const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
   const response = await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
   const text = await response.text();
@@ -26,8 +26,8 @@ export async function call(method, path, body, signal) {
   return told;
 }
 
-/** Fetches a file as a whole; returns it as a Blob, or throws an Error that says why not. `progress` is called with how many bytes
- * have come, and of how many. An AbortSignal ends it. */
+/** Fetches a whole file; returns it as a Blob, or throws an Error with the reason. `progress` is called with the number of bytes
+ * received and the total. An AbortSignal cancels it. */
 export async function fetchFile(path, signal, progress) {
   const response = await answerOf(path, { signal });
   if (!response.ok) throw refusal(response, parsed(await response.text()));
@@ -62,20 +62,20 @@ function parsed(text) {
   }
 }
 
-/** Returns the Error of an answer that says why something is not done. */
+/** Returns the Error for a response that gives the reason of a failure. */
 function refusal(response, told) {
   const reason = typeof told.error === "string" ? told.error : JSON.stringify(told.detail ?? told);
   return Object.assign(new Error(reason), { status: response.status, told });
 }
 
-/** Is called when the user wants something else to be shown, which takes a while; returns what tells whether that is still wanted:
- * of two things chosen one soon after the other, the first may be ready last. */
+/** Called when the user chooses something that takes a while to show; returns a function that checks whether it is still wanted:
+ * of two choices in quick succession, the first may be ready last. */
 export function wish() {
   wishes += 1;
   return sinceNow();
 }
 
-/** Returns what tells whether the user has wanted nothing else to be shown since now. */
+/** Returns a function that checks whether the user has chosen nothing else since now. */
 export function sinceNow() {
   const now = wishes;
   return () => now === wishes;
@@ -89,10 +89,10 @@ export function show(session) {
   else connect();
 }
 
-/** Whether an error only says that another run is shown by now than the one that was spoken to. */
+/** Whether an error only means that the page shows another run by now. */
 export const isLeft = (error) => error.left === true;
 
-/** Shows no session until another one is there to be shown; of the one before nothing is heard any more. */
+/** Shows no session until another one is ready; messages of the previous one are ignored from now on. */
 function leave() {
   shown = null;
   held.length = 0;
@@ -100,14 +100,14 @@ function leave() {
   abandon(() => Object.assign(new Error("another run is shown now"), { left: true }));
 }
 
-/** Gives up waiting for whatever was said. */
+/** Cancels all pending requests. */
 function abandon(reason) {
   const all = [...waiting.values()];
   waiting.clear();
   for (const { reject } of all) reject(reason());
 }
 
-/** Shows a model: the session with it that there is, or a new one. With `run` it runs from its start, as the file is now. */
+/** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text. */
 export async function showModel(model, { run = false } = {}) {
   const wanted = wish();
   if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
@@ -125,7 +125,7 @@ export async function showModel(model, { run = false } = {}) {
   }
 }
 
-/** Shows a recording: the session that lives through it again, or a new one. With `trust` its code is run whoever has made it. */
+/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin. */
 export async function showRecording(id, trust = false) {
   const wanted = wish();
   const waits = opening.peek() === null && session.peek() === null;
@@ -154,9 +154,9 @@ function connect() {
   socket.onmessage = ({ data }) => {
     const message = JSON.parse(data);
     if (message.type === "refused") complain(message.error);
-    if (message.type !== "update" || message.of !== shown) return; // of the one that was shown before, some may still come
+    if (message.type !== "update" || message.of !== shown) return; // messages of the previously shown session may still arrive
     held.push(message);
-    // That the run stands is shown at once.
+    // A pause of the run is shown at once.
     if (message.state && message.state.status !== "running") update();
     else updateSoon();
   };
@@ -167,7 +167,7 @@ function connect() {
   };
 }
 
-/** Takes in what has come, as soon as it may be drawn. */
+/** Applies the received updates as soon as drawing is allowed. */
 function updateSoon() {
   if (timer) return;
   const { left } = rest;
@@ -197,7 +197,7 @@ function update() {
   }
 }
 
-/** Says a command or asks a question; returns what comes of it, or throws an Error that says why not. */
+/** Sends a command or a question; returns its result, or throws an Error with the reason. */
 export function say(what) {
   return new Promise((resolve, reject) => {
     if (shown === null || socket?.readyState !== WebSocket.OPEN) {
@@ -210,7 +210,7 @@ export function say(what) {
   });
 }
 
-/** Does a command whose result does not matter; an error is shown among the messages, but for that another run is shown by now. */
+/** Sends a command whose result does not matter; shows errors among the messages, unless the page shows another run by now. */
 export function order(what) {
   return say(what).catch((error) => isLeft(error) || complain(error.message));
 }

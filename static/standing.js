@@ -1,5 +1,5 @@
-// What state the run is in, as one idea: its name, what the line below says of it, and what there is to do where a panel has nothing to
-// show. All panels say the same of the same state.
+// The status of the run: its name, its text in the status line, and what panels show if they are empty. All panels use the same
+// texts for the same status.
 
 import { computed } from "./vendor/preact.js";
 import { opening, session, state } from "./store.js";
@@ -7,7 +7,7 @@ import { opening, session, state } from "./store.js";
 const AGAIN = "«Run again» begins it anew.";
 const MEND = "Messages says why, with the line. Mend it in the Editor, and run it again.";
 
-/** The states: `line` says each in a word or two, `text` what is so and what to do. Both are told what `known` returns. */
+/** The states: `line` is a word or two, `text` describes the status and what to do. Both receive the result of `known`. */
 const STANDINGS = {
   none: { line: () => "no run", text: () => "No model is shown: choose one above." },
   loading: { line: loadingLine, text: () => opening.value?.text ?? "The model is being loaded …" },
@@ -31,12 +31,12 @@ function asTold({ status, reason }) {
   return reason ? `${status}: ${reason}` : status;
 }
 
-/** A run that was over by itself may be stopped, too: then nothing more can be asked of it. */
+/** A run that has ended by itself may be stopped too: then it can no longer answer questions. */
 function stoppedLine({ status, reason }) {
   return reason === "stopped" || !reason ? "stopped" : `${asTold({ status, reason })}; stopped`;
 }
 
-/** Sums up what the session and the newest state tell. */
+/** Returns a summary of the session and the newest state. */
 function known() {
   const { alive = false, loading = false, kind, stuck, ending = "" } = session.value ?? {};
   const { status, reason = "", furthest = 0 } = state.value ?? {};
@@ -54,9 +54,9 @@ function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending 
 }
 
 /**
- * How the run stands: {is, line, text}. `is` tells: none is shown; it is loading; it is unloadable, for what Messages tell; it is ready,
- * running, busy with what does not end, halted by a signal, or paused; it has ended by itself; the model has failed; a user has stopped it with its
- * process; its process is lost.
+ * The status of the run: {is, line, text}. `is` means: no run is shown; it is loading; it cannot be loaded, see Messages; it is ready,
+ * running, busy with something that does not end, halted by a signal, or paused; it has ended by itself; the model has failed; a user
+ * has stopped it with its process; its process is lost.
  */
 export const standing = computed(() => {
   const told = known();
@@ -65,14 +65,14 @@ export const standing = computed(() => {
 });
 
 const isOne = (names) => computed(() => names.includes(standing.value.is));
-/** Whether the run is over, as it stands now. */
+/** Whether the run is over at the current moment. */
 export const isOver = isOne(["ended", "failed", "stopped", "lost"]);
-/** Whether nothing can be asked of the run, for it is not there, or not any more. */
+/** Whether the run can answer no questions, because it does not exist yet or any more. */
 export const isGone = isOne(["none", "loading", "unloadable", "stopped", "lost"]);
-/** Whether there is no mind to look into: no run is known, or its program has not made one. */
+/** Whether there is no agent to inspect: no run is known, or its program has not created one. */
 export const isBare = computed(() => state.value === null || (session.value?.kind === "program" && !session.value.world && Object.keys(state.value.parts).length === 0));
 
-/** Says why a panel has nothing to show; `none` is what it says of a model that has nothing of the kind. */
+/** Returns why a panel is empty; `none` is its text for a model without such contents. */
 export function nothing(none) {
   if (!isBare.value) return none;
   const { is, text } = standing.value;
@@ -80,14 +80,14 @@ export function nothing(none) {
   return is === "ready" ? `There is no model yet. ${text}` : is === "running" ? "There is no model yet." : text;
 }
 
-/** Says why there is nothing of what happens: not yet, or, in a run that is over, `never`. */
+/** Returns why there are no events: not yet, or, in a run that is over, `never`. */
 export function nothingYet(never = "Nothing has happened in this run.") {
   const { is, text } = standing.value;
   if (isBare.value && is !== "ready") return nothing("");
   return isOver.value ? never : `Nothing has happened yet.${is === "ready" ? ` ${text}` : ""}`;
 }
 
-/** Says of the production that was chosen what comes of it; `now` where it was chosen last. */
+/** Returns what happens to the chosen production; `now` if it was chosen last. */
 export function chosenText(now = true) {
   return now && isOver.value ? "was chosen as the run ended" : "is about to fire";
 }

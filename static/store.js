@@ -1,4 +1,4 @@
-// What the page knows, as signals, fed by the websocket. A panel that reads one is drawn again when it has changed.
+// The page's data, as signals, updated by the websocket. A panel that reads a signal is drawn again when it changes.
 
 import { remembered } from "./remembered.js";
 import { batch, computed, signal } from "./vendor/preact.js";
@@ -6,41 +6,41 @@ import { batch, computed, signal } from "./vendor/preact.js";
 const MOST_EVENTS = 200_000;
 const MOST_NOTICES = 500;
 
-/** What is known of the session and its run (`Telling.facts_json`); null before there is one. */
+/** The facts about the session and its run (`Telling.facts_json`); null before there is one. */
 export const session = signal(null);
-/** What this browser is called among those that watch; an empty text where that is not known yet. */
+/** The name of this browser among the viewers; empty if not known yet. */
 export const me = signal("");
 /** The newest state: status, time, speed, apertures, parts (`Telling.state_json`); null before the first. */
 export const state = signal(null);
-/** The events of the run in order, each [time in us, source, kind, data]; also those after the present moment of a run that went
- * back. `first` is the number of the first, `missing` how many were left out before it. The list grows in place. */
+/** The events of the run in order, each [time in us, source, kind, data]; also those after the current moment of a run that went
+ * back. `first` is the number of the first, `missing` how many were dropped before it. The list grows in place. */
 export const events = signal({ list: [], first: 0, missing: 0 });
-/** What the user is told: {number, level, text, file, line, detail, attempt, version}. */
+/** The notices to the user: {number, level, text, file, line, detail, attempt, version}. */
 export const notices = signal([]);
-/** What is said while a model is on its way: {text, slow}; null otherwise. */
+/** The message while a model is loading: {text, slow}; null otherwise. */
 export const opening = signal(null);
-/** Whether the websocket is open; null before it was for the first time. */
+/** Whether the websocket is open; null before the first connection. */
 export const connected = signal(null);
 
 export const running = computed(() => state.value?.status === "running");
-/** Whether the run goes as fast as it can: then drawing it is not to take too much of the processor. */
+/** Whether the run goes as fast as possible: then drawing must not take too much of the processor. */
 export const hurried = computed(() => running.value && state.value.wanted === null);
-/** Of which run the newest state is: what is shown of a new one is that of the run before until its own first state is there. */
+/** The run of the newest state: until a new run sends its first state, the page shows that of the previous run. */
 const stated = signal(0);
-/** Whether there is a run that can be asked. */
+/** Whether there is a run that can answer questions. */
 export const alive = computed(() => Boolean(session.value?.alive) && state.value !== null && stated.value === session.value.run);
-/** The moment that is shown, as a text that differs between moments. */
+/** The moment that is shown, as a text that is unique for each moment. */
 export const moment = computed(() => `${session.value?.id} ${stated.value} ${state.value?.tick} ${state.value?.events}`);
 
-/** Which events of which run are known, for a connection that is made again. */
+/** The run and the number of the known events, for a new connection. */
 export const known = { run: 0, epoch: 0 };
-/** Tells the way that the run goes from others, as a text: those of other runs, and of the same before something was changed in its past. */
+/** Identifies the history of the run, as a text: it differs between runs, and within a run after a change in its past. */
 export const way = signal("");
 
-/** Are told of each update before it is taken in: {of, run, events?}, for whoever keeps more of the events than the list has. */
+/** Called with each update before it is applied: {of, run, events?}, for code that keeps more events than the list. */
 export const listeners = new Set();
 
-/** Takes in messages of the server. */
+/** Applies messages of the server. */
 export function take(messages) {
   batch(() => messages.forEach(takeOne));
 }
@@ -75,7 +75,7 @@ function withEvents({ list, first, missing }, news) {
   }
   for (const event of news.list) list.push(event);
   if (list.length > MOST_EVENTS) {
-    // A tenth more than needed, so that this is seldom.
+    // A tenth more than needed, so that this happens rarely.
     const drop = list.length - 0.9 * MOST_EVENTS;
     list.splice(0, drop);
     first += drop;
@@ -89,32 +89,32 @@ function tell(told) {
 
 let ownNotices = 0;
 
-/** Tells the user something that the page itself has found. */
+/** Shows the user a problem found by the page itself. */
 export function complain(text, level = "error") {
   ownNotices -= 1;
   tell([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
 }
 
-// -- what the user has dealt with
+// -- what the user has seen or cleared
 
-const MOST_SETTLED = 50; // of so many sessions it is remembered
+const MOST_SETTLED = 50; // the number of sessions remembered
 
-/** Up to which message of each session the user has seen them ("seen"), was shown them over the page ("shown") or has cleared them
- * away ("cleared"): {session: {kind: number}}. It outlives the page, for what is settled is not to come back when it is loaded again. */
+/** The number of the last message of each session that the user has seen ("seen"), was shown over the page ("shown") or has cleared
+ * ("cleared"): {session: {kind: number}}. It is stored, so that these messages do not return when the page is loaded again. */
 const settled = remembered("settled messages", {});
-/** The page's own messages, which are gone with it: {kind: number}, down to which they are settled. */
+/** The same for the page's own messages, which are not stored and have descending numbers: {kind: number}. */
 const ownSettled = signal({});
 
 function settledKey() {
   return `${session.value?.id} ${session.value?.born}`;
 }
 
-/** Tells whether a message is settled in a way. */
+/** Returns whether a message is settled in a way: "seen", "shown" or "cleared". */
 export function isSettled({ number }, kind) {
   return number < 0 ? number >= (ownSettled.value[kind] ?? 0) : number <= (settled.value[settledKey()]?.[kind] ?? -1);
 }
 
-/** Takes all messages that there are as settled in a way. */
+/** Marks all current messages as settled in a way. */
 export function settle(kind) {
   const numbers = notices.peek().map(({ number }) => number);
   const [least, most] = [Math.min(0, ...numbers), Math.max(-1, ...numbers)];
@@ -125,12 +125,12 @@ export function settle(kind) {
   settled.value = { ...Object.fromEntries(others), [settledKey()]: { ...known, [kind]: most } };
 }
 
-/** Tells the run that is shown from others. */
+/** Returns a key for the run that is shown. */
 export function whichRun() {
   return `${session.peek()?.id} ${session.peek()?.run}`;
 }
 
-/** Forgets what is known of a session, for another one is shown. */
+/** Removes the data of a session, because another one is shown. */
 export function forget() {
   batch(() => {
     session.value = null;

@@ -15,7 +15,7 @@ import { runs } from "./panels/runs.js";
 
 export const TABS = [about, buffers, productions, memory, eye, parameters, editor, runs, consoleTab, messages];
 
-/** The id of the tab that is open. */
+/** The id of the open tab. */
 export const openTab = remembered("tab", "about");
 
 TABS.forEach(({ id }, n) => bindKey(String((n + 1) % 10), "", () => (openTab.value = id)));

@@ -1,4 +1,4 @@
-// Light or dark: as the system says, or as the user has chosen.
+// Light or dark: by the system's setting, or as the user has chosen.
 
 import { computed, effect, signal } from "./vendor/preact.js";
 import { remembered } from "./remembered.js";
@@ -9,7 +9,7 @@ system.addEventListener("change", () => (systemIsDark.value = system.matches));
 
 /** "system", "light" or "dark". */
 export const chosen = remembered("theme", "system");
-/** Whether the page is dark now; what draws on a canvas reads it and draws again. */
+/** Whether the page is dark now; code that draws on a canvas reads it and draws again. */
 export const dark = computed(() => (chosen.value === "system" ? systemIsDark.value : chosen.value === "dark"));
 
 effect(() => {
@@ -19,7 +19,7 @@ effect(() => {
 
 const LIGHT_DARK = /^light-dark\((.+),\s*(.+)\)$/;
 
-/** Returns the value of one of the colours of style.css as the theme has it, for a canvas or a picture that is kept. */
+/** Returns the value of one of the colours of style.css in the current theme, for a canvas or a saved picture. */
 export function colour(name) {
   const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
   const both = LIGHT_DARK.exec(value);

@@ -1,4 +1,4 @@
-// The layout: a bar above, the 3D view beside the tabs, the timeline below, and a line that says how things stand.
+// The layout: the top bar, the 3D view beside the tabs, the timeline below, and the status line.
 
 import { effect, html } from "./vendor/preact.js";
 import { Bar } from "./bar/bar.js";
@@ -15,11 +15,11 @@ import { hurried, session } from "./store.js";
 import { openTab, TABS } from "./tabs.js";
 
 const LEAST_SCENE = 320; // [px]
-const ROWS = 336; // so high are the usual rows of a model with a body [px]
-// At first, wide windows give the panels more room, too.
+const ROWS = 336; // the height of the default rows of a model with a body [px]
+// By default, wide windows give the panels more room too.
 const side = remembered("side width", Math.max(632, Math.round(0.38 * innerWidth)));
-/** Whether there is a 3D view; else the panels have all the room. */
-const hasWorld = remembered("has world", true); // while a model loads, that of the one before
+/** Whether there is a 3D view; otherwise the panels have all the room. */
+const hasWorld = remembered("has world", true); // while a model loads, that of the previous one
 effect(() => {
   if (session.value?.kind) hasWorld.value = Boolean(session.value.world);
 });

@@ -1,4 +1,4 @@
-"""`actr3d bench aperture`: the walker's replication beside the original's means, its human variant beside what people do."""
+"""`actr3d bench aperture`: compares the walker's replication with the original's means, and its human variant with human data."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from actr3d.bench.constraints import Constraint, Findings, turning_point
 from actr3d.bench.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
 
 TRIALS = 30
-"""How many trials a cell unless told otherwise. Source: as many as each of the original's agents (human-data)."""
+"""The default number of trials per cell. Source: as many as each of the original's agents (human-data)."""
 AIM, BAR = 2.0, 4.0
-"""What root mean square difference from the original's means we aim at, and what is the most [degrees]."""
+"""The targeted and the maximum root mean square difference from the original's means [degrees]."""
 JUDGED = tuple(n / 100 for n in range(100, 133, 2))
-"""At which ratios of aperture to shoulders it is asked whether it can pass."""
+"""The ratios of aperture to shoulders at which the model judges whether it can pass."""
 
 
 def cells(outcomes: list[Outcome]) -> dict[tuple[str, str, float], float]:
-    """Returns the mean logged angle of each cell [degrees], of those who reached the wall; see `failures` for the others."""
+    """Returns the mean logged angle of each cell [degrees], of agents that reached the wall; see `failures` for the others."""
     found: defaultdict[tuple[str, str, float], list[float]] = defaultdict(list)
     for outcome in outcomes:
         if outcome.result.logged_angle_deg is not None:
@@ -31,7 +31,7 @@ def cells(outcomes: list[Outcome]) -> dict[tuple[str, str, float], float]:
 
 
 def failures(outcomes: list[Outcome]) -> list[str]:
-    """Returns which trials did not pass, or touched the wall: one text a cell, with how many of how many and how they ended."""
+    """Returns the trials that did not pass, or touched the wall: one text per cell, with their number, the total, and how they ended."""
     told: defaultdict[tuple[str, str, float], list[str]] = defaultdict(list)
     sizes = Counter((outcome.trial.group, outcome.trial.condition, outcome.trial.aperture) for outcome in outcomes)
     for outcome in outcomes:
@@ -45,23 +45,23 @@ def failures(outcomes: list[Outcome]) -> list[str]:
 
 
 def unfinished(outcomes: list[Outcome]) -> int:
-    """Returns how many never reached the wall, and have no angle there."""
+    """Returns the number of trials that never reached the wall, and have no angle there."""
     return sum(outcome.result.logged_angle_deg is None for outcome in outcomes)
 
 
 def root_mean_square(found: dict[Any, float], original: dict[Any, float]) -> float:
-    """Returns by how much the cells differ [degrees]; infinite where one is missing."""
+    """Returns the root mean square difference between cells [degrees]; infinite if a cell is missing."""
     return math.sqrt(mean((found.get(key, math.inf) - angle) ** 2 for key, angle in original.items()))
 
 
 def judgements(trials: int) -> list[Trial]:
-    """Returns trials of the human variant in which only what it judges counts."""
+    """Returns trials of the human variant of which only the judgement is used."""
     agents = [replace(trial, aperture=0.0) for trial in experiment("human", min(trials, 10), [0.0])]
     return [replace(trial, aperture=ratio * trial.shoulders) for trial in agents for ratio in JUDGED]
 
 
 def measure(trials: int) -> dict[str, Any]:
-    """Runs everything; returns plain values."""
+    """Runs all trials and returns the measurements; plain values."""
     start = time.perf_counter()
     replication, human = (run_trials(experiment(variant, trials)) for variant in ("replication", "human"))
     judged = run_trials(judgements(trials), judging=True)
@@ -92,7 +92,7 @@ def measure(trials: int) -> dict[str, Any]:
 
 
 def _table(title: str, rows: list[dict[str, Any]], beside: str, scale: float = 1) -> list[str]:
-    """Returns the lines of a table of angles and something beside them: a row for each group and condition, a column for each aperture."""
+    """Returns the lines of a table of angles beside other values: a row per group and condition, a column per aperture."""
     lines = [title, " " * 14 + "".join(f"{100 * aperture:>14.0f}" for aperture in APERTURES)]
     for group in GROUPS:
         for condition in CONDITIONS:
@@ -103,7 +103,7 @@ def _table(title: str, rows: list[dict[str, Any]], beside: str, scale: float = 1
 
 
 def main(*, json_output: bool, trials: int | None = None) -> int:
-    """Measures and prints; returns the exit code: 0 where the bar and all constraints are met, and all reach the wall."""
+    """Measures and prints; returns the exit code: 0 if the bar and all constraints are met, and all agents reach the wall."""
     measured = measure(trials or TRIALS)
     constraints = [Constraint(**constraint) for constraint in measured["constraints"]]
     good = measured["rmse"] <= BAR and not measured["unfinished"] and all(constraint.met for constraint in constraints)

@@ -1,4 +1,4 @@
-"""`actr3d bench camera`: what a view costs, beside MuJoCo's rays of the same scene."""
+"""`actr3d bench camera`: measures the cost of a view, relative to MuJoCo's rays in the same scene."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from actr3d.camera import GeometricCamera
 
 RAYS = 10_000
 SHAPES = {"box": 3, "sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3}
-"""Types of geoms, and how many sizes each has."""
+"""Types of geoms, and the number of sizes each has."""
 APERTURE = '<geom type="box" pos="4 2.5 1.25" size=".1 2 1.25"/><geom type="box" pos="4 -2.5 1.25" size=".1 2 1.25"/>'
 SCENES = 5
-"""How many scenes of each kind are made at random; figures are medians over them."""
+"""The number of random scenes of each kind; figures are medians over them."""
 
 
 def _loose(count: int, seed: int) -> str:
-    """Returns as many loose objects of mixed types, at random on the floor before and behind the aperture."""
+    """Returns `count` loose objects of mixed types, placed at random on the floor before and behind the aperture."""
     random = np.random.default_rng(seed)
     things: list[str] = []
     for i in range(count):
@@ -60,7 +60,7 @@ def _ring() -> str:
 
 
 def _scene(things: str, assets: str = "") -> tuple[Any, Any]:
-    """Returns model and data of a scene with a floor and an eye at 1.6 m."""
+    """Returns the model and data of a scene with a floor and an eye at 1.6 m."""
     floor = '<geom type="plane" size="0 0 .1"/><site name="eye" pos="0 0 1.6"/>'
     mj_model = mujoco.MjModel.from_xml_string(f"<mujoco><asset>{assets}</asset><worldbody>{floor}{things}</worldbody></mujoco>")
     mj_data = mujoco.MjData(mj_model)
@@ -81,7 +81,7 @@ def _view_cost(mj_model: Any, mj_data: Any) -> Callable[[], float]:
 
 
 def _ray_cost(mj_model: Any, mj_data: Any) -> Callable[[], float]:
-    """Returns a function that measures one ray of many that are shot at once over the default view [s]."""
+    """Returns a function that measures the cost per ray of many rays cast at once over the default view [s]."""
     random = np.random.default_rng(0)
     tangents = random.uniform((-1, -np.tan(np.pi / 6)), (1, np.tan(np.pi / 6)), (RAYS, 2))
     directions = np.column_stack((np.ones(RAYS), tangents)).ravel()
@@ -95,17 +95,17 @@ def _ray_cost(mj_model: Any, mj_data: Any) -> Callable[[], float]:
 
 
 def _in_rays(scenes: list[tuple[Any, Any]]) -> float:
-    """Returns what a view costs, in rays of the same scene."""
+    """Returns the cost of a view, in rays of the same scene."""
     return median(ratio(_view_cost(*scene), _ray_cost(*scene)) for scene in scenes)
 
 
 def _more(many: list[tuple[Any, Any]], few: list[tuple[Any, Any]]) -> float:
-    """Returns what a view of scenes with many objects costs, in views of those with few."""
+    """Returns the cost of a view of scenes with many objects, relative to scenes with few."""
     return median(ratio(_view_cost(*large), _view_cost(*small)) for large, small in zip(many, few, strict=True))
 
 
 def measure() -> list[Figure]:
-    """Measures everything."""
+    """Measures all figures."""
     few, many = ([_scene(APERTURE + _loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
     open_few, open_many = ([_scene(_loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
     body = [_scene(_mannequin(seed)) for seed in range(SCENES)]

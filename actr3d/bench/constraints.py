@@ -1,6 +1,6 @@
-"""What a model of people who pass apertures must do: the constraints that need no bar, by their numbers in human-data.
+"""The constraints on a model of people who pass apertures: those that need no bar, by their numbers in human-data.
 
-Agents, not trials, are the unit: what is compared are means of agents.
+Agents, not trials, are the unit of analysis: means of agents are compared.
 """
 
 from __future__ import annotations
@@ -20,44 +20,46 @@ from scipy.special import stdtr
 from actr3d.bench.trials import CONDITIONS, GROUPS, Outcome, Trial
 
 TURNED = 5.0
-"""Who turns by more than this has turned [degrees]: people sway by a few degrees (human-data). Ours."""
+"""An agent has turned if its angle is above this [degrees]: people sway by a few degrees (human-data). No source: our choice."""
 CRITICAL = (1.25, 1.35)
-"""Where turning begins, as a ratio of aperture to shoulders. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of human-data."""
+"""The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of
+human-data."""
 POINT = 1.30
 """Below this ratio people turn. Source: Warren & Whang (1987)."""
 MARGIN = (0.06, 0.08)
 """The margin on each side [m]. Source: Higuchi's review (human-data)."""
 PASSABLE = (1.11, 1.21)
-"""Where it is judged to be passable as one is. Source: Warren & Whang (1987), about 1.16; the bounds are ours."""
+"""The bounds of the ratio from which people judge that they can pass without turning. Source: Warren & Whang (1987), about 1.16;
+the bounds are our choice."""
 SAME = 5.0
-"""Angles that differ by less than this are the same [degrees]. Ours."""
+"""Angles that differ by less than this count as equal [degrees]. No source: our choice."""
 STEADY = 1.0
-"""How much an angle may rise from one aperture to a wider one by chance [degrees]. Ours."""
+"""The maximum rise of an angle by chance from one aperture to a wider one [degrees]. No source: our choice."""
 WIDE = 1.35
-"""From this ratio on an aperture is wide."""
+"""Apertures from this ratio on are wide."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:
-    """One constraint, and how the model meets it."""
+    """One constraint, and whether the model meets it."""
 
     number: int
-    """In human-data."""
+    """Its number in human-data."""
     says: str
     met: bool
     found: str
-    """With its numbers."""
+    """The model's result, with its numbers."""
 
 
 def angle(outcome: Outcome) -> float:
-    """Returns the angle of the shoulders at the wall [degrees]; that of one who did not get there is the greatest it turned."""
+    """Returns the angle of the shoulders at the wall [degrees]; for an agent that did not get there, its greatest angle."""
     result = outcome.result
     return result.wall_angle_deg if result.wall_angle_deg is not None else result.peak_angle_deg or 0.0
 
 
 def margin(outcome: Outcome) -> float | None:
-    """Returns the room on each side of one who had to turn, and did [m]: the mean of its sides, each where any part was nearest to
-    the wall. It is None for all others, who have whatever room the aperture leaves, or never were in it.
+    """Returns the margin on each side of an agent that had to turn and did [m]: the mean of both sides, each at the moment when any
+    part was nearest to the wall. Returns None for all others: their margin depends on the aperture only, or they never were in it.
     """
     left, right = outcome.result.clearance_left_m, outcome.result.clearance_right_m
     turned = outcome.trial.ratio < POINT and angle(outcome) > TURNED
@@ -65,7 +67,7 @@ def margin(outcome: Outcome) -> float | None:
 
 
 class Findings:
-    """What the human variant did, by cell and by agent."""
+    """The results of the human variant, by cell and by agent."""
 
     def __init__(self, outcomes: Iterable[Outcome]) -> None:
         self.outcomes = list(outcomes)
@@ -82,7 +84,7 @@ class Findings:
         return mean(angle(outcome) for outcome in self._cells[group, condition, aperture])
 
     def margin(self, group: str, condition: str, aperture: float) -> float | None:
-        """Returns the mean margin of those of a cell who turned [m]; None where nobody did."""
+        """Returns the mean margin of the agents in a cell that turned [m]; None if none did."""
         margins = [found for outcome in self._cells[group, condition, aperture] if (found := margin(outcome)) is not None]
         return mean(margins) if margins else None
 
@@ -91,7 +93,7 @@ class Findings:
         return sorted({agent for of, _, agent in self._agents if of == group})
 
     def curve(self, group: str, condition: str, agent: int) -> tuple[list[float], list[float]]:
-        """Returns an agent's mean angles [degrees] by the ratio of aperture to shoulders."""
+        """Returns an agent's ratios of aperture to shoulders, and its mean angles at them [degrees]."""
         angles = self._agents[group, condition, agent]
         shoulders = Trial(variant="", group=group, condition=condition, aperture=0, agent=agent, number=0).shoulders
         return [aperture / shoulders for aperture in sorted(angles)], [mean(angles[aperture]) for aperture in sorted(angles)]
@@ -102,7 +104,7 @@ class Findings:
         """Returns every constraint that needs no bar.
 
         Args:
-            boundary: From which ratio on the model judges that it can pass as it is.
+            boundary: The ratio from which the model judges that it can pass without turning.
         """
         made: list[Callable[[], Constraint]] = [self.falls, self.wider_turns_more, self.same_ratio, self.critical, self.faster_turns_more]
         return [*(make() for make in made), self.untouched(), self.upright(), self.judged(boundary)]
@@ -125,7 +127,7 @@ class Findings:
         return Constraint(number=2, says="large > small below 63 cm", met=least > 0, found=f"smallest difference {least:.1f} degrees")
 
     def same_ratio(self) -> Constraint:
-        """3: the groups coincide on the ratio: two one-sided t tests of agents."""
+        """3: the groups agree on the ratio: two one-sided t tests of agents."""
         ratios = np.arange(1.0, 1.41, 0.05)
         scores = {
             group: [
@@ -169,7 +171,7 @@ class Findings:
         return Constraint(number=5, says="fast > normal below the critical ratio", met=met, found=", ".join(found))
 
     def untouched(self) -> Constraint:
-        """6: no contact, and the margin of who turned, at each aperture."""
+        """6: no contact, and the margin of agents that turned, at each aperture."""
         touched = sum(outcome.result.contacts > 0 for outcome in self.outcomes)
         passed = sum(outcome.result.outcome == "passed" for outcome in self.outcomes)
         margins: defaultdict[float, list[float]] = defaultdict(list)
@@ -185,7 +187,7 @@ class Findings:
         return Constraint(number=6, says="no contact, margin 6 to 8 cm at each aperture", met=met, found=found)
 
     def upright(self) -> Constraint:
-        """7: no fixed turn at wide apertures."""
+        """7: no constant turn at wide apertures."""
         turns = [angle(outcome) for outcome in self.outcomes if outcome.trial.ratio > WIDE]
         found = f"mean {mean(turns):.2f} degrees above {WIDE}, at most {max(turns):.1f}"
         return Constraint(number=7, says="no fixed turn at wide apertures", met=mean(turns) <= 3, found=found)
@@ -211,7 +213,7 @@ def above_zero(value: float, error: float, freedom: float) -> float:
     Args:
         value: The value.
         error: Its standard error.
-        freedom: Of how many degrees of freedom that is.
+        freedom: The degrees of freedom of the standard error.
     """
     if error == 0:
         return float(value <= 0)
@@ -219,10 +221,10 @@ def above_zero(value: float, error: float, freedom: float) -> float:
 
 
 def turning_point(trials: Iterable[tuple[float, bool]]) -> float:
-    """Returns the ratio at which half of the trials have it, by a logistic fit; None of the fit's slopes is above 200 a unit.
+    """Returns the ratio at which half of the trials have a property, by a logistic fit whose slope is at most 200 per unit.
 
     Args:
-        trials: The ratio, and whether the trial has it: more likely so at small ratios.
+        trials: The ratio, and whether the trial has the property, which is more likely at small ratios.
     """
     pairs = sorted(trials)
     ratios, has = np.array([ratio for ratio, _ in pairs]), np.array([yes for _, yes in pairs], dtype=float)

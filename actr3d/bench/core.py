@@ -1,4 +1,4 @@
-"""`actr3d bench core`: the cognitive core beside python_actr, in one run on one machine."""
+"""`actr3d bench core`: compares the cognitive core with python_actr, in one run on one machine."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Agent(ACTR):
     def three(goal='step:c count:?n'):
         goal.modify(step='a')
 """
-"""Three productions that follow one another for ever."""
+"""Three productions that fire in turn, forever."""
 
 HUNDREDS = "\n".join(
     [
@@ -62,15 +62,15 @@ class Agent(ACTR):
         goal.set('counting ?next')
         memory.request('count ?next ?after')
 """
-"""Counts up through as many chunks as SIZE."""
+"""Counts up through SIZE chunks."""
 
 
 class Peer:
-    """Loads models for the real python_actr: from files, because it reads their source."""
+    """Loads models for the original python_actr: from files, because it reads their source."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        # It would print a last line when the program ends, in the middle of our output.
+        # It would print a last line when the program ends, in the middle of the bench's output.
         atexit.unregister(importlib.import_module("python_actr.logger").finished)
 
     def load(self, source: str, name: str) -> ModuleType:
@@ -94,20 +94,20 @@ def _peer() -> Generator[Peer]:
 
 
 def _cost(module: ModuleType, before: float, length: float) -> float:
-    """Returns what running a fresh agent costs, after its first moments [s of real time for each s of simulated time]."""
+    """Returns the cost of running a new agent, after its first moments [s of real time per s of simulated time]."""
     agent: Any = module.Agent()
     agent.run(before)
     return seconds_of(lambda: agent.run(length)) / length
 
 
 def _against_peer(peer: Peer, source: str, name: str, before: float, ours: float, theirs: float) -> float:
-    """Returns how many times as long python_actr takes for the same simulated time."""
+    """Returns the time that python_actr takes for the same simulated time, relative to this library."""
     own, other = load_text(source, f"{name}.py"), peer.load(source, name)
     return ratio(lambda: _cost(other, before, theirs), lambda: _cost(own, before, ours))
 
 
 def _counting(peer: Peer) -> tuple[float, float]:
-    """Returns how many times as long python_actr takes to learn 2,000 facts and count to 200, and for the counting alone."""
+    """Returns python_actr's relative time to learn 2,000 facts and count to 200, and for the counting alone."""
     source = COUNTING.replace("SIZE", "2000")
     own, other = load_text(source, "many.py"), peer.load(source, "many")
 
@@ -119,7 +119,7 @@ def _counting(peer: Peer) -> tuple[float, float]:
     ours: list[tuple[float, float]] = []
     for _ in range(3):
         theirs.append(cost(other))
-        ours += [cost(own) for _ in range(5)]  # so short that one interruption would decide
+        ours += [cost(own) for _ in range(5)]  # so short that a single interruption would distort it
     whole = median(map(sum, theirs)) / median(map(sum, ours))
     return whole, median(counting for _, counting in theirs) / median(counting for _, counting in ours)
 
@@ -146,7 +146,7 @@ def _request_cost(size: int) -> Callable[[], float]:
 
 
 def _idle_tick() -> float:
-    """Returns what a 10 ms tick with nothing to do costs beyond an empty loop [us]."""
+    """Returns the cost of a 10 ms tick with nothing to do, minus an empty loop [us]."""
     agent = load_text(THREE.replace("step:a count:0", "nothing"), "idle.py").Agent()
     agent.run(1)
     ticks = 100_000
@@ -163,7 +163,7 @@ def _idle_tick() -> float:
 
 
 def _traced_ratio() -> float:
-    """Returns what full tracing makes of the counting model's run."""
+    """Returns the run time of the counting model with full tracing, relative to the run without."""
     module = load_text(COUNTING.replace("SIZE", "1000"), "counting.py")
 
     def run(level: str | None) -> float:
@@ -178,7 +178,7 @@ def _traced_ratio() -> float:
 
 
 def measure() -> list[Figure]:
-    """Measures everything.
+    """Measures all figures.
 
     Raises:
         ModuleNotFoundError: If python_actr is not installed.

@@ -1,4 +1,4 @@
-"""Figures with bars, and how they are measured and shown."""
+"""Measured figures with the bars they must hold: how they are measured and printed."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from typing import Literal
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """One measured figure, and the bar it should hold."""
+    """One measured figure, and the bar it must hold."""
 
     name: str
     value: float
     sense: Literal["at least", "at most"]
     bar: float
     what: str
-    """What it is, with its unit."""
+    """What is measured, with its unit."""
 
     @property
     def holds(self) -> bool:
-        """Whether the bar is held."""
+        """Whether the figure holds the bar."""
         return self.value >= self.bar if self.sense == "at least" else self.value <= self.bar
 
 
 def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.perf_counter) -> float:
-    """Returns how long a call takes by a clock [s], with the garbage collector off."""
+    """Returns the duration of a call by a clock [s], with the garbage collector off."""
     gc.collect()
     gc.disable()
     try:
@@ -43,7 +43,7 @@ def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.per
 
 @contextmanager
 def little_garbage() -> Generator[None]:
-    """Lets what there is already be no concern of the garbage collector inside the block: it runs before each measurement."""
+    """Excludes existing objects from garbage collection inside the block: the collector runs before each measurement."""
     gc.collect()
     gc.freeze()
     try:
@@ -53,17 +53,17 @@ def little_garbage() -> Generator[None]:
 
 
 def processor_time_of(work: Callable[[], object]) -> float:
-    """Returns how much processor time a call takes [s], of all threads together: what others do meanwhile does not count."""
+    """Returns the processor time of a call [s], of all threads of this process; other processes do not count."""
     return seconds_of(work, time.process_time)
 
 
 def ratio(slow: Callable[[], float], fast: Callable[[], float], rounds: int = 5) -> float:
-    """Returns the median ratio of two measured costs, taken in turn so that a machine's drift touches both alike."""
+    """Returns the median ratio of two costs, measured in turn so that changes of the machine's speed affect both equally."""
     return median(slow() / fast() for _ in range(rounds))
 
 
 def report(figures: Sequence[Figure], *, json_output: bool) -> int:
-    """Prints the figures; returns 0 where all hold, else 1."""
+    """Prints the figures; returns 0 if all hold their bars, else 1."""
     if json_output:
         bars = {f.name: {"value": round(f.value, 4), "bar": f"{f.sense} {f.bar:g}", "holds": f.holds} for f in figures}
         print(json.dumps(bars))

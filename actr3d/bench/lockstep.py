@@ -1,7 +1,7 @@
-"""`actr3d bench lockstep`: what lockstep, vision and recording cost, as ratios to the bare physics of the same scene on the same
-states; and what a view costs, as `actr3d bench camera` has it.
+"""`actr3d bench lockstep`: measures the cost of lockstep, vision and recording relative to the bare physics of the same scene on the
+same states; and the cost of a view, as in `actr3d bench camera`.
 
-Of lockstep, all is processor time, of all threads together: a recording has one of its own, which must not hide what it costs.
+All times of lockstep are processor time of all threads: a recording has a thread of its own, and its cost must be included.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, WorldState
 
 WARM = 200
-"""Ticks before anything is measured."""
+"""The number of ticks before a measurement."""
 TICKS = 2_000
-"""Ticks that are measured at a time."""
+"""The number of ticks per measurement."""
 ROUNDS = 9
 
 AGENT = """
@@ -50,7 +50,7 @@ class Agent(ACTR):
         body.set("walk", 1.0 if float(x) < 2 else -1.0)
         body.request("pose")
 """
-"""A production each 50 ms, each second one with a word to the body and a question; a retrieval between them."""
+"""Fires a production every 50 ms, every second one with a command to the body and a query; with a retrieval in between."""
 
 SEEING = """
 from actr3d.actr import *
@@ -73,7 +73,7 @@ class Agent(ACTR):
             body.set("posture", {"torso_yaw": 0.6}, speed=2.0)
         goal.set("look")
 """
-"""Walks 7 m to a doorway and through it, looking each 100 ms, and turns the trunk when something is near."""
+"""Walks 7 m to a doorway and through it, looking every 100 ms, and turns the trunk when something is near."""
 WATCHING = """
 from actr3d.actr import *
 from actr3d.simulation import BodyPort
@@ -89,7 +89,7 @@ class Agent(Model):
                 self.body.set("posture", {"torso_yaw": 0.6}, speed=2.0)
             yield 0.01
 """
-"""The same, looking at every tick."""
+"""The same agent, looking at every tick."""
 LOOKING = """
 from actr3d.actr import *
 from actr3d.simulation import BodyPort
@@ -115,33 +115,33 @@ class Agent(ACTR):
     def see(goal="see", vision="busy:False"):
         goal.set("look")
 """
-"""The same walk; looks for openings each 100 ms, and for obstacles all the time between."""
+"""The same walk; looks for openings every 100 ms, and for obstacles all the time in between."""
 TRIAL = 600
-"""Ticks of a trial: 6 s for 7.8 m."""
+"""The number of ticks in a trial: 6 s for 7.8 m."""
 
 
 def trial(agent: str = SEEING) -> Simulation:
-    """Returns a walker who sees, 7 m in front of a doorway in a furnished room."""
+    """Returns a walker with vision, 7 m in front of a doorway in a furnished room."""
     things = [Loose(name=f"thing{n}", position=(2.0 + n, 2.0 - 4.0 * (n % 2), 0.4), size=(0.4, 0.4, 0.8)) for n in range(4)]
     scene = Scene(parts=(Floor(), Aperture(width=0.9), *things, Mannequin(name="walker")))
     return Simulation(scene, {"walker": load_text(agent, "seeing.py").Agent}, seed=1)
 
 
 def typical() -> Simulation:
-    """Returns a body without vision and its mind, in front of a doorway."""
+    """Returns an agent without vision, in front of a doorway."""
     scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker")))
     return Simulation(scene, {"walker": load_text(AGENT, "agent.py").Agent}, seed=1)
 
 
 def _cost(make: Callable[[], Simulation], warm: int = WARM, ticks: int = TICKS) -> float:
-    """Returns what a tick and its tock cost [s]."""
+    """Returns the cost of a tick and its tock [s]."""
     simulation = make()
     simulation.step(warm)
     return processor_time_of(lambda: simulation.step(ticks)) / ticks
 
 
 def _recorded_cost(make: Callable[[], Simulation]) -> float:
-    """Returns what they cost while all is recorded, with all that is still to be written in the end [s]."""
+    """Returns the cost of a tick and its tock during recording, including what is still to be written at the end [s]."""
     with tempfile.TemporaryDirectory() as folder:
         simulation = make()
         recording = simulation.record(Path(folder) / "run")
@@ -155,7 +155,7 @@ def _recorded_cost(make: Callable[[], Simulation]) -> float:
 
 
 def _bare_cost(make: Callable[[], Simulation], warm: int = WARM, ticks: int = TICKS) -> float:
-    """Returns what MuJoCo alone costs for a tick, from each state that the same run comes through [s]."""
+    """Returns the cost of MuJoCo alone for a tick, from each state that the same run passes through [s]."""
     simulation = make()
     states: list[WorldState] = []
     simulation.step(warm)
@@ -178,10 +178,10 @@ def _bare_cost(make: Callable[[], Simulation], warm: int = WARM, ticks: int = TI
 
 
 def measure() -> list[Figure]:
-    """Measures everything."""
+    """Measures all figures."""
     times = "times the bare physics"
     plain, bare, recorded = _best(typical)
-    _cost(trial, 0, 10)  # compiles the camera, where it never was
+    _cost(trial, 0, 10)  # compiles the camera if necessary
     watching, looking = partial(trial, WATCHING), partial(trial, LOOKING)
     _cost(looking, 0, 20)  # compiles the detectors likewise
     return [
@@ -198,14 +198,14 @@ def measure() -> list[Figure]:
 
 
 def _seeing(make: Callable[[], Simulation]) -> float:
-    """Returns what a whole trial costs, in times its bare physics: the best of rounds in turn."""
+    """Returns the cost of a whole trial, in multiples of its bare physics: the best of alternating rounds."""
     rounds = [(_cost(make, 0, TRIAL), _bare_cost(make, 0, TRIAL)) for _ in range(ROUNDS)]
     seeing, walking = (min(costs) for costs in zip(*rounds, strict=True))
     return seeing / walking
 
 
 def _best(make: Callable[[], Simulation]) -> tuple[float, float, float]:
-    """Returns what a tick costs plain, as bare physics, and recorded [s]: the best of rounds in turn, which others disturb least."""
+    """Returns the cost of a tick plain, as bare physics, and recorded [s]: the best of alternating rounds, which is least disturbed."""
     rounds = [(_cost(make), _bare_cost(make), _recorded_cost(make)) for _ in range(ROUNDS)]
     plain, bare, recorded = (min(costs) for costs in zip(*rounds, strict=True))
     return plain, bare, recorded

@@ -1,4 +1,4 @@
-"""`actr3d soak`: a million ticks, without drift or growth in memory."""
+"""`actr3d soak`: runs a million ticks, and checks for drift and for growth in memory."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from actr3d.bench.figures import Figure, report, seconds_of
 from actr3d.bench.lockstep import typical
 
 TICKS = 1_000_000
-"""How far it goes: 10,000 s of simulated time."""
+"""The number of ticks: 10,000 s of simulated time."""
 PARTS = 10
-"""In how many parts memory is looked at."""
+"""The number of parts; memory is measured after each."""
 
 
 def resident() -> float:
-    """Returns how much memory the process has now [MB]."""
+    """Returns the memory of this process [MB]."""
     gc.collect()
     for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
         if line.startswith("VmRSS:"):
@@ -24,7 +24,7 @@ def resident() -> float:
 
 
 def measure(ticks: int = TICKS) -> list[Figure]:
-    """Runs the typical agent, and measures."""
+    """Runs the typical agent, and measures drift and memory."""
     simulation = typical()
     memory: list[float] = []
     spent = 0.0
@@ -34,7 +34,7 @@ def measure(ticks: int = TICKS) -> list[Figure]:
     mind = simulation.minds["walker"]
     expected = ticks * 10_000
     drift = abs(mind.sch.now_us - expected) + abs(simulation.world.time - expected)
-    # What is kept to go back to grows to its bounds in the first part.
+    # The history kept for going back grows to its limits in the first part.
     growth = memory[-1] - memory[1]
     return [
         Figure(name="drift", value=drift, sense="at most", bar=0, what=f"us between the clocks after {ticks:,} ticks"),

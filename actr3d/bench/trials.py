@@ -1,4 +1,4 @@
-"""Trials of the aperture experiment: the walker model, run many times, by as many processes as there are processors."""
+"""Trials of the aperture experiment: runs the walker model many times, in one process per processor."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ GROUPS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
 """The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
 ALIKE = 0.007
 """The standard deviation of the replication's shoulder widths, in both groups [m]. Source: the original's small agents differ by 0.5
-degrees at 45 cm and 1.2 at 50 (its own trials); agents 2 cm apart would turn by either 18 or 46 degrees there."""
+degrees at 45 cm and 1.2 at 50 (its own trials); agents that differ by 2 cm would turn by either 18 or 46 degrees there."""
 CONDITIONS = ("normal", "fast")
 APERTURES = tuple(n / 100 for n in range(40, 75, 5))
 """[m]. Source: as in the original model's trials (human-data)."""
 AGENTS = 5
-"""In each group. Source: Warren & Whang (1987)."""
+"""The number of agents in each group. Source: Warren & Whang (1987)."""
 LONGEST = 30.0
-"""No trial takes longer than this [s of simulated time]."""
+"""The maximum length of a trial [s of simulated time]."""
 _SPREAD = tuple(statistics.NormalDist().inv_cdf((n + 0.5) / AGENTS) for n in range(AGENTS))
 
 
@@ -46,13 +46,13 @@ class Trial:
     aperture: float
     """[m]"""
     agent: int
-    """Which of the group, from 0."""
+    """The number of the agent in its group, from 0."""
     number: int
-    """Which trial of this agent here, from 0."""
+    """The number of the trial of this agent in its cell, from 0."""
 
     @property
     def shoulders(self) -> float:
-        """How wide the agent's shoulders are [m]: the groups' agents have their mean and standard deviation."""
+        """The width of the agent's shoulders [m]: the agents of a group have the group's mean and standard deviation."""
         mean, sd = GROUPS[self.group]
         if self.variant == "replication":
             sd = ALIKE
@@ -60,29 +60,29 @@ class Trial:
 
     @property
     def ratio(self) -> float:
-        """The aperture over the shoulders."""
+        """The aperture divided by the shoulder width."""
         return self.aperture / self.shoulders
 
     @property
     def seed(self) -> str:
-        """What its random choices come from."""
+        """The seed of its random choices."""
         return f"{self.variant} {self.group} {self.condition} {self.aperture:g} {self.agent} {self.number}"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What came of a trial."""
+    """The result of a trial."""
 
     trial: Trial
     result: PassageResult
     said: str
-    """What the model printed."""
+    """The model's output."""
     cost: float
     """Processor time [s]."""
 
 
 def model_file() -> Path:
-    """Returns where the model is: beside the library in a copy of the repository, within it where it is installed."""
+    """Returns the path of the model: beside the library in a copy of the repository, within it if installed."""
     library = Path(actr3d.__file__).parent
     installed = library / "models" / "aperture_passage.py"
     return installed if installed.exists() else library.parent / "models" / "aperture_passage.py"
@@ -98,8 +98,8 @@ def run_trial(trial: Trial, *, judging: bool = False) -> Outcome:
     """Runs one trial.
 
     Args:
-        trial: Which.
-        judging: Whether to end it as soon as the model has said whether it can pass.
+        trial: The trial.
+        judging: Whether to end it as soon as the model has judged whether it can pass.
     """
     blueprint = _blueprint()
     start = time.process_time()
@@ -114,15 +114,15 @@ def run_trials(trials: Sequence[Trial], *, judging: bool = False) -> list[Outcom
     """Runs trials, one at a time on each processor, and returns their outcomes in the same order.
 
     Args:
-        trials: Which.
-        judging: Whether to end each as soon as the model has said whether it can pass.
+        trials: The trials.
+        judging: Whether to end each as soon as the model has judged whether it can pass.
     """
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(partial(run_trial, judging=judging), trials, chunksize=4))
 
 
 def experiment(variant: str, trials: int, apertures: Iterable[float] = APERTURES) -> list[Trial]:
-    """Returns all trials of a variant: both groups and conditions, and at each aperture so many trials, shared by the agents."""
+    """Returns all trials of a variant: for both groups and conditions, `trials` per aperture, divided among the agents."""
     return [
         Trial(variant=variant, group=group, condition=condition, aperture=aperture, agent=n % AGENTS, number=n // AGENTS)
         for group in GROUPS
@@ -135,7 +135,7 @@ def experiment(variant: str, trials: int, apertures: Iterable[float] = APERTURES
 def original_means() -> dict[tuple[str, str, float], float]:
     """Returns the original ACT-R 3D's mean angles [degrees] by group, condition and aperture [m].
 
-    Source: its own trials, 150 a cell (human-data).
+    Source: its own trials, 150 per cell (human-data).
     """
     with (Path(__file__).parent / "data" / "original_aperture_means.csv").open(encoding="utf-8") as file:
         rows: list[Any] = list(csv.DictReader(file))

@@ -1,4 +1,4 @@
-"""The Geometric Camera: the exact edges of what an eye sees, without pixels and without meanings."""
+"""The Geometric Camera: computes the exact edges of what an eye sees, without pixels and without meanings."""
 
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.glance import glance

@@ -1,4 +1,4 @@
-"""Where a camera looks from, and where to."""
+"""The eye of a camera: its position and viewing direction in the world."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ Kind = Literal["camera", "site", "body"]
 
 
 def names_of(mj_model: MjModel, kind: str) -> list[str]:
-    """Returns the names of all things of a kind ('camera', 'site', 'body', 'geom') in the order of their numbers."""
+    """Returns the names of all objects of a kind ('camera', 'site', 'body', 'geom'), ordered by their ids."""
     enum = getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}")
     count = {"camera": mj_model.ncam, "site": mj_model.nsite, "body": mj_model.nbody, "geom": mj_model.ngeom}[kind]
     return [mujoco.mj_id2name(mj_model, enum, i) or "" for i in range(count)]
 
 
 class Eye:
-    """A camera, a site or a body of a MuJoCo model that is looked from.
+    """A camera, a site or a body of a MuJoCo model, used as the viewpoint.
 
-    A camera looks as MuJoCo's do, along its negative z axis with y up; of sites and bodies x points forward and z up.
+    A camera looks as in MuJoCo, along its negative z axis with y up. For sites and bodies, x points forward and z up.
     """
 
     def __init__(self, mj_model: MjModel, kind: Kind, name: str) -> None:
-        """Finds the eye.
+        """Finds the eye in the model.
 
         Raises:
-            CameraError: If there is no such thing in the model.
+            CameraError: If the model has no object of this kind and name.
         """
         names = names_of(mj_model, kind)
         if name not in names or not name:
@@ -44,13 +44,13 @@ class Eye:
         self._id = names.index(name)
         bodies = {"camera": mj_model.cam_bodyid, "site": mj_model.site_bodyid, "body": range(mj_model.nbody)}
         self.body = int(bodies[kind][self._id])
-        """The number of the body it belongs to."""
+        """The id of the body that the eye belongs to."""
 
     def axes(self, mj_data: MjData) -> NDArray[np.float64]:
-        """Returns the axes right, up and forward, and the place [m], as rows in the world's frame, `(4, 3)`.
+        """Returns the right, up and forward axes and the position [m], as rows in the world frame, `(4, 3)`.
 
         Raises:
-            CameraError: If the pose was not computed yet, or is no number.
+            CameraError: If the pose was not computed yet, or is not finite.
         """
         place, turn = self._pose(mj_data)
         x, y, z = turn.reshape(3, 3).T

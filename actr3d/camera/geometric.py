@@ -1,4 +1,4 @@
-"""The Geometric Camera."""
+"""The Geometric Camera: computes a `View` from a MuJoCo model and its current poses."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from actr3d.saying import warn_modeller
 
 
 class GeometricCamera:
-    """Sees the edges of what is visible from one place of a MuJoCo model: exactly, and without pixels, names or meanings.
+    """Computes the visible edges from one viewpoint in a MuJoCo model: exactly, and without pixels, names or meanings.
 
-    Every geom is seen as MuJoCo's rays see it: not if its colour is fully transparent, planes from their front only, and
-    from inside a geom its inner sides; but signed distance fields as the meshes that MuJoCo draws of them, a little beside where its
-    rays go. Flexes and skins are not seen, and a warning names them. What is changed in `mj_model`
-    (sizes, colours, heights, poses) is seen at the next look; only what geoms there are, and of what type, is read once.
+    Visibility follows MuJoCo's ray casts: fully transparent geoms are not seen, planes are seen from their front only, and from
+    inside a geom its inner sides are seen. Signed distance fields are an exception: they are seen as the meshes that MuJoCo draws
+    for them, which differ slightly from what its rays hit. Flexes and skins are not seen, and a warning names them. Changes in
+    `mj_model` (sizes, colours, heights, poses) take effect at the next look; only the list of geoms and their types is read once.
 
-    A camera is for one thread at a time.
+    A camera is not thread-safe.
     """
 
     def __init__(
@@ -44,16 +44,16 @@ class GeometricCamera:
         body: str | None = None,
         parameters: CameraParameters | None = None,
     ) -> None:
-        """Makes a camera that looks from a camera, a site or a body of the model; exactly one of these is to be named.
+        """Creates a camera that looks from a camera, a site or a body of the model; name exactly one of these.
 
-        MuJoCo's cameras look along their negative z axis, with y up; from sites and bodies it looks along x, with z up.
+        MuJoCo's cameras look along their negative z axis, with y up; from sites and bodies the view is along x, with z up.
 
         Args:
             mj_model: The MuJoCo model.
             camera: The name of one of its cameras; its own field of view is not used.
             site: Or the name of a site.
             body: Or the name of a body.
-            parameters: What may be set; None: `CameraParameters()`.
+            parameters: The camera's parameters; None for `CameraParameters()`.
 
         Raises:
             CameraError: If there is no such eye, or if `background` names no geom.
@@ -76,16 +76,16 @@ class GeometricCamera:
     def look(self, mj_data: MjData, heading: float | None = None) -> View:
         """Returns what is visible now.
 
-        It shows the poses that stand in `mj_data` (`geom_xpos`, `cam_xpos` and so on), and writes nothing there. After
-        `mj_step` these are of the positions before the step: the caller brings them up to date first, with `mj_kinematics`,
-        and for the model's cameras also `mj_comPos` and `mj_camlight`.
+        Reads the poses in `mj_data` (`geom_xpos`, `cam_xpos` and so on) and writes nothing there. After `mj_step` these poses belong
+        to the positions before the step: the caller updates them first with `mj_kinematics`, and for the model's cameras also with
+        `mj_comPos` and `mj_camlight`.
 
         Args:
             mj_data: The poses.
-            heading: Where `ahead` is for who looks [rad, in the world's frame]; None: where the eye looks. See `View.axes`.
+            heading: The direction that the agent calls ahead [rad, in the world frame]; None for the viewing direction. See `View.axes`.
 
         Raises:
-            CameraError: If the poses were not computed, or are no numbers, or belong to another model.
+            CameraError: If the poses were not computed, are not finite, or belong to another model.
         """
         if len(mj_data.geom_xpos) != len(self._objects):
             got = len(mj_data.geom_xpos)
@@ -96,14 +96,14 @@ class GeometricCamera:
             if count < len(self._extents):
                 break
             self._extents = np.zeros(2 * len(self._extents), EXTENT)
-        # Copied as bytes, which nobody can change: numpy copies records field by field, ten times as slowly.
+        # Copied as immutable bytes: numpy copies structured arrays field by field, which is ten times slower.
         extents = np.frombuffer(self._extents[:count].tobytes(), EXTENT)
         return View(self.parameters, extents, _upright(axes[:3], heading))
 
     def label_of(self, geom: str) -> int | None:
-        """Returns the label of the object that a geom belongs to; None if that was never seen.
+        """Returns the label of the object that a geom belongs to; None if the object was never seen.
 
-        This is for those who stand outside, such as displays and tests: cognition has no names of geoms.
+        Only for observers such as displays and tests: cognition does not know the names of geoms.
 
         Raises:
             CameraError: If there is no such geom.
@@ -115,14 +115,14 @@ class GeometricCamera:
         return int(self._labels[object]) or None if object > 0 else None
 
     def state(self) -> tuple[int, ...]:
-        """Returns the labels given so far, to be handed to `restore`: all that a camera keeps from one look to the next."""
+        """Returns the labels given so far, to be passed to `restore`: all that a camera keeps from one look to the next."""
         return tuple(self._labels.tolist())
 
     def restore(self, state: tuple[int, ...]) -> None:
-        """Takes the labels up again that were given when `state` was called, on this camera or one like it.
+        """Restores the labels that `state` returned, on this camera or one like it.
 
         Raises:
-            CameraError: If that was a camera for other objects.
+            CameraError: If the state comes from a camera with other objects.
         """
         if len(state) != len(self._labels):
             raise CameraError(f"GeometricCamera.restore: a state of {len(state) - 1} objects for a camera that has {len(self._labels) - 1}")
@@ -155,7 +155,11 @@ def _warn_of_unseen(mj_model: MjModel) -> None:
 
 
 def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:
-    """Returns the one eye that is named."""
+    """Returns the one eye that is named.
+
+    Raises:
+        CameraError: If not exactly one is named.
+    """
     named: list[tuple[Any, str]] = [(kind, name) for kind, name in given.items() if name is not None]
     if len(named) != 1:
         got = ", ".join(f"{kind}={name!r}" for kind, name in named) or "none"
@@ -165,7 +169,7 @@ def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:
 
 
 def _upright(axes: NDArray[np.float64], heading: float | None) -> NDArray[np.float64]:
-    """Returns the eye's axes (3, 3), given in the world's frame, in a frame that is turned about the vertical to a heading."""
+    """Returns the eye's axes `(3, 3)`, given in the world frame, in a frame rotated about the vertical to a heading."""
     if heading is None:
         heading = math.atan2(axes[2, 1], axes[2, 0])
     c, s = math.cos(heading), math.sin(heading)

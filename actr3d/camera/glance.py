@@ -1,4 +1,4 @@
-"""What an eye sees, for observers: the labels that the agent knows stay as they are."""
+"""Shows observers what an eye sees, without changing the labels that the agent knows."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from actr3d.world.body import Body
 
 
 def glance(body: Body, parameters: CameraParameters | None = None) -> View:
-    """Returns what is visible now, with the labels that the agent knows. What it has not seen yet may get other labels later.
+    """Returns what is visible now, with the labels that the agent knows. Objects not seen before may get other labels later.
 
     Args:
-        body: Whose eye.
-        parameters: How it sees; None for the way it has looked first, or the usual way where it never has.
+        body: The body whose eye is used.
+        parameters: How it sees; None for the parameters of its first view sense, or the default if it has none.
 
     Raises:
-        CameraError: If the body has no eye, or the poses are no numbers.
+        CameraError: If the body has no eye, or the poses are not finite.
     """
     if body.eye is None:
         raise CameraError(f"body '{body.name}' has no eye")

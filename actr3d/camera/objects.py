@@ -1,4 +1,4 @@
-"""Which geoms make one object."""
+"""Groups geoms into objects."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from actr3d.errors import CameraError, did_you_mean
 
 
 def objects_of(mj_model: MjModel, own_body: int, parameters: CameraParameters) -> NDArray[np.int64]:
-    """Returns the number of the object that each geom belongs to, from 1 on, or `UNSEEN` or `BACKGROUND`, `(n,)`.
+    """Returns the object number of each geom, counted from 1, or `UNSEEN` or `BACKGROUND`, `(n,)`.
 
-    An object is a body that stands in the world with all that hangs on it, or one geom that belongs to the world itself.
-    The body the eye is in is left out, or each of its parts is an object.
+    An object is a top-level body of the world with all its descendants, or one geom that belongs to the world itself.
+    The eye's own body is left out, or each of its parts is an object.
 
     Args:
         mj_model: The MuJoCo model.
-        own_body: The number of the body the eye is in, 0 for the world.
-        parameters: The camera's.
+        own_body: The id of the body that the eye belongs to, 0 for the world.
+        parameters: The camera's parameters.
 
     Raises:
         CameraError: If `background` names a geom that does not exist.
@@ -45,7 +45,7 @@ def objects_of(mj_model: MjModel, own_body: int, parameters: CameraParameters) -
 
 
 def _background(mj_model: MjModel, parameters: CameraParameters) -> set[int]:
-    """Returns the numbers of the geoms that hide others but are not told."""
+    """Returns the ids of the geoms that hide others but are not reported."""
     if parameters.background is None:
         return {geom for geom in range(mj_model.ngeom) if mj_model.geom_type[geom] == PLANE}
     names = names_of(mj_model, "geom")

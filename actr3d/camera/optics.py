@@ -1,4 +1,4 @@
-"""A camera's parameters, as compiled functions need them."""
+"""Converts a camera's parameters to the form that compiled functions use."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from actr3d.camera.kernel.layout import OPTICS
 from actr3d.camera.parameters import CameraParameters
 
 NEAREST = 1e-9
-"""How deep a surface must be to be drawn at all [m]."""
+"""The minimum depth at which a surface is drawn [m]."""
 
 
 @cache
 def optics_of(parameters: CameraParameters) -> NDArray[Any]:
-    """Returns what the compiled functions need of the parameters."""
+    """Returns the parameters as the constants of an eye for the compiled functions, an array of length 1."""
     optics = np.zeros(1, OPTICS)
     right, top = math.tan(parameters.horizontal_fov / 2), math.tan(parameters.vertical_fov / 2)
     near = max(parameters.near, NEAREST)

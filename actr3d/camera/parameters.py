@@ -1,4 +1,4 @@
-"""What may be set of a camera."""
+"""The parameters of a camera."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 
 Width = Annotated[float, Gt(0), Le(math.radians(179))]
-"""A field of view; a flat screen of 180 degrees would be endless."""
+"""A field of view; a flat screen of 180 degrees would be infinitely wide."""
 RIGHT_ANGLE = math.pi / 2
 SIXTY_DEGREES = math.pi / 3
 
@@ -24,30 +24,30 @@ class CameraParameters(Configuration):
     horizontal_fov: Width = RIGHT_ANGLE
     """The angle between the left and the right edge of the screen [rad]."""
     vertical_fov: Width = SIXTY_DEGREES
-    """The angle between its top and its bottom [rad]."""
+    """The angle between the top and the bottom of the screen [rad]."""
     rows: Annotated[int, Ge(1), Le(100_000)] = 100
-    """How many scan lines; each is looked at in its middle."""
+    """The number of scan lines; each is sampled in its middle."""
     precision: Annotated[float, Ge(0), Lt(1)] = 1e-4
-    """Gaps in one object that are narrower than this part of the screen's width are not told. Edges are exact to far less, and
-    things are never too narrow to be told."""
+    """Gaps in one object that are narrower than this fraction of the screen's width are not reported. Edges are far more exact than
+    this, and no object is too narrow to be reported."""
     near: Annotated[float, Ge(0)] = 0.0
-    """Surfaces less deep than this are not seen [m along the line of sight]."""
+    """Surfaces at a smaller depth than this are not seen [m along the line of sight]."""
     range: Annotated[float, Gt(0)] | None = None
-    """What is farther away than this is not seen [m]; None: everything is seen."""
+    """Objects farther away than this are not seen [m]; None for no limit."""
     retinotopic: bool = False
-    """Whether equal parts of the screen are equal parts of the visual cortex: rows and columns by visual angle, fine in the
-    middle. Otherwise the screen is flat, as a photograph is."""
+    """Whether equal parts of the screen are equal parts of the visual cortex: rows and columns by visual angle, finest in the
+    middle. Otherwise the screen is flat, like a photograph."""
     e2: Annotated[float, Gt(0)] = math.radians(0.75)
     """The eccentricity at which the retinotopic screen is half as fine as in the middle [rad].
 
     Source: Horton and Hoyt (1991), Archives of Ophthalmology 109: 17.3 mm / (E + 0.75 deg) of cortex for each degree.
     """
     own_limbs: bool = False
-    """Whether the agent sees the parts of its own body, each an object, or looks through them."""
+    """Whether the agent sees the parts of its own body, each as an object, or looks through them."""
     background: tuple[str, ...] | None = None
-    """Names of geoms that hide others but are not told themselves; None: all planes."""
+    """Names of geoms that hide others but are not reported; None for all planes."""
     groups: tuple[Annotated[int, Ge(0), Le(5)], ...] | None = None
-    """The groups of geoms that are seen, from 0 to 5; None: all."""
+    """The groups of geoms that are seen, from 0 to 5; None for all."""
 
     def __post_init__(self) -> None:
         """Checks all values.

@@ -1,4 +1,4 @@
-"""The sensor word `view`: what a body's eye sees."""
+"""The sensor `view`: returns what a body's eye sees."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from actr3d.camera.view import View
 from actr3d.world.body import Body, sensor
 
 USUAL = CameraParameters()
-"""What is looked with where no options are given."""
+"""The parameters that are used if no options are given."""
 
 
 class Sight:
-    """A body's eye, looked through with one set of parameters: at most one look for each state of the world.
+    """A body's eye with one set of parameters; computes at most one view for each state of the world.
 
     Args:
-        body: Whose eye.
+        body: The body whose eye is used.
         parameters: How it sees.
     """
 
@@ -38,7 +38,7 @@ class Sight:
         """Returns what is visible now.
 
         Raises:
-            CameraError: If the poses are no numbers.
+            CameraError: If the poses are not finite.
         """
         physics = self._body.physics
         if self._view is None or self._moment != physics.moment:
@@ -50,7 +50,7 @@ class Sight:
         return self._view
 
     def stood(self, view: View) -> Stand | None:
-        """Returns how the eye stood when it saw a view, for who looks on; None where it has not seen that."""
+        """Returns the pose of the eye when it saw a view, for observers; None if this eye did not compute the view."""
         return self._stands.get(view)
 
     def state(self) -> tuple[int, ...]:
@@ -58,7 +58,7 @@ class Sight:
         return self._camera.state()
 
     def restore(self, state: Any) -> None:
-        """Takes the labels up again that were given then; None for before the first look."""
+        """Restores the labels of a saved state; None restores the state before the first look."""
         self._camera.restore(self._unseen if state is None else state)
         self._view = None
 
@@ -68,12 +68,12 @@ def view(body: Body, **options: Any) -> View:
     """Senses the edges of all that is visible from the eye.
 
     Args:
-        body: Whose.
-        options: The fields of `CameraParameters`; looks with the same options share their labels. Numbers may come as text.
+        body: The body whose eye is used.
+        options: The fields of `CameraParameters`; looks with the same options share their labels. Numbers may be given as text.
 
     Raises:
-        ConfigurationError: If an option is no field, or a value is not what it takes.
-        CameraError: If something named as background is not there.
+        ConfigurationError: If an option is not a field, or its value is invalid.
+        CameraError: If an object named as background does not exist.
     """
     if not options:
         return body.sense(Sight, USUAL).look()
@@ -82,7 +82,7 @@ def view(body: Body, **options: Any) -> View:
 
 
 def _meant(value: Any) -> Any:
-    """Returns the number that a text says: what a pattern binds is text; no option is one."""
+    """Returns a text as a number if it is one: values bound by a pattern are text, and no option takes text."""
     for kind in (int, float) if isinstance(value, str) else ():
         with suppress(ValueError):
             return kind(value)

@@ -1,4 +1,4 @@
-"""Where an eye stands in the world: for who looks on; no mind gets this."""
+"""The pose of an eye in the world, for observers; agents never receive it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Stand(NamedTuple):
-    """Where an eye is, and where ahead is for its body, in the world's frame."""
+    """The position of an eye and the heading of its body, in the world frame."""
 
     x: float
     """[m]"""
@@ -26,10 +26,10 @@ class Stand(NamedTuple):
 
 
 def stand_of(body: Body, data: Any) -> Stand:
-    """Returns how the eye of a body stands in data of its world, whose geometry is up to date.
+    """Returns the pose of a body's eye in simulation data whose geometry is up to date.
 
     Args:
-        body: Whose eye; it has one.
+        body: A body with an eye.
         data: The `mj_data` of the world, or a copy in another state.
     """
     site = mj_name2id(body.physics.mj_model, mjtObj.mjOBJ_SITE, body.eye or "")

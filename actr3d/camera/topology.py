@@ -1,4 +1,4 @@
-"""Reads from a model what its geoms are made of."""
+"""Reads the shapes of a model's geoms: kinds, objects, corners and faces."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from actr3d.camera.kernel.scene import Geoms, Topology
 Faces = NDArray[np.int64]
 
 BOX_FACES: Faces = np.array([(1, 3, 7, 5), (0, 4, 6, 2), (2, 6, 7, 3), (0, 1, 5, 4), (4, 5, 7, 6), (0, 2, 3, 1)])
-"""The corners of a box's faces, anticlockwise seen from outside; bit 0 of a corner tells x, bit 1 y, bit 2 z."""
+"""The corners of a box's faces, anticlockwise seen from outside; bit 0 of a corner is the sign of x, bit 1 of y, bit 2 of z."""
 
 
 def geoms_of(mj_model: MjModel) -> Geoms:
-    """Returns the parts of a model's memory that tell what its geoms look like."""
+    """Returns the arrays of a model that describe the appearance of its geoms."""
     return Geoms(
         size=mj_model.geom_size,
         group=mj_model.geom_group,
@@ -32,7 +32,7 @@ def geoms_of(mj_model: MjModel) -> Geoms:
 
 
 def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int, ...] | None) -> Topology:
-    """Returns the kinds, objects and faces of a model's geoms. A signed distance field is seen as the mesh that MuJoCo draws of it."""
+    """Returns the kinds, objects and faces of a model's geoms. A signed distance field is seen as the mesh that MuJoCo draws for it."""
     count = mj_model.ngeom
     source = np.zeros((count, 4), np.int64)
     corners, faces = np.zeros(count + 1, np.int64), np.zeros(count + 1, np.int64)
@@ -54,7 +54,7 @@ def topology_of(mj_model: MjModel, objects: NDArray[np.int64], groups: tuple[int
 
 
 def _faces_of(mj_model: MjModel, geom: int, source: NDArray[np.int64]) -> tuple[int, Faces]:
-    """Returns how many corners a geom has, and its faces; writes where its data are found."""
+    """Returns the number of corners of a geom, and its faces; writes the address of its data into `source`."""
     kind, data = int(mj_model.geom_type[geom]), int(mj_model.geom_dataid[geom])
     if kind == BOX:
         return 8, BOX_FACES
@@ -74,9 +74,9 @@ def _triangles(corners: NDArray[np.integer]) -> Faces:
 
 
 def _hfield_faces(rows: int, columns: int) -> Faces:
-    """Returns the faces of a height field: two triangles a cell, its sides, and all six of its base.
+    """Returns the faces of a height field: two triangles per cell, its sides, and all six faces of its base.
 
-    The top of the base lies under the surface, and is seen from inside only, as by MuJoCo's rays.
+    The top of the base lies under the surface and is seen only from inside, as with MuJoCo's rays.
     """
     grid = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = grid[:-1, :-1].ravel(), grid[:-1, 1:].ravel(), grid[1:, :-1].ravel(), grid[1:, 1:].ravel()

@@ -1,4 +1,4 @@
-"""What a camera returns."""
+"""The view that a camera returns."""
 
 from __future__ import annotations
 
@@ -24,41 +24,41 @@ Extent = list[float]
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What is visible at one moment: for each scan line, from where to where which object is seen.
+    """The visible extents at one moment: for each scan line, which object is seen from where to where.
 
     An extent runs from `x1` to `x2` on the screen (0 left, 1 right), on the scan line at `y` (0 top, 1 bottom); `d1` and
     `d2` are the distances from the eye to the object at its two edges [m], `a1` and `a2` the angles between the line of
-    sight and the directions to them [degrees]. Labels tell objects apart, and nothing else. An object that is cut in two by
-    a nearer one has two extents.
+    sight and the directions to them [degrees]. Labels distinguish objects and carry no other information. An object that is
+    split by a nearer one has two extents.
     """
 
     parameters: CameraParameters
-    """What it was looked with: the field of view, and what screen `x` and `y` are on."""
+    """The camera's parameters: the field of view, and the screen on which `x` and `y` are given."""
     extents: NDArray[Any]
     """See `as_array`."""
     axes: NDArray[np.float64]
-    """How the eye is turned: its axes right, up and forward, as rows in an upright frame of ahead, left and up, `(3, 3)`."""
+    """The orientation of the eye: its right, up and forward axes as rows, in an upright frame (ahead, left, up), `(3, 3)`."""
 
     @property
     def rows(self) -> int:
-        """How many scan lines there are, with or without anything to see."""
+        """The number of scan lines, including empty ones."""
         return self.parameters.rows
 
     @property
     def optics(self) -> NDArray[Any]:
-        """The parameters as the compiled functions of `actr3d.camera.kernel` take them, an array of one."""
+        """The parameters as the compiled functions of `actr3d.camera.kernel` expect them, an array of length 1."""
         return optics_of(self.parameters)
 
     def as_array(self) -> NDArray[Any]:
-        """Returns all extents as one array that cannot be written to, by rows from the top, in each from left to right.
+        """Returns all extents as one read-only array, ordered by row from the top, and within a row from left to right.
 
-        Its fields are `row`, `label`, `y`, `x1`, `x2`, `d1`, `d2`, `a1` and `a2`; and `xn` and `dn`, where between the edges what is
-        seen is nearest on the ground, and how far from the eye that is [m].
+        Its fields are `row`, `label`, `y`, `x1`, `x2`, `d1`, `d2`, `a1` and `a2`; and `xn` and `dn`, the screen position of the point
+        between the edges that is nearest on the ground, and its distance from the eye [m].
         """
         return self.extents
 
     def as_dict(self) -> dict[float, dict[int, list[Extent]]]:
-        """Returns `{y: {label: [[x1, x2, d1, d2, a1, a2], ...]}}`, made anew at each call; empty rows are there as well."""
+        """Returns `{y: {label: [[x1, x2, d1, d2, a1, a2], ...]}}`, a new dict at each call; empty rows are included."""
         ys = [(row + 0.5) / self.rows for row in range(self.rows)]
         view: dict[float, dict[int, list[Extent]]] = {y: {} for y in ys}
         for row, label, _, *extent in self.extents.tolist():
@@ -69,9 +69,9 @@ class View:
         return f"<View of {self.rows} rows: {len(self.extents)} extents>"
 
     def summary(self) -> dict[str, int]:
-        """Returns what a trace and a recording keep of it: how many rows and extents, and the CRC-32 of all their bytes.
+        """Returns what a trace and a recording keep of the view: the number of rows and extents, and the CRC-32 of all its bytes.
 
-        The view itself can be had again from the state of the world, exactly.
+        The view itself can be recomputed exactly from the state of the world.
         """
         return {"rows": self.rows, "extents": len(self.extents), "crc32": crc32(self.extents.tobytes())}
 
@@ -79,8 +79,8 @@ class View:
         """Returns the view with Gaussian noise on some fields of all extents.
 
         Args:
-            sd: Standard deviations by field, in its unit: `{"d1": 0.05, "d2": 0.05}`.
-            random: Where the random numbers come from.
+            sd: Standard deviations by field, in the field's unit: `{"d1": 0.05, "d2": 0.05}`.
+            random: The random number generator.
 
         Raises:
             CameraError: If they are not given by field, or there is no such field.

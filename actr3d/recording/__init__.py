@@ -1,4 +1,4 @@
-"""Recordings: one SQLite file a run, which holds all that happened in it and all that is needed to run it again."""
+"""Recordings: one SQLite file per run, with everything that happened in it and everything needed to run it again."""
 
 from actr3d.recording.recorded import Recorded
 from actr3d.recording.recording import Recording

@@ -1,4 +1,4 @@
-"""The checksums of a recording: a chain for each of its tables, one for its facts, and one of all."""
+"""Computes the checksums of a recording: a chain for each of its tables, one for its facts, and one of everything."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from actr3d.recording.form import COLUMNS, FORM
 class Checksums:
     """Computes the checksums of a recording, row by row as it is written or read; SHA-256.
 
-    The checksum of a row covers the row before it in its table, so a row cannot be changed, left out or moved without
-    changing all that follow. The checksum of the whole recording covers the last of each table, and all facts.
+    The checksum of a row covers the row before it in its table, so a row cannot be changed, removed or moved without
+    changing all that follow. The checksum of the whole recording covers the last checksum of each table, and all facts.
     """
 
     def __init__(self) -> None:
         self.last = {table: _digest(table) for table in COLUMNS}
         """The checksum of the last row of each table."""
         self.facts: dict[str, bytes] = {}
-        """The checksum of each fact's value, by its name."""
+        """The checksum of each fact's value, by the fact's name."""
 
     def row(self, table: str, *values: int | str | bytes) -> bytes:
         """Returns the checksum of the next row of a table."""
@@ -27,21 +27,21 @@ class Checksums:
         return checksum
 
     def begin(self, table: str, checksum: bytes | None) -> None:
-        """Goes on in a table after the row with a checksum; None for its start."""
+        """Continues a table after the row with a given checksum; None for its start."""
         self.last[table] = _digest(table) if checksum is None else checksum
 
     def fact(self, name: str, value: str) -> None:
-        """Takes a fact; the last of one name counts."""
+        """Adds a fact; a later fact replaces an earlier one of the same name."""
         self.facts[name] = _digest(value)
 
     def whole(self) -> bytes:
-        """Returns the checksum of the whole recording, as far as it has come."""
+        """Returns the checksum of the whole recording so far."""
         facts = [part for fact in sorted(self.facts.items()) for part in fact]
         return _digest(FORM, *self.last.values(), *facts)
 
 
 def _digest(*values: int | str | bytes) -> bytes:
-    """Returns the SHA-256 of some values; other values, or the same ones divided otherwise, have another one."""
+    """Returns the SHA-256 of some values, with types and lengths, so that other values or other divisions give another digest."""
     digest = hashlib.sha256()
     for value in values:
         if isinstance(value, int):

@@ -1,4 +1,4 @@
-"""The form of a recording's file, and what is written down of the programs that made it."""
+"""The schema of a recording's file, and the versions of the programs that made it."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
 FORM = "actr3d recording 3"
-"""The first of the facts; a file without it is no recording."""
+"""The value of the fact `form`; a file without it is not a recording."""
 
 OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
-"""Facts that every recording tells by itself."""
+"""Facts that every recording writes itself."""
 
 LEFT = "left"
-"""What the fact `ended` says of a run that its user left before it was over. All other words are of runs that came to their end:
-`end` and `exit` (`SystemExit`) of programs; `stop`, `done` and `limits` of a simulation that a file builds, see `RunReport`. A
-run that raised anything else has the fact `failed` instead; one that was broken off has neither."""
+"""The value of the fact `ended` if the user left the run before its end. All other values mean that the run ended by itself: `end` and
+`exit` (`SystemExit`) of programs; `stop`, `done` and `limits` of a simulation that a file builds, see `RunReport`. A run that raised
+anything else has the fact `failed` instead; a run that was broken off has neither."""
 
 SCHEMA = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",
@@ -27,18 +27,20 @@ SCHEMA = (
     "checksum BLOB NOT NULL)",
     "CREATE TABLE seal (first INTEGER PRIMARY KEY, checksum BLOB NOT NULL, seal BLOB NOT NULL)",
 )
-"""`facts`: a name and JSON. The next three hold many things a row, because few large rows cost a running simulation least;
-`first` is the number of the first of them, from 0. `events`: a JSON list of [time in us, source, kind, data]. `answers`: a
-JSON list of [run, tick, body, word, answer]. `states`: the states one after the other, each at the start (tick 0) or the end
-of a tick, and as many 8-byte numbers; and for each of them its `marks`, four 8-byte numbers: of which run, of which tick, how
-many events there were until then, and how many bytes it is. `commands`: after which tick, one a row.
+"""The tables of a recording.
 
-`run` says of which simulation: 1 in the recording that a simulation makes of itself; in that of a program, which may make
-several, by which number the trace knows it. A program that goes back with one of them is recorded as it went: the ticks that
-are gone through again follow the others.
+`facts`: a name and JSON. The next three tables hold many items per row, because few large rows slow down a running simulation
+least; `first` is the number of a row's first item, from 0. `events`: a JSON list of [time in us, source, kind, data]. `answers`:
+a JSON list of [run, tick, body, word, answer]. `states`: concatenated states, each at the start (tick 0) or the end of a tick,
+stored as 8-byte numbers; and for each state its `marks`, four 8-byte numbers: its run, its tick, the number of events until then,
+and its size in bytes. `commands`: one per row, with the tick after which it was given.
+
+`run` is the number of the simulation: 1 in a simulation's own recording; in the recording of a program, which may make several
+simulations, the number that the trace gives it. If a program goes back in a simulation, the recording keeps the order of
+execution: repeated ticks follow the others.
 
 `checksum` covers a row and the one before it; the only row of `seal` (0) has the checksum of everything, and the seal of the
-installation that wrote it, which is empty where that has no key. See `actr3d.recording.checksums`."""
+installation that wrote it, which is empty if that installation has no key. See `actr3d.recording.checksums`."""
 
 COLUMNS: dict[str, tuple[type, ...]] = {
     "events": (int, int, str),
@@ -46,12 +48,12 @@ COLUMNS: dict[str, tuple[type, ...]] = {
     "states": (int, int, bytes, bytes),
     "commands": (int, int, int, str),
 }
-"""The tables that are written row by row, and what their columns hold, without the last one, the checksum."""
+"""The tables that are written row by row, and the types of their columns without the last one, the checksum."""
 
 
 @cache
 def versions() -> dict[str, str]:
-    """Returns the versions of all that the bytes of a run may depend on."""
+    """Returns the versions of everything that the bytes of a run may depend on."""
     found = {"python": platform.python_version(), "machine": platform.machine(), "system": platform.system()}
     for package in ("actr3d", "mujoco", "numpy"):
         try:

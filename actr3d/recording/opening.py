@@ -1,4 +1,4 @@
-"""Opens the file of a recording, which anybody may have made."""
+"""Opens the file of a recording, which may come from an untrusted source."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from pathlib import Path
 from actr3d.errors import RecordingError
 
 LARGEST_VALUE = 250_000_000
-"""No value in a table is larger [bytes]."""
+"""The maximum size of a value in a table [bytes]."""
 PATIENCE = 1.0
-"""So long a rollback journal may lie beside a file that is being made or closed [s]."""
+"""How long to wait for the rollback journal of a file that is being created or closed to disappear [s]."""
 COMPANIONS = ("-wal", "-shm", "-journal")
-"""Files with these endings lie beside a recording that is being written."""
+"""The suffixes of files that exist next to a recording while it is written."""
 
 
 def opened(path: Path) -> sqlite3.Connection:
-    """Returns a connection to a recording's file: one that makes no file where there is none, follows no links, and reads no huge values.
+    """Returns a connection to a recording's file: it never creates a file, follows no links, and reads no huge values.
 
     Raises:
-        RecordingError: If there is no such file, it cannot be opened, or a rollback journal lies beside it.
+        RecordingError: If there is no such file, it cannot be opened, or it has a rollback journal.
     """
     try:
         there = path.is_file()
-    except ValueError:  # no path at all
+    except ValueError:  # not a valid path
         there = False
     if not there:
         raise RecordingError(f"no recording '{path}'")
@@ -32,7 +32,7 @@ def opened(path: Path) -> sqlite3.Connection:
         raise RecordingError(f"'{path}' is no recording: a link lies in the place of its journal")
     _wait_for_journal(path)
     try:
-        # Where a killed program left its write-ahead log, reading the file takes writing it.
+        # If a killed program left its write-ahead log, SQLite must write to the file in order to read it.
         file = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
         file.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_VALUE)
         file.execute("PRAGMA trusted_schema=OFF")
@@ -42,13 +42,13 @@ def opened(path: Path) -> sqlite3.Connection:
 
 
 def _wait_for_journal(path: Path) -> None:
-    """Waits until no rollback journal lies beside a recording; it has one for a moment as it is made, and as it is closed.
+    """Waits until a recording has no rollback journal; it has one for a moment while it is created, and while it is closed.
 
-    SQLite would roll a journal back that was left, and then delete whatever file it names as the journal of a larger transaction: of a
-    recording from elsewhere, any file of the user's.
+    SQLite would roll back a leftover journal, and then delete whatever file the journal names as that of a larger transaction: with
+    a recording from an untrusted source, this could be any of the user's files.
 
     Raises:
-        RecordingError: If it stays.
+        RecordingError: If the journal remains.
     """
     journal = path.with_name(f"{path.name}-journal")
     end = time.monotonic() + PATIENCE

@@ -1,4 +1,4 @@
-"""A recording that is read."""
+"""Reads a recording."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
 
 SHOWN = 80
-"""No more of what is wrong in it is quoted [characters]."""
+"""The maximum length of a quote from a damaged recording in an error message [characters]."""
 OPENING_STEPS = 100_000
-"""Opening a recording takes SQLite a few thousand steps; a file that makes it take more than these is none."""
+"""The maximum number of SQLite steps to open a recording, which usually takes a few thousand; a file that needs more is rejected."""
 
 
 class RecordedCommand(NamedTuple):
-    """What a user did."""
+    """A user's command."""
 
     run: int
-    """To which simulation; 1 of one that is recorded alone."""
+    """The number of its simulation; 1 if the simulation was recorded alone."""
     tick: int
-    """After which tick."""
+    """The tick after which it was given."""
     data: dict[str, Any]
 
 
 class Recorded:
-    """Reads a recording as it is now, also one whose program was killed, or that is still being made.
+    """Reads a recording in its present state, also if its program was killed, or if it is still being written.
 
-    Nothing of what it holds is run. What comes later is not read: open it again.
+    Runs nothing that the recording contains. Does not read what is added later: open the file again for that.
 
     Args:
         path: The file.
 
     Raises:
-        RecordingError: If there is no such file, or it is no recording of this form.
+        RecordingError: If there is no such file, or it is not a recording of this form.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -61,13 +61,13 @@ class Recorded:
             raise RecordingError(f"'{path}' is no recording: {_words(error)}") from None
 
     def _begin(self) -> dict[str, str]:
-        """Begins to read, at one moment of a file that may be written meanwhile; returns the facts as they are written.
+        """Starts a read transaction on the file, which may be written meanwhile; returns the facts as JSON texts.
 
-        A file that only looks like a recording, as one with a view in place of a table, is not read: what it could make
-        SQLite do is not done.
+        Rejects a file that only looks like a recording, for example with a view in place of a table: whatever it could make
+        SQLite do does not happen.
 
         Raises:
-            RecordingError: If it is no recording of this form.
+            RecordingError: If it is not a recording of this form.
         """
         self._file.set_progress_handler(lambda: 1, OPENING_STEPS)
         self._file.execute("BEGIN")
@@ -89,9 +89,9 @@ class Recorded:
 
     @property
     def made_here(self) -> bool:
-        """Whether this installation recorded it, and nobody has changed it since; then the code in it was run here before.
+        """Whether this installation made the recording, and it was not changed since; its code was then run here before.
 
-        All of it is read for that, once; nothing is run.
+        Reads the whole file once to find out; runs nothing.
 
         Raises:
             RecordingError: If the file is damaged.
@@ -101,7 +101,7 @@ class Recorded:
         return bool(self._made_here)
 
     def check(self) -> None:
-        """Reads the whole file, and compares its checksums.
+        """Reads the whole file and compares its checksums.
 
         Raises:
             RecordingError: If it is damaged, or was changed.
@@ -126,30 +126,30 @@ class Recorded:
 
     @property
     def over(self) -> bool:
-        """Whether the run came to its end: it was neither left before, nor broken off."""
+        """Whether the run ended: the user did not leave it before its end, and it did not fail."""
         ended = self.facts.get("ended")
         return ended is not None and ended["by"] != LEFT
 
     @property
     def closed(self) -> bool:
-        """Whether it ends where its run was over, or between two ticks; not in the midst of one, as where the run failed or was killed."""
+        """Whether the recording ends with the end of the run or between two ticks; False if the run failed or was killed within a tick."""
         return self.facts.get("ended") is not None or bool(self.facts.get("whole"))
 
     @property
     def ticks(self) -> int:
-        """How many whole ticks it holds, of all runs together."""
+        """The number of complete ticks, of all runs together."""
         if self.facts["kind"] == "simulation":
-            return max(0, self._count("states") - 1)  # one run, and its start: no state need be read
+            return max(0, self._count("states") - 1)  # one run, and its start: no state needs to be read
         return sum(1 for state in self.states() if state.tick)
 
     @property
     def event_count(self) -> int:
-        """How many events it holds."""
+        """The number of events."""
         return self._count("events")
 
     @property
     def state_count(self) -> int:
-        """How many states it holds, of all runs together; 0 of a program that makes no simulation."""
+        """The number of states, of all runs together; 0 for a program that makes no simulation."""
         return self._count("states")
 
     def _count(self, table: str) -> int:
@@ -161,22 +161,22 @@ class Recorded:
         """Yields every event.
 
         Raises:
-            RecordingError: If the file is damaged, as all that reads its rows does.
+            RecordingError: If the file is damaged; this holds for all methods that read its rows.
         """
         return (TraceEvent(*thing) for thing in self._things("events", 4, (int, str, str, dict)))
 
     def last_events(self) -> list[str]:
-        """Returns the last two rows of events as they are written, each a JSON list; neither they nor their checksums are looked at."""
+        """Returns the last two rows of events as JSON lists, without parsing them or comparing their checksums."""
         with self._reading():
             rows = self._file.execute("SELECT data FROM events ORDER BY first DESC LIMIT 2").fetchall()
             return [text for (text,) in reversed(rows)]
 
     def answers(self) -> Iterator[Answer]:
-        """Yields what the bodies answered; the values are plain."""
+        """Yields the answers of the bodies, as plain values."""
         return (Answer(*thing) for thing in self._things("answers", 5, (int, int, str, str)))
 
     def states(self) -> Iterator[State]:
-        """Yields the physics of each run at the start (tick 0), and at the end of each tick."""
+        """Yields the physics state of each run at the start (tick 0), and at the end of each tick."""
         with self._reading():
             for count, data, marks in self._rows("states"):
                 numbers = array("q", marks)
@@ -188,7 +188,7 @@ class Recorded:
                     begin += size
 
     def commands(self) -> Iterator[RecordedCommand]:
-        """Yields what users did."""
+        """Yields the users' commands."""
         with self._reading():
             for run, tick, text in self._rows("commands"):
                 data = _parsed(text)
@@ -197,7 +197,7 @@ class Recorded:
                 yield RecordedCommand(run, tick, data)
 
     def _things(self, table: str, size: int, kinds: tuple[type, ...]) -> Iterator[list[Any]]:
-        """Yields the things that the rows of a table hold, each a list of so many values, the first of these types."""
+        """Yields the items in the rows of a table: lists of `size` values, the first of which have the types `kinds`."""
         with self._reading():
             for count, text in self._rows(table):
                 things = _parsed(text)
@@ -209,7 +209,7 @@ class Recorded:
                     yield thing
 
     def _rows(self, table: str) -> Iterator[tuple[Any, ...]]:
-        """Yields the rows of a table, without the numbers of their first things and their checksums: both are compared."""
+        """Yields the rows of a table, without item numbers and checksums, after comparing both."""
         checksums, due = Checksums(), 0
         for row in self._file.execute(f"SELECT * FROM {table} ORDER BY first"):
             first, *values, checksum = row
@@ -238,7 +238,7 @@ class Recorded:
 
 
 class _Reading:
-    """Says in one way what is wrong with a file that is read inside the block."""
+    """Raises every error that occurs in the block while the file is read as a `RecordingError`."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -252,10 +252,10 @@ class _Reading:
 
 
 def _parsed(text: str) -> Any:
-    """Returns what a JSON text says.
+    """Returns the value of a JSON text.
 
     Raises:
-        ValueError: If it is none, or is nested too deeply.
+        ValueError: If it is not JSON, or is nested too deeply.
     """
     try:
         return json.loads(text)
@@ -264,7 +264,7 @@ def _parsed(text: str) -> Any:
 
 
 def _is_command(data: Any) -> bool:
-    """Returns whether something is what `Command.to_data` gives."""
+    """Returns whether a value has the form that `Command.to_data` returns."""
     if not isinstance(data, dict):
         return False
     command = cast("dict[str, Any]", data)
@@ -281,7 +281,7 @@ def _types(*values: object) -> tuple[type, ...]:
 
 
 def _short(value: Any) -> str:
-    """Returns a value as a text of moderate length."""
+    """Returns a value as a text of limited length."""
     try:
         text = repr(value)
     except RecursionError:

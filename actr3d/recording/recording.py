@@ -1,4 +1,4 @@
-"""A recording that is being made."""
+"""A recording that is being written."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from actr3d.recording.writer import Answer, Command, State, Writer
 from actr3d.trace import TraceEvent
 
 USUAL_PERIOD = 10_000
-"""How long a tick is where the recording does not say it [us]: that of a program, whose simulations may differ in it."""
+"""The assumed length of a tick if the facts do not give it [us]: for a program, whose simulations may have different ticks."""
 MOST_WAITING = 100_000
-"""So many events may wait to be written; then the run waits for the disk."""
+"""The maximum number of events that wait to be written; beyond it, the run waits for the disk."""
 
 
 class Recording:
-    """Writes one run, or one program with all its runs, to one file: facts, then every event, state, command and answer as they come.
+    """Writes one run, or one program with all its runs, to one file: facts, then every event, state, command and answer as they occur.
 
-    It is written a quarter of a second later at the latest, and the run waits for that after each second of simulated time; what is
-    written outlives a program that is killed. All are counted; after `cut`, the counting goes on from what was kept.
+    Everything is written within a quarter of a second, and the run waits for this after each second of simulated time; what is
+    written survives if the program is killed. All items are counted; after `cut`, counting continues from what was kept.
 
     Args:
         path: The file; it must not exist.
-        facts: What can be told of the run before it begins: the model's source, its parameters, the seed; plain values.
+        facts: What is known about the run before it begins: the model's source, its parameters, the seed; plain values.
 
     Raises:
-        RecordingError: If the file exists already, or cannot be made, or a fact is not plain.
+        RecordingError: If the file exists already, or cannot be created, or a fact is not plain.
     """
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
@@ -41,20 +41,20 @@ class Recording:
         self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in told.items()])
         self._append = self._writer.events.append
         self._second = 0
-        """The latest second of simulated time; the ones before are in the file."""
+        """The latest second of simulated time; earlier ones are in the file."""
         self._ticks_a_second = max(1, MICROSECONDS // told.get("period_us", USUAL_PERIOD))
         self.events = self.answers = self.commands = self.states = 0
-        """How many of each it has been given."""
+        """The number of items of each sort received so far."""
         self._over = {"ended": False, "failed": False}
-        """Whether these facts have been told, and hold."""
+        """Whether each of these facts has been written, and holds."""
         self.ending: Callable[[], None] | None = None
-        """Called before it is closed, to tell the rest; what is told later is not recorded."""
+        """Called before the recording is closed, to add the last items; items added later are not recorded."""
 
     def fact(self, name: str, value: Any) -> None:
-        """Writes a fact that becomes known in the run: plain values.
+        """Writes a fact that becomes known during the run: plain values.
 
         Raises:
-            RecordingError: If they are not plain.
+            RecordingError: If the values are not plain.
         """
         self._writer.facts.append((name, _plain(name, value)))
         if name in self._over:
@@ -75,29 +75,29 @@ class Recording:
             self._writer.flush()
 
     def event_alone(self, event: TraceEvent) -> None:
-        """Writes an event of a program, which may tell of nothing else.
+        """Writes an event of a program that may record nothing but events.
 
         Raises:
-            RecordingError: If the file cannot be written any more.
+            RecordingError: If the file can no longer be written.
         """
         self.event(event)
         self.check()
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
-        """Writes what a body answered at the end of a tick that is about to end; nobody may change it any more."""
+        """Writes a body's answer at the end of the current tick; the value must not change afterwards."""
         self.answers += 1
         self._writer.answers.append(Answer(run, tick, body, word, value))
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
-        """Writes what a user did after a tick."""
+        """Writes a user's command that was given after a tick."""
         self.commands += 1
         self._writer.commands.append(Command(run, tick, json.dumps(data)))
 
     def state(self, run: int, tick: int, data: bytes) -> None:
-        """Writes the physics of a run at its start, and then at the end of each tick; the tick is over then.
+        """Writes the physics state of a run at its start, and then at the end of each tick; it must be the last item of the tick.
 
         Raises:
-            RecordingError: If the file cannot be written any more.
+            RecordingError: If the file can no longer be written.
         """
         self.states += 1
         writer = self._writer
@@ -110,10 +110,10 @@ class Recording:
             self.check()
 
     def check(self) -> None:
-        """Waits where too much has come to be kept in memory.
+        """Waits for the disk if too many items are in memory.
 
         Raises:
-            RecordingError: If the file cannot be written any more.
+            RecordingError: If the file can no longer be written.
         """
         writer = self._writer
         if len(writer.events) > MOST_WAITING or len(writer.states) > MOST_WAITING:
@@ -122,36 +122,36 @@ class Recording:
             raise writer.failure
 
     def flush(self) -> None:
-        """Writes what has come, now; nothing where the file cannot be written any more."""
+        """Writes all items received so far; does nothing if the file can no longer be written."""
         self._writer.flush()
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
-        """Drops what came after a tick of the only run, and all but the first few events, answers and commands: it goes another way.
+        """Removes everything after a tick of the only run, and all but the first events, answers and commands: the run goes back.
 
         Raises:
-            RecordingError: If the file cannot be written any more.
+            RecordingError: If the file can no longer be written.
         """
         self.states, self.events, self.answers, self.commands = ticks + 1, events, answers, commands
         self._writer.cut(ticks, events, answers, commands)
         self.check()
 
     def copy_to(self, path: Path | str) -> None:
-        """Writes all that was recorded so far to a new file: a closed recording of a run that was left at this point.
+        """Writes everything recorded so far to a new file: a closed recording of a run that was left at this point.
 
-        The run and this recording go on; nothing is shared with the copy. Where the run was not over yet, the copy says
+        The run and this recording continue; nothing is shared with the copy. If the run was not over yet, the copy states
         that it ended by «left».
 
         Args:
             path: The new file; it must not exist.
 
         Raises:
-            RecordingError: If the file exists already or cannot be written (nothing is left of it then), or if this recording
+            RecordingError: If the file exists already or cannot be written (it is then removed), or if this recording
                 could not be written before.
         """
         self._writer.copy_to(Path(path))
 
     def close(self) -> None:
-        """Writes what is left, and closes the file.
+        """Writes the remaining items, and closes the file.
 
         Raises:
             RecordingError: If the file cannot be written.
@@ -168,7 +168,7 @@ class Recording:
         if error is None:
             self.close()
         else:
-            with suppress(RecordingError):  # what went wrong first is what is told
+            with suppress(RecordingError):  # the first error is the one to report
                 self.close()
 
 

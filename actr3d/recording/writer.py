@@ -1,4 +1,4 @@
-"""The thread that writes a recording while the run goes on."""
+"""The thread that writes a recording while the run continues."""
 
 from __future__ import annotations
 
@@ -22,40 +22,40 @@ from actr3d.trace import TraceEvent
 from actr3d.values import plain_to_json
 
 INTERVAL = 0.25
-"""How often what has come is written [s on the wall], besides when the run wants it written; a run that is killed loses no more
-than what came since."""
+"""The interval at which new items are written, besides on request [s of real time]; a killed run loses at most the items of one
+interval."""
 BLOB = 1_000_000
-"""About how many bytes of states are written as one row."""
+"""The approximate size of a row of states [bytes]."""
 MOST_EVENTS = 10_000
-"""How many events are written as one row, at most."""
+"""The maximum number of events in a row."""
 
 MARKS = 4 * 8
-"""How many bytes of marks a state has."""
+"""The size of the marks of a state [bytes]."""
 
 
 class State(NamedTuple):
-    """The physics of a run at its start, or at the end of a tick."""
+    """The physics state of a run at its start, or at the end of a tick."""
 
     run: int
-    """Which simulation of a program, as its trace counts them; 1 of one that is recorded alone."""
+    """The number of the simulation in the trace of its program; 1 if the simulation is recorded alone."""
     tick: int
     data: bytes
-    """MuJoCo's `mjSTATE_INTEGRATION`, 8 bytes a number."""
+    """MuJoCo's `mjSTATE_INTEGRATION`, 8 bytes per number."""
     events: int
-    """How many events there were until then."""
+    """The number of events until then."""
 
 
 class Command(NamedTuple):
-    """What a user did, as JSON."""
+    """A user's command, as JSON."""
 
     run: int
     tick: int
-    """After which tick."""
+    """The tick after which it was given."""
     text: str
 
 
 class Answer(NamedTuple):
-    """What a body answered."""
+    """A body's answer."""
 
     run: int
     tick: int
@@ -65,30 +65,30 @@ class Answer(NamedTuple):
 
 
 class Writer:
-    """Writes to a new file what has been put into its queues, a few times a second, until it is closed; by a thread of its own.
+    """Writes the items put into its queues to a new file, several times per second until closed; runs its own thread.
 
     Args:
-        path: Where the file is to be.
+        path: The new file.
         facts: The first rows of `facts`.
 
     Raises:
-        RecordingError: If the file exists already, or cannot be made.
+        RecordingError: If the file exists already, or cannot be created.
     """
 
     def __init__(self, path: Path, facts: Sequence[tuple[str, str]]) -> None:
         self.path = path
         self.failure: RecordingError | None = None
-        """Why nothing is written any more."""
-        # One thread puts in, another takes out, neither waits for the other.
+        """Why writing stopped; None while it works."""
+        # One thread appends, another removes, and neither waits for the other.
         self.events: deque[TraceEvent] = deque()
         self.answers: deque[Answer] = deque()
         self.states: deque[State] = deque()
         self.commands: deque[Command] = deque()
         self.facts: deque[tuple[str, str]] = deque()
         self._written = {"events": 0, "answers": 0, "states": 0, "ticks": 0, "commands": 0}
-        """How many of each are in the file, with those of the present transaction."""
+        """The number of items of each sort in the file, including those of the current transaction."""
         self._safe = dict(self._written)
-        """How many of each are in the file for good."""
+        """The number of items of each sort that are committed."""
         self._made = False
         self._checksums = Checksums()
         self._key = make_key()
@@ -101,25 +101,25 @@ class Writer:
         self._thread.start()
 
     def flush(self) -> None:
-        """Writes what has come, now."""
+        """Writes all items received so far."""
         self._attempt(self._write)
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
-        """Drops all but the first few of each: from there the run goes another way."""
+        """Removes all but the first items of each sort: the run goes back to that point."""
         self.flush()
         self._attempt(self._cut, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
 
     def copy_to(self, path: Path) -> None:
-        """Writes what has come, and a closed copy of all of it to a new file.
+        """Writes all items received so far, and a closed copy of everything to a new file.
 
         Raises:
-            RecordingError: If that file exists, or either cannot be written.
+            RecordingError: If that file exists, or either file cannot be written.
         """
         self.flush()
         with self._writing:
             if self.failure is not None:
                 raise self.failure
-            part = path.with_name(f".{path.name}.part")  # nobody finds an unfinished copy under its name
+            part = path.with_name(f".{path.name}.part")  # an unfinished copy never has the final name
             try:
                 if path.exists():
                     raise FileExistsError
@@ -133,7 +133,7 @@ class Writer:
                 raise RecordingError(f"cannot write the recording '{path}': {_reason(error)}") from None
 
     def close(self) -> None:
-        """Writes what is left and closes the file: one file then, without companions.
+        """Writes the remaining items and closes the file, which is then a single file without companions.
 
         Raises:
             RecordingError: If the file cannot be written.
@@ -148,11 +148,11 @@ class Writer:
             self.flush()
         self.flush()
         self._attempt(self._finish)
-        with suppress(sqlite3.Error):  # where the disk is full, SQLite leaves its journal beside the file, and reads it next time
+        with suppress(sqlite3.Error):  # if the disk is full, SQLite leaves its journal, and reads it next time
             self._file.close()
 
     def _attempt(self, work: Callable[..., None], *args: Any) -> None:
-        """Does a piece of work with the file; once one has failed, nothing more."""
+        """Calls a function that works with the file; after a failure, only empties the queues."""
         with self._writing:
             if self.failure is not None:
                 for queue in (self.events, self.answers, self.states, self.commands, self.facts):
@@ -164,7 +164,7 @@ class Writer:
                 self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}{self._kept()}")
 
     def _kept(self) -> str:
-        """Returns what is left of a recording that cannot be written any more; removes the file where nothing of the run is in it."""
+        """Returns how much is kept of a recording that can no longer be written; removes the file if it has nothing of the run."""
         if not self._made:
             return ""
         if any(self._safe.values()):
@@ -181,11 +181,11 @@ class Writer:
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
         self.path.open("xb").close()
         self._made = True
-        # The whole path, because SQLite has a meaning of its own for names such as `:memory:`.
+        # The absolute path, because SQLite gives names such as `:memory:` a special meaning.
         self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
-        # Neither the beginning nor the end of a run waits for the disk, only for the system; the thread does meanwhile.
+        # The beginning and the end of a run do not wait for the disk, only for the system; the thread waits in between.
         self._file.execute("PRAGMA synchronous=OFF")
-        # A reader may look while the run goes on, and what is committed outlives a killed program.
+        # Others can read the file during the run, and what is committed survives if the program is killed.
         self._file.execute("PRAGMA journal_mode=WAL")
         self._transact(self._begin, facts)
         self._file.execute("PRAGMA synchronous=NORMAL")
@@ -197,8 +197,8 @@ class Writer:
         self._seal(self._file, self._checksums)
 
     def _write(self) -> None:
-        """Writes what has come, as one transaction."""
-        # States first: the events until then have come already.
+        """Writes all items received so far in one transaction."""
+        # States first: all events up to them are then in the queue already.
         states, facts, commands = _all_of(self.states), _all_of(self.facts), _all_of(self.commands)
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
@@ -229,7 +229,7 @@ class Writer:
         self._seal(self._file, self._checksums)
 
     def _insert(self, table: str, count: int, *values: int | str | bytes) -> None:
-        """Writes the next row of a table, in which there are so many things."""
+        """Writes the next row of a table, with `count` items."""
         first = self._written[table]
         checksum = self._checksums.row(table, first, *values)
         self._file.execute(f"INSERT INTO {table} VALUES (?{', ?' * len(COLUMNS[table])})", (first, *values, checksum))
@@ -276,7 +276,7 @@ class Writer:
         self._seal(self._file, self._checksums)
 
     def _delete(self, table: str, kept: int) -> Any:
-        """Drops the rows beyond the first things of a table; returns the dropped row of which the first part is to be kept, if any."""
+        """Deletes the rows after the first `kept` items; returns a deleted row whose first items must be written again, if any."""
         execute = self._file.execute
         execute(f"DELETE FROM {table} WHERE first >= ?", (kept,))
         last = execute(f"SELECT * FROM {table} ORDER BY first DESC LIMIT 1").fetchone()
@@ -290,7 +290,7 @@ class Writer:
         return last
 
     def _mark_as_left(self, copy: sqlite3.Connection) -> None:
-        """Writes into a copy that the run was left where it ends, unless it was over there."""
+        """Writes to a copy that the run was left where it ends, unless the run was over there."""
         facts = dict(copy.execute("SELECT name, value FROM facts WHERE name IN ('ended', 'failed')"))
         if any(value != "null" for value in facts.values()):
             return
@@ -301,25 +301,25 @@ class Writer:
         self._seal(copy, checksums)
 
     def _finish(self) -> None:
-        # In the old way of keeping a journal a closed file stands alone, and can be read in a folder that is read-only.
+        # With a rollback journal (DELETE mode), a closed file stands alone, and can be read in a read-only folder.
         self._file.execute("PRAGMA synchronous=OFF")
         try:
             self._file.execute("PRAGMA journal_mode=DELETE")
         except sqlite3.OperationalError as error:
-            # Somebody reads it just now: it is whole all the same, and whoever closes it last removes what lies beside it.
+            # Another program is reading the file: it is complete anyway, and the last one to close it removes its companions.
             if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
                 raise
 
 
 def _remove(path: Path) -> None:
-    """Removes a file, and those that SQLite keeps beside it."""
+    """Removes a file and the companion files of SQLite."""
     for suffix in ("", "-journal", "-wal", "-shm"):
         with suppress(OSError, ValueError):
             path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
 
 
 def _reason(error: Exception) -> str:
-    """Says why a file cannot be written."""
+    """Returns why a file cannot be written."""
     if isinstance(error, FileExistsError):
         return "it exists already, and a recording does not replace what is there"
     if isinstance(error, OSError):
@@ -328,7 +328,7 @@ def _reason(error: Exception) -> str:
 
 
 def _all_of(queue: deque[Any]) -> list[Any]:
-    """Takes out all that is in a queue now."""
+    """Removes and returns all current items of a queue."""
     return [queue.popleft() for _ in range(len(queue))]
 
 
@@ -337,7 +337,7 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
 
 
 def _events_text(events: list[TraceEvent]) -> str:
-    """Returns events as one JSON list; what JSON has no word for becomes what `TraceEvent.to_json` makes of it."""
+    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
     return plain_to_json(events, _one_by_one)
 
 

@@ -20,14 +20,14 @@ class Blueprint:
     """A loaded model file that can build simulations.
 
     Args:
-        source: The text.
-        filename: How tracebacks call it.
-        folder: Where it finds its own helper modules; None for none.
-        helpers: Where the texts of these are kept, and come from where they are known.
+        source: The source text.
+        filename: The file name used in tracebacks.
+        folder: The folder of its own helper modules; None for none.
+        helpers: Stores the texts of these modules, and provides those that are known already.
 
     Raises:
-        ModelFileError: If it is no Python 3, or its `build` is not what it should be.
-        Exception: Whatever it raises itself.
+        ModelFileError: If the source is not Python 3, or its `build` is not valid.
+        Exception: Any error that the model itself raises.
     """
 
     def __init__(self, source: str, filename: str, folder: Path | None = None, helpers: HelperTexts | None = None) -> None:
@@ -56,9 +56,9 @@ class Blueprint:
             The simulation, and the values of all parameters by name.
 
         Raises:
-            SettingError: If there is no such parameter, or it does not take such a value.
+            SettingError: If a parameter does not exist, or its value is not valid.
             ModelFileError: If the file builds something else.
-            Exception: Whatever it raises itself.
+            Exception: Any error that the model itself raises.
         """
         given = [] if self._kind is None else [self._parameters(self._kind, settings)]
         if settings and not given:
@@ -66,7 +66,7 @@ class Blueprint:
         simulation = self._build(*given)
         if not isinstance(simulation, Simulation):
             raise ModelFileError(f"{self._place}: build must return a Simulation (returned {simulation!r})")
-        vars(simulation)["_built_by"] = self._module  # its helper modules go with it, and those may be all that the minds are of
+        vars(simulation)["_built_by"] = self._module  # keeps its helper modules alive, which the agents may need
         return simulation, asdict(given[0]) if given else {}
 
     def _parameters(self, kind: type[Any], settings: Mapping[str, Any]) -> Any:
@@ -86,11 +86,11 @@ class Blueprint:
 def build(
     source: str, filename: str, settings: Mapping[str, Any], folder: Path | None = None, helpers: HelperTexts | None = None
 ) -> tuple[Simulation, dict[str, Any]]:
-    """Loads a model's text and builds its simulation, as `Blueprint` does.
+    """Loads a model's source and builds its simulation, as `Blueprint` does.
 
     Raises:
-        ModelFileError: If it is no Python 3, or its `build` is not what it should be.
-        SettingError: If there is no such parameter, or it does not take such a value.
-        Exception: Whatever it raises itself.
+        ModelFileError: If the source is not Python 3, or its `build` is not valid.
+        SettingError: If a parameter does not exist, or its value is not valid.
+        Exception: Any error that the model itself raises.
     """
     return Blueprint(source, filename, folder, helpers).build(settings)

@@ -1,4 +1,4 @@
-"""What is told of an error that a model raises: the modeller's own lines, and none of the library's."""
+"""Reports an error that a model raises: with the modeller's own lines, and none of the library's."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from actr3d.errors import Actr3dError, ModelFileError
 from actr3d.saying import is_library
 
 PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "purelib", "platlib")})
-"""Where Python's own modules and installed packages lie."""
+"""The folders of Python's own modules and of installed packages."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Complaint:
-    """An error as its model's author is told of it."""
+    """An error as it is reported to the model's author."""
 
     message: str
-    """What went wrong, without where."""
+    """The error message, without its place."""
     text: str
-    """All of it, with the modeller's lines that led there; ends with a line break."""
+    """The whole report, with the modeller's lines that led there; ends with a line break."""
     file: str | None
-    """The file of the innermost of these lines that is not Python's own or a package's, if there is such; None where there is none."""
+    """The file of the innermost of these lines that is not Python's own or a package's, or else of the innermost line; None if none."""
     line: int | None
     """Its number in that file, from 1."""
 
 
 def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
-    """Returns what is told of an error, and of what caused it; a file that cannot be loaded names its own line.
+    """Returns the report of an error and its causes; a file that cannot be loaded names its own line.
 
     Args:
         error: The error.
-        hidden: The folder of the program that runs the model, whose lines are left out, too.
+        hidden: The folder of the program that runs the model, whose lines are omitted too.
     """
     report = traceback.TracebackException.from_exception(error)
     _keep_own_lines(report, hidden)
@@ -50,7 +50,7 @@ def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
     if name in PYTHON_2_NAMES and isinstance(error, (NameError, ImportError, AttributeError)):
         text += f"'{name}' is a name of Python 2: this file is written for Python 2; convert it to Python 3\n"
     file, line = _place(error, report)
-    # A text's own name for tracebacks is a kind of text of its own.
+    # The file name of a text in tracebacks may be a subclass of `str`.
     file = None if file is None else str(file)
     message = str(error) if isinstance(error, Actr3dError) else "".join(report.format_exception_only()).strip()
     return Complaint(message=message, text=text, file=file, line=line)
@@ -78,7 +78,7 @@ def _place(error: BaseException, report: traceback.TracebackException) -> tuple[
 
 
 def _keep_own_lines(report: traceback.TracebackException | None, hidden: str | None) -> None:
-    """Leaves the library's own lines, and the loader's, out of a report and out of those of its causes."""
+    """Removes the lines of the library and the loader from a report and from the reports of its causes."""
     if report is not None:
         report.stack = traceback.StackSummary.from_list([frame for frame in report.stack if not _is_ours(frame.filename, hidden)])
         _keep_own_lines(report.__cause__, hidden)

@@ -1,4 +1,4 @@
-"""The function `build` of a model file, as its text declares it; nothing is run."""
+"""Checks the function `build` of a model file from its source text, without running it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ RIGHT = "`def build(parameters: Parameters) -> Simulation`, where Parameters is 
 
 
 def has_build(source: str) -> bool:
-    """Returns whether a model's text has a function `build` that says it returns a `Simulation`."""
+    """Returns whether a model's source has a function `build` that is declared to return a `Simulation`."""
     return any(isinstance(node, ast.FunctionDef) and _returns_simulation(node) for node in _builds(syntax_tree(source)))
 
 
 def check_build(source: str, filename: str) -> None:
-    """Checks what a model's text calls `build`.
+    """Checks what a model's source defines as `build`.
 
     Raises:
         ModelFileError: If it is meant to build a simulation, and cannot; names the line, what was found, and what would be right.
@@ -27,9 +27,9 @@ def check_build(source: str, filename: str) -> None:
 
 
 def problem_of_build(source: str) -> tuple[int, str] | None:
-    """Returns the line of what a model's text calls `build`, and what is wrong with it; None where nothing is.
+    """Returns the line of what a model's source defines as `build`, and the problem with it; None if there is no problem.
 
-    A program may have a function of that name for itself: one that it uses is not meant.
+    A program may use a function of that name for its own purposes: one that it calls itself is not checked.
     """
     tree = syntax_tree(source)
     builds = _builds(tree)
@@ -44,7 +44,7 @@ def problem_of_build(source: str) -> tuple[int, str] | None:
 
 
 def _builds(tree: ast.Module) -> list[ast.stmt]:
-    """Returns the statements of a text that give the name `build` a meaning."""
+    """Returns the statements of a source text that bind the name `build`."""
     return [node for node in tree.body if "build" in _names(node)]
 
 
@@ -58,7 +58,7 @@ def _names(node: ast.stmt) -> list[str]:
 
 
 def _wrong(node: ast.stmt, tree: ast.Module) -> str | None:
-    """Returns what is wrong with a statement that gives `build` its meaning; None where nothing is."""
+    """Returns the problem with a statement that binds `build`; None if there is none."""
     if isinstance(node, ast.AsyncFunctionDef):
         return "build is an async function"
     if not isinstance(node, ast.FunctionDef):

@@ -1,4 +1,4 @@
-"""The options of a model file: `--name value` for each parameter of what it builds, and their help."""
+"""The command-line options of a model file: `--name value` for each parameter of its `build`, and their help."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _WIDTH = 110
 
 
 def read_options(words: Sequence[str], fields: Sequence[Field], others: Iterable[str] = ()) -> dict[str, Any]:
-    """Returns the values that options give, by the names of fields.
+    """Returns the values given by options, by the names of fields.
 
     Args:
-        words: `--name value` or `--name=value` for each; of a field that is True or False, `--name` and `--no-name` too.
-        fields: What there is to be set.
-        others: Options that are not the model's, and may be meant too.
+        words: `--name value` or `--name=value` for each; for a field that is True or False also `--name` and `--no-name`.
+        fields: The fields that can be set.
+        others: Options that are not the model's, used for hints.
 
     Raises:
-        SettingError: If there is no such option, or its value is missing.
+        SettingError: If an option does not exist, or its value is missing.
     """
     known = {field.option: field for field in fields}
     settings: dict[str, Any] = {}
@@ -47,10 +47,10 @@ def read_options(words: Sequence[str], fields: Sequence[Field], others: Iterable
 
 
 def read_settings(texts: Sequence[str], fields: Sequence[Field]) -> dict[str, Any]:
-    """Returns parameters from texts `name=value`; a name that no field has gets a value, too, for who builds to refuse it.
+    """Returns parameters from texts `name=value`; an unknown name gets a value too, so that the builder can reject it.
 
     Raises:
-        SettingError: If a text is not of this form.
+        SettingError: If a text does not have this form.
     """
     known = {field.name: field for field in fields}
     settings: dict[str, Any] = {}
@@ -63,7 +63,7 @@ def read_settings(texts: Sequence[str], fields: Sequence[Field]) -> dict[str, An
 
 
 def options_help(fields: Sequence[Field]) -> str:
-    """Returns lines that tell of each option what it takes, what it is, and its default."""
+    """Returns the help lines of all options: what each accepts, its meaning, and its default."""
     lines: list[str] = []
     for field in fields:
         default = "must be given" if field.default is MISSING else f"default {field.default}"

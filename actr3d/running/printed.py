@@ -1,4 +1,4 @@
-"""What a model file prints while its run is recorded: its lines are events, too."""
+"""Records what a model file prints during its run: its lines become events."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 class ProgramOutput(ToldOutput):
-    """Tells the trace of a program of its lines.
+    """Emits the lines of a program to its trace.
 
     Args:
-        limits: What the program is held to; with a trace.
+        limits: The limits of the program; with a trace.
     """
 
     def __init__(self, limits: RunLimits) -> None:
@@ -30,7 +30,7 @@ class ProgramOutput(ToldOutput):
 
 
 class BuiltOutput(ToldOutput):
-    """Tells a simulation of the lines that the file prints which builds it; of those of its minds the simulation knows by itself."""
+    """Sends the lines that a file prints while it builds a simulation to that simulation, which itself captures those of its agents."""
 
     def __init__(self) -> None:
         super().__init__(self._hear)
@@ -38,14 +38,14 @@ class BuiltOutput(ToldOutput):
         self._voice: StdoutCapture | None = None
 
     def lead_to(self, simulation: Simulation) -> None:
-        """Tells this simulation of what came until now."""
+        """Sends all lines so far, and all later ones, to this simulation."""
         self.finish()
         for text in self._early:
             simulation.event_log.preface(text)
         self._voice = simulation.event_log.stdout
 
     def take(self, write: Callable[[Any], int], data: Any, encoded: bytes) -> int:
-        """Writes something, and tells of its lines; also of what minds print to an output that their file has kept."""
+        """Writes data, and passes on its lines, including those that agents print to an output stored by their file."""
         if self._voice is None:
             return super().take(write, data, encoded)
         return self._voice.take(write, data, encoded) if self._voice.speaking else write(data)

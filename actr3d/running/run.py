@@ -1,4 +1,4 @@
-"""Runs a model file, be it a program or one that builds a simulation, and records it."""
+"""Runs a model file, either a program or one that builds a simulation, and optionally records it."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ if TYPE_CHECKING:
     from actr3d.simulation.real_time import Ending
 
 Settings = Callable[[Sequence[Field]], Mapping[str, Any]]
-"""Gives values to parameters, by name, of those that there are."""
+"""Returns values of parameters, by name, for the given fields."""
 
 
 def run_model(
     path: Path | str, limits: RunLimits, *, settings: Settings | Mapping[str, Any] | None = None, record: Path | str | None = None
 ) -> Any:
-    """Runs a model file: what it builds, where it has `build(parameters) -> Simulation`, or else itself, as a program.
+    """Runs a model file: the simulation it builds, if it has `build(parameters) -> Simulation`, otherwise the file as a program.
 
     Args:
         path: The file.
-        limits: Its seed, end and trace. What is built is cut after the last whole tick that fits.
-        settings: Values of the parameters of what it builds, or what gives them.
-        record: Where the run is to be recorded, if it is; a new file.
+        limits: Its seed, end and trace. A simulation ends after the last whole tick that fits.
+        settings: Values of the parameters of its `build`, or a function that returns them.
+        record: The new file for a recording of the run; None for no recording.
 
     Returns:
-        The result of the run, where what it builds is measured; None otherwise.
+        The result of the run, if the simulation measures one; None otherwise.
 
     Raises:
-        ModelFileError: If there is no such file, it is no Python 3, or its `build` is not what it should be.
-        SettingError: If parameters are given to a program, or are not what the model takes.
-        ParameterError: If a trace of less than everything is to be recorded.
-        RecordingError: If the recording cannot be made or written.
-        Exception: Whatever the model raises.
+        ModelFileError: If the file does not exist, is not Python 3, or its `build` is not valid.
+        SettingError: If parameters are given to a program, or are not valid for the model.
+        ParameterError: If a recording is requested with a trace of less than everything.
+        RecordingError: If the recording cannot be created or written.
+        Exception: Any error that the model raises.
     """
     path = Path(path)
     source = read_source(path)
@@ -67,7 +67,7 @@ def run_model(
 
 
 def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | Mapping[str, Any], record: Path | str | None) -> Any:
-    from actr3d.running.building import Blueprint  # a program does without the world that this loads
+    from actr3d.running.building import Blueprint  # a program does not need the world, which this loads
 
     with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
         helpers = HelperTexts()
@@ -80,20 +80,20 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | 
         facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
         facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
         with simulation.record(record, **facts) as recording:
-            helpers.heard = partial(recording.fact, "helpers")  # a mind may import one later
+            helpers.heard = partial(recording.fact, "helpers")  # an agent may import one later
             with _telling_failure(recording):
                 ended_by = _run_to_end(simulation)
                 result = simulation.conclude()
             recording.fact("ended", {"by": ended_by})
             return result
-    return None  # every run ended with the program's limits
+    return None  # every run ended at the program's limits
 
 
 def _run_to_end(simulation: Simulation) -> Ending:
-    """Runs a simulation until it ends by itself or is cut; returns what ended it."""
+    """Runs a simulation until it ends by itself or at its limits; returns what ended it."""
     try:
         return simulation.run().ended_by
-    except EndOfRun:  # there is no time for a single tick
+    except EndOfRun:  # there is no time for even one tick
         return "limits"
 
 
@@ -122,7 +122,7 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
 
 @contextmanager
 def _telling_failure(recording: Recording) -> Generator[None]:
-    """Writes into a recording what its run fails with, where it does."""
+    """Writes the error of a failed run to its recording."""
     try:
         yield
     except (EndOfRun, KeyboardInterrupt):

@@ -1,4 +1,4 @@
-// The aperture's free width, in cm and in shoulder widths (A/S). A drag, or keys held down, are one change: the one where they end.
+// The aperture's free width, in cm and in shoulder widths (A/S). A drag, or a key held down, sends one change: the final value.
 
 import { computed, html, signal } from "../vendor/preact.js";
 import { settable } from "../parts/settable.js";
@@ -14,7 +14,7 @@ const width = settable(
   (cm) => ({ type: "aperture", width: cm / 100, name: name.peek() }),
   orderChange,
 );
-/** Where the slider is held [cm]; null where it is not. */
+/** The value of the slider while it is held [cm]; null otherwise. */
 const held = signal(null);
 let holding = false;
 

@@ -1,4 +1,4 @@
-// The bar above: which model, its aperture, and the controls of the run.
+// The top bar: the model, its aperture, and the controls of the run.
 
 import { html } from "../vendor/preact.js";
 import { bindKey } from "../keys.js";

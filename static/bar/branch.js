@@ -1,4 +1,4 @@
-// Changing something in the past of a run: how it had gone on is kept as a branch, or the user is asked whether it may be lost.
+// Changes in the past of a run: its previous future is kept as a branch, or the user is asked whether it may be lost.
 
 import { html, signal } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
@@ -9,11 +9,11 @@ import { furthest, inThePast, present } from "../timeline/seek.js";
 
 const seconds = (time) => `${time.toFixed(2)} s`;
 
-/** Sends a command that changes the run; where the run stands in its past and is not recorded, asks first. Returns whether it was
- * sent; throws an Error that says why it cannot be done. */
+/** Sends a command that changes the run; if the run is in its past and is not recorded, asks first. Returns whether it was
+ * sent; throws an Error with the reason if it cannot be done. */
 export async function change(what) {
   const { recording, recorded, branched } = session.peek() ?? {};
-  const isKept = recording || (recorded && !branched); // the run itself, or the one that is lived through again
+  const isKept = recording || (recorded && !branched); // the run itself, or the recording that is replayed
   if (!inThePast.peek() || isKept) return say(what).then(() => true);
   const [here, end] = [seconds(present.peek()), seconds(furthest.peek())];
   const text = `The run stands at ${here} and has come to ${end}. It is not recorded: if it is changed here, what came after ${here} is lost.`;
@@ -22,14 +22,14 @@ export async function change(what) {
   return true;
 }
 
-/** The same; an error is shown among the messages. */
+/** Does the same, but shows an error among the messages. */
 export function orderChange(what) {
   return change(what).catch((error) => isLeft(error) || complain(error.message));
 }
 
-const dismissed = signal(null); // the branch of which the user has read
+const dismissed = signal(null); // the branch whose notice the user has dismissed
 
-/** Tells, in the line below, what was kept when the run was changed in its past. */
+/** Shows in the status line what was kept when the run was changed in its past. */
 export function Branch() {
   const { branched, model } = session.value ?? {};
   if (!branched || branched.recording === dismissed.value) return null;

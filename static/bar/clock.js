@@ -1,4 +1,4 @@
-// What time it is in the run, and how fast it goes.
+// Shows the time and the speed of the run.
 
 import { html } from "../vendor/preact.js";
 import { state } from "../store.js";

@@ -1,4 +1,4 @@
-// The help, shown by `?`: the way to the manual, and the keys.
+// The help, opened by `?`: a link to the manual, and the keys.
 
 import { html } from "../vendor/preact.js";
 import { bindKey, KEY_GROUPS, keysOf, keyText } from "../keys.js";

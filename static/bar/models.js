@@ -1,4 +1,4 @@
-// Which model or recording is shown: choosing one shows the session with it, or begins one; the address of the page says which.
+// Chooses the model or recording to show: opens its session or starts one, and puts the choice into the page's address.
 
 import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { call, say, showModel, showRecording } from "../server.js";
@@ -7,7 +7,7 @@ import { complain, connected, session } from "../store.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
-/** Where the folder is. */
+/** The path of the folder. */
 export const folder = signal("");
 /** The model that is shown. */
 export const model = signal(null);
@@ -16,7 +16,7 @@ const FIRST = ["aperture_passage.py", "doorway.py"];
 
 let asked = 0;
 
-/** Reads anew which models there are; what is asked last holds. */
+/** Reads the list of models again; the latest request counts. */
 export async function listModels() {
   asked += 1;
   const mine = asked;
@@ -36,7 +36,7 @@ export async function choose(path) {
   }
 }
 
-/** Shows a recording, whose address is its own: «back» of the browser leads to what was shown before. */
+/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. */
 export async function chooseRecording(id) {
   const left = session.peek();
   if ((await openRecording(id)) === null) return;
@@ -44,21 +44,21 @@ export async function chooseRecording(id) {
   goToAddress("recording", id);
 }
 
-/** Shows a recording, after asking where its code comes from elsewhere; returns null where the user does not agree. */
+/** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */
 function openRecording(id) {
   return withTrust(id, "Opening it", (trust) => showRecording(id, trust));
 }
 
-/** What was shown before a recording, so that one can return to it; null for nothing. */
+/** What was shown before a recording, for returning to it; null for nothing. */
 export const before = signal(null);
 
-/** Shows a session that is open; that of a recording has the address of the recording. */
+/** Shows an open session; a session of a recording has the recording's address. */
 export function showSession({ model: path, recorded }) {
   if (recorded === null) return choose(path);
   return chooseRecording(recorded).catch((error) => complain(error.message));
 }
 
-/** Runs a model from its start, as its file is now; throws an Error that says why not. */
+/** Runs a model from its start with the current text of its file; throws an Error with the reason if it fails. */
 export async function runModel(path) {
   if (session.value?.model === path && session.value.recorded === null && connected.value) {
     await say({ type: "restart", run: true });
@@ -68,7 +68,7 @@ export async function runModel(path) {
   await showModel(path, { run: true });
 }
 
-/** Remembers which model is shown, also for when the page is loaded again. */
+/** Remembers which model is shown, also for the next time the page is loaded. */
 export function note(path) {
   model.value = path;
   sessionStorage.setItem("model", path);
@@ -79,14 +79,14 @@ function addressed(kind) {
   return new URLSearchParams(location.search).get(kind);
 }
 
-/** Puts into the address of the page what is shown. Between a recording and a model one can go with «back» and «forward». */
+/** Puts what is shown into the page's address, so that «back» and «forward» switch between a recording and a model. */
 function goToAddress(kind, name) {
   if (addressed(kind) === name) return;
   const other = kind === "recording" || addressed("recording") !== null;
   history[other ? "pushState" : "replaceState"](null, "", `?${kind}=${encodeURIComponent(name)}`);
 }
 
-/** Shows what the address says, after «back» or «forward». */
+/** Shows what the address names, after «back» or «forward». */
 function follow() {
   const [recording, path] = [addressed("recording"), addressed("model")];
   if (recording !== null) chooseRecording(recording).catch((error) => complain(error.message));
@@ -95,7 +95,7 @@ function follow() {
 
 addEventListener("popstate", follow);
 
-/** A recording that is begun as a new run is no recording any more: its address is that of the model then. */
+/** A recording that was started as a new run is no longer a recording: the address becomes the model's. */
 let shown = { id: null, recorded: null };
 effect(() => {
   const { id = null, recorded = null, model: path } = session.value ?? {};
@@ -116,7 +116,7 @@ async function begin() {
     complain("There is no model in the folder yet: make one in the tab Editor, or put a Python file there.", "info");
     return;
   }
-  if (model.value !== null) return; // the user has chosen one already
+  if (model.value !== null) return; // the user has already chosen one
   const recording = addressed("recording");
   let problem = null;
   if (recording !== null) {
@@ -128,7 +128,7 @@ async function begin() {
   }
   const wanted = [addressed("model"), sessionStorage.getItem("model"), ...FIRST];
   await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
-  if (problem !== null) complain(problem); // now, for what was said before is forgotten with what was shown before
+  if (problem !== null) complain(problem); // only now, because messages are cleared with the session shown before
 }
 
 export function ModelChoice() {

@@ -1,15 +1,15 @@
-// How a run that goes at real time can go faster: said in the line below until the user has changed a speed once.
+// A hint in the status line that a run in real time can go faster; shown until the user has changed a speed once.
 
 import { html } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
 import { session, state } from "../store.js";
 
-/** Whether the user has changed the speed of a run on any visit. */
+/** Whether the user has ever changed the speed of a run. */
 export const speedIsKnown = remembered("speed known", false);
 
 let faster = () => {};
 
-/** Takes what chooses the next higher speed. */
+/** Stores the function that chooses the next higher speed. */
 export function bindFaster(work) {
   faster = work;
 }

@@ -1,4 +1,4 @@
-// Says that what is shown is a recording: which, of when, and how to return to what was shown before.
+// Shows that this is a recording: which one, from when, and a link back to what was shown before.
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
@@ -9,7 +9,7 @@ import { before, choose, models, showSession } from "./models.js";
 
 const fileOf = (path) => path.split("/").at(-1);
 
-/** The sessions that are open beside the one that is shown, the newest of each model or recording. */
+/** The other open sessions, the newest of each model or recording. */
 function useOthers(id) {
   const others = useSignal([]);
   useEffect(() => {
@@ -20,14 +20,14 @@ function useOthers(id) {
         const newest = new Map(sessions.map((one) => [one.recorded ?? `model ${one.model}`, one]));
         others.value = [...newest.values()].filter((one) => one.id !== id);
       },
-      () => null, // without a list there is the way back alone
+      () => null, // without a list, only the way back is shown
     );
     return () => (mine = false);
   }, [id]);
   return others.value;
 }
 
-/** Leads to what is open beside a recording: one link, or a list where there is more than one. */
+/** Links to the other open sessions: one link, or a list if there are several. */
 function Others({ id, model }) {
   const others = useOthers(id);
   if (others.length > 1) {

@@ -1,4 +1,4 @@
-// The seed of the run, as a field: Enter runs the model from its start with the seed that is written there.
+// The seed of the run, as a field: Enter runs the model from its start with the entered seed.
 
 import { html, useSignal } from "../vendor/preact.js";
 import { order } from "../server.js";
@@ -6,7 +6,7 @@ import { session } from "../store.js";
 
 const MOST = 2n ** 63n - 1n;
 
-/** Says why a text is no seed; null where it is one. */
+/** Returns why a text is not a valid seed; null if it is one. */
 export function seedProblem(text) {
   const written = text.trim();
   if (!/^\d+$/.test(written)) return `a seed is a whole number from 0 on (got «${written.slice(0, 40)}»)`;
@@ -14,14 +14,14 @@ export function seedProblem(text) {
 }
 
 export function SeedField() {
-  const draft = useSignal(null); // what is being written: {of, text}
+  const draft = useSignal(null); // the text being typed: {of, text}
   const { id, run, seed } = session.value ?? {};
   const known = seed === null || seed === undefined ? "" : String(seed);
   const of = `${id} ${run}`;
-  const mine = draft.value?.of === of ? draft.value : null; // what was written for another run is nothing of this one
+  const mine = draft.value?.of === of ? draft.value : null; // ignores a text typed for another run
   const text = mine?.text ?? known;
   const problem = mine?.told ? seedProblem(text) : null;
-  // JavaScript has no whole number as large as the largest seed: it goes as text.
+  // The largest seed is too large for a JavaScript number: it is sent as text.
   function press(event) {
     if (event.key === "Escape") draft.value = null;
     if (event.key !== "Enter") return;

@@ -1,4 +1,4 @@
-// The line below: how the run stands, what it began with, who watches.
+// The status line: the state of the run, its initial settings, and the number of viewers.
 
 import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
@@ -10,7 +10,7 @@ import { connected, me, session, state } from "../store.js";
 
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
 
-/** Says how many watch, which of them this one is, and who has said something last. */
+/** Returns the number of viewers, which of them this one is, and who sent the last command. */
 function browsers(watching, control) {
   const who = control === me.value ? "you control" : control ? `${control} controls` : "nobody has control";
   return `${watching.length} browsers: you are ${me.value}, ${who}`;

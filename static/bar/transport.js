@@ -1,4 +1,4 @@
-// The controls of the run: on, hold, a step, a cycle, back, again, stop; and how fast.
+// The controls of the run: run, pause, tick, cycle, back, restart, stop; and its speed.
 
 import { html } from "../vendor/preact.js";
 import { bindKey, keyText } from "../keys.js";
@@ -12,15 +12,15 @@ import { bindFaster, speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
 import { runUntil } from "./until.js";
 
-/** Speeds as [text, times real time]; null for as fast as possible. */
+/** Speeds as [text, multiple of real time]; null for as fast as possible. */
 const SPEEDS = [["1/20 x", 0.05], ["1/10 x", 0.1], ["1/4 x", 0.25], ["1/2 x", 0.5], ["1 x", 1], ["2 x", 2], ["5 x", 5], ["10 x", 10], ["20 x", 20], ["fastest", null]];
 
-/** Whether the run cannot go on from here. */
+/** Whether the run cannot continue from here. */
 function isDone() {
   return isOver.value || !session.value?.alive;
 }
 
-/** Runs or pauses; a run that is over begins again. */
+/** Runs or pauses; restarts a run that is over. */
 function toggle() {
   if (isIdle("run")) return;
   if (running.value) order({ type: "pause" });
@@ -29,7 +29,7 @@ function toggle() {
   else orderThere({ type: "run" });
 }
 
-/** Runs a recording from its start: as it was, where a new run would be one of the model as it is now. */
+/** Runs a recording from its start, as it was recorded; a new run would use the model's current text. */
 async function runAgain() {
   await order({ type: "seek", time: 0 });
   order({ type: "run" });
@@ -44,7 +44,7 @@ const BUTTONS = [
   { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" } },
 ];
 
-/** Whether a button does nothing now; its key does nothing then, either. */
+/** Whether a button is disabled; its key is then disabled too. */
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
   if (!session.value) return true;

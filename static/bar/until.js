@@ -1,4 +1,4 @@
-// «Run until»: a time, a production, a buffer that matches a pattern, a contact; and which breakpoints there are.
+// «Run until»: a time, a production, a buffer that matches a pattern, a contact; and the list of breakpoints.
 
 import { html, signal, useId } from "../vendor/preact.js";
 import { dialog } from "../parts/dialog.js";
@@ -15,7 +15,7 @@ const production = signal("");
 const buffer = signal("");
 const pattern = signal("");
 const body = signal("");
-/** Why it cannot be run until then; null where nothing is wrong. */
+/** Why it cannot run until then; null if it can. */
 const problem = signal(null);
 
 function partsThat(holds) {
@@ -27,7 +27,7 @@ export function productionNames() {
   return [...new Set(partsThat((part) => part.is === "system").flatMap(([, part]) => part.productions))].sort();
 }
 
-/** Says why what is written is no time, or misses a name; an empty text where the run can be asked. */
+/** Returns the problem with an entry, such as an invalid time or a missing name; an empty text if it can be sent. */
 function missing() {
   const text = time.value.trim();
   if (kind.value === "time" && (text === "" || !(Number(text) >= 0) || Number(text) >= 1e9)) return "a number of seconds is wanted, such as 1.5";
@@ -48,13 +48,13 @@ function wanted() {
   }
 }
 
-/** Whether there is no production of this name any more, as after an edit; what a program that has not begun has is not known. */
+/** Whether there is no production of this name any more, for example after an edit; unknown before a program has started. */
 function isLost(name) {
   const names = productionNames();
   return names.length > 0 && !names.includes(name);
 }
 
-/** Returns the names of the buffers as the panel Buffers shows them; with the name of the agent before where there are several agents. */
+/** Returns the names of the buffers as in the panel Buffers; preceded by the agent's name if there are several agents. */
 function bufferNames() {
   const agents = agentsOf(state.value?.parts);
   const paths = partsThat((part) => part.is === "buffer").map(([path]) => path);
@@ -77,13 +77,13 @@ function Line({ id, text, children }) {
   </div>`;
 }
 
-/** Whether what is wrong is said of this field: of a buffer's line, its name or its pattern. */
+/** Whether the problem concerns this field: the name or the pattern of a buffer. */
 function isWrong(of) {
   if (!problem.value || { time, production, contact: body }[kind.value] === of) return Boolean(problem.value);
   return kind.value === "buffer" && of === (/\bbuffers? |name of a buffer/.test(problem.value) ? buffer : pattern);
 }
 
-/** A name that can be written, too: of a program that has not begun none is known yet. */
+/** A name that can also be typed: before a program has started, no names are known. */
 function Name({ of, among, label, otherwise, first }) {
   const id = useId();
   return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck=${false} aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
@@ -110,7 +110,7 @@ function Body() {
   `;
 }
 
-/** Asks until when, and runs until then; asks again where that cannot be. */
+/** Asks until when to run, and runs until then; asks again if that is not possible. */
 export async function runUntil() {
   const actions = [{ text: "Cancel", value: false }, { text: "Run until then", value: true, kind: "primary" }];
   problem.value = null;

@@ -1,4 +1,4 @@
-// Two recordings side by side, over the whole page: what they began with, what came of them, where their traces part, their curves.
+// Compares two recordings side by side on the whole page: their settings, results, first difference between traces, and curves.
 
 import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
@@ -9,10 +9,10 @@ import { COLOURS, Curves } from "./curves.js";
 import { Difference } from "./difference.js";
 import { Changes, SideBySide } from "./sides.js";
 
-/** The ids of the two; null where none are compared. */
+/** The ids of the two recordings; null if none are compared. */
 const pair = signal(null);
 
-/** Shows two recordings beside each other. */
+/** Shows two recordings side by side. */
 export function compareRuns(first, second) {
   pair.value = [first, second];
 }
@@ -77,7 +77,7 @@ function Dialog() {
   </dialog>`;
 }
 
-/** The place of the comparison. */
+/** The container of the comparison. */
 export function Comparison() {
   return pair.value ? html`<${Dialog} />` : null;
 }

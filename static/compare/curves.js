@@ -1,14 +1,14 @@
-// The curves of two runs, one over the other, aligned in time.
+// The curves of two runs, drawn over each other and aligned in time.
 
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Plot } from "../parts/plot.js";
 import { call } from "../server.js";
 import { nameOf, whenText } from "../runs/words.js";
 
-/** The colours of the two, in plots and heads. */
+/** The colours of the two runs, in plots and headings. */
 export const COLOURS = ["series-1", "series-2"];
-const MOST = 20_000; // moments a curve: every tick of a run of up to 200 s
-const AT_FIRST = 3; // so many curves are shown before the user has chosen any
+const MOST = 20_000; // moments per curve: every tick of a run of up to 200 s
+const AT_FIRST = 3; // the number of curves shown before the user has chosen any
 const SIDES = ["first", "second"];
 const DASHES = [null, [6, 3]];
 
@@ -20,7 +20,7 @@ async function read(run, names) {
   return call("GET", `/api/recordings/${run.id}/curves?most=${MOST}&${query(names)}`);
 }
 
-/** Returns which curves to begin with: how fast it goes, how much room it has, and the joint that moves most. */
+/** Returns the default curves: speed, clearance, and the joint that moves most. */
 async function first(runs, known) {
   const joints = known.filter(({ group }) => group === "joint").map(({ name }) => name);
   const told = await call("GET", `/api/recordings/${runs[0].id}/curves?most=100&${query(joints.slice(0, 100))}`);
@@ -30,9 +30,9 @@ async function first(runs, known) {
   return [moving, of("speed"), of("clearance")].filter(Boolean).slice(0, AT_FIRST);
 }
 
-/** Knows which curves there are, which are chosen, and both runs' values of these. */
+/** Stores which curves exist, which are chosen, and their values in both runs. */
 function useCurves(runs) {
-  const known = useSignal(null); // [{name, unit, group}] of either
+  const known = useSignal(null); // [{name, unit, group}] of both runs
   const chosen = useSignal([]);
   const told = useSignal({}); // by run and name: {times, values}
   const error = useSignal(null);
@@ -102,7 +102,7 @@ function Overlaid({ curve, runs, told, cursor, span }) {
   return html`<${Plot} title=${curve.name} series=${series} span=${span} cursor=${cursor} height=${130} source="of ${runs.map(nameOf).join(" and ")}" />`;
 }
 
-/** @param runs Both, as the server tells of them. */
+/** @param runs Both runs, as the server describes them. */
 export function Curves({ runs }) {
   const { known, chosen, told, error } = useCurves(runs);
   const cursor = useSignal(null);

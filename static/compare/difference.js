@@ -1,4 +1,4 @@
-// Where the traces of two runs part: the first event that is not the same, with what comes before and after it.
+// The first event at which the traces of two runs differ, with the events before and after it.
 
 import { html } from "../vendor/preact.js";
 import { chunkText, valueText } from "../parts/chunk.js";
@@ -54,8 +54,8 @@ function Rows({ difference }) {
 }
 
 /**
- * @param answer What `POST /api/compare` tells.
- * @param kinds A signal with the kinds of events that are compared; none for all.
+ * @param answer The response of `POST /api/compare`.
+ * @param kinds A signal with the kinds of events to compare; empty for all.
  */
 export function Difference({ answer, waiting, kinds }) {
   const { difference } = answer;

@@ -1,4 +1,4 @@
-// What two runs began with and what came of them, in two columns; and how the texts of their models differ.
+// The settings and results of two runs in two columns, and the difference of their models' texts.
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
@@ -11,7 +11,7 @@ function namesOf(runs, part) {
   return [...new Set(runs.flatMap((run) => Object.keys(run[part] ?? {})))];
 }
 
-/** Returns the rows of a part of both: [name, one, other, whether they differ]. */
+/** Returns rows of values of both runs: [name, one, other, whether they differ]. */
 function rowsOf(runs, part, word, label = (name) => name) {
   return namesOf(runs, part).map((name) => {
     const values = runs.map((run) => (name in (run[part] ?? {}) ? run[part][name] : undefined));
@@ -34,7 +34,7 @@ function Part({ title, rows, none }) {
   </tbody>`;
 }
 
-/** Says with what a run began, and to what a user changed it while it went on. */
+/** Returns the initial value of a setting, and the values to which a user changed it during the run. */
 function courseText(value, changes) {
   const begun = value === undefined ? "–" : valueText(value);
   if (!changes?.length) return begun;
@@ -43,7 +43,7 @@ function courseText(value, changes) {
   return `${begun} → ${valueText(last)} at ${time.toFixed(2)} s${more}`;
 }
 
-/** Returns the rows of the parameters, also of what was changed without being one. */
+/** Returns the rows of the parameters, and of other values that were changed. */
 function parameterRows(runs, changed) {
   const names = [...new Set([...namesOf(runs, "parameters"), ...changed.flatMap(Object.keys)])];
   return names.map((name) => {
@@ -52,8 +52,8 @@ function parameterRows(runs, changed) {
   });
 }
 
-/** @param runs Both, as the server tells of them.
- * @param changed What users changed of each while it went on: [time, value], by name. */
+/** @param runs Both runs, as the server describes them.
+ * @param changed The users' changes during each run: [time, value], by name. */
 export function SideBySide({ runs, changed }) {
   const [one, other] = runs;
   const line = (name, of) => [name, of(one), of(other), of(one) !== of(other)];
@@ -79,7 +79,7 @@ export function SideBySide({ runs, changed }) {
 
 const KINDS = { "-": "gone", "+": "come", "@": "place" };
 
-/** @param lines What differs between the texts of the models, as `diff -u` has it. */
+/** @param lines The difference of the models' texts, as from `diff -u`. */
 export function Changes({ lines }) {
   if (lines.length === 0) return null;
   const shown = lines.filter((line) => !line.startsWith("---") && !line.startsWith("+++"));

@@ -1,4 +1,4 @@
-// What is wrong with a text: checked while one types, which runs nothing; loaded on the user's word; and what a run has said of it.
+// Problems in a text: checked during typing without running anything, by loading it on request, and as reported by a run.
 
 import { effect, untracked } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
@@ -8,11 +8,11 @@ import { reveal } from "./code.js";
 import { documents, LARGEST, watching } from "./documents.js";
 import { markAt, marking, withMarks } from "./marks.js";
 
-const AFTER = 350; // how long it waits after a change [ms]
+const AFTER = 350; // the delay after a change [ms]
 const timers = new Map();
 const checked = new WeakMap();
 
-/** Checks a text that has changed, after a while in which nothing is typed. */
+/** Checks a changed text after a pause in typing. */
 watching.changed = (document) => {
   if (checked.get(document) === document.state.doc) return;
   clearTimeout(timers.get(document));
@@ -24,13 +24,13 @@ async function check(document) {
   if (doc.length > LARGEST) return;
   try {
     const { problems } = await call("POST", "/api/check", { path: document.path, text: doc.toString() });
-    if (checked.get(document) !== doc) mark(document, doc, problems); // else it has been loaded meanwhile, which tells more
+    if (checked.get(document) !== doc) mark(document, doc, problems); // otherwise it was loaded meanwhile, which reports more
   } catch (error) {
     if (error.status !== 0) mark(document, doc, [{ level: "error", message: error.message, line: null }]);
   }
 }
 
-/** Loads a text in a process of its own, which carries out its top level and its `build`; a program without one is only compiled. */
+/** Loads a text in a separate process, which runs its top level and its `build`; a program without `build` is only compiled. */
 export async function checkByLoading(document) {
   const { doc } = document.state;
   document.note.value = "being loaded …";
@@ -45,7 +45,7 @@ export async function checkByLoading(document) {
   }
 }
 
-/** Shows what a check said, where the text still is what was checked; where the user has asked for it, with the first error in view. */
+/** Shows the result of a check if the text has not changed since; if the user requested it, scrolls to the first error. */
 function mark(document, doc, problems, { reveals = false } = {}) {
   if (document.state.doc !== doc) return;
   checked.set(document, doc);
@@ -54,13 +54,13 @@ function mark(document, doc, problems, { reveals = false } = {}) {
   if (reveals) revealFirst(document, marks);
 }
 
-// -- what a run says
+// -- notices of a run
 
-/** Up to which notice of which attempt the open texts have their marks. */
+/** The last notice, and its attempt, for which the open texts have been marked. */
 let upTo = { session: null, attempt: null };
 const taken = new WeakMap();
 
-/** Marks what the newest run has said of open texts; forgets what the one before said. */
+/** Marks the notices of the newest run in the open texts; removes those of the previous run. */
 export const ending = effect(() => {
   const { id = null, attempt = null } = session.value ?? {};
   const told = notices.value;
@@ -99,7 +99,7 @@ function revealFirst(document, marks) {
   if (found) reveal(document, found.from);
 }
 
-/** Returns the line of a file that a notice is about, or from which that was called; null where it has nothing to do with it. */
+/** Returns the line of a file that a notice refers to, directly or through a call; null if there is none. */
 function lineIn(path, { file, line, detail }) {
   if (file === path) return line;
   const start = `File "${folder.peek()}/${path}", line `;
@@ -107,7 +107,7 @@ function lineIn(path, { file, line, detail }) {
   return at < 0 ? null : Number.parseInt(detail.slice(at + start.length), 10);
 }
 
-/** Returns the mark of a notice at its line as it is now; null where it is about another text, or that line was changed. */
+/** Returns the mark of a notice at the current position of its line; null if it belongs to another text, or the line was changed. */
 function markOf(document, { level, text, detail, version, ...place }) {
   const line = lineIn(document.path, { ...place, detail });
   const other = document.path === session.peek().model && version !== document.version;

@@ -1,4 +1,4 @@
-// CodeMirror as the page uses it: one view, in which the open texts take turns.
+// The page's use of CodeMirror: one view, which shows one of the open texts at a time.
 
 import {
   autocompletion,
@@ -36,7 +36,7 @@ import { look } from "./look.js";
 import { marking } from "./marks.js";
 import { complete } from "./words.js";
 
-/** What the editor's own keys do; panels/editor.js fills it in. */
+/** The actions of the editor's own keys; panels/editor.js fills it in. */
 export const keys = { run: () => {}, save: () => {} };
 
 let view = null;
@@ -77,12 +77,12 @@ const EXTENSIONS = [
   keymap.of([...closeBracketsKeymap, ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...foldKeymap, ...defaultKeymap, indentWithTab]),
 ];
 
-/** Returns the state of a text that is opened. */
+/** Returns the initial state of an opened text. */
 export function freshState(text) {
   return EditorState.create({ doc: text, extensions: EXTENSIONS });
 }
 
-/** Lets documents reach the view, where they are in it. */
+/** Gives documents access to the view, if it shows them. */
 export const watchText = {
   dispatch(document, spec) {
     if (inView !== document || !view) return false;
@@ -91,8 +91,8 @@ export const watchText = {
   },
 };
 
-/** Scrolls a place of a text into view, and leaves the cursor and the focus where they are; of a text that is out of sight, when it is
- * shown again. */
+/** Scrolls a position of a text into view without moving the cursor or the focus; if the text is hidden, when it is shown
+ * again. */
 export function reveal(document, at) {
   document.revealed = at;
   if (inView === document && view?.dom.isConnected && view.dom.offsetHeight > 0) scrollToRevealed();
@@ -104,7 +104,7 @@ function scrollToRevealed() {
   view.dispatch({ effects: EditorView.scrollIntoView(at, { y: "center" }) });
 }
 
-/** Shows a text in a place of the page. */
+/** Shows a text in an element of the page. */
 export function showText(place, document) {
   view ??= new EditorView({ state: document.state, dispatchTransactions: taken });
   if (inView !== document) {
@@ -120,7 +120,7 @@ export function showText(place, document) {
   if (document.revealed !== null) scrollToRevealed();
 }
 
-/** Keeps where a text was scrolled to, before it goes out of sight. */
+/** Stores the scroll position of a text before it is hidden. */
 export function leaveText() {
   if (inView && view?.dom.isConnected) inView.scroll = view.scrollDOM.scrollTop;
 }
@@ -137,7 +137,7 @@ export function goTo(line) {
   focusText();
 }
 
-/** Moves into the text, but not away from a field in which the user may be writing by now. */
+/** Moves the focus into the text, unless the user may be typing in a field by now. */
 export function focusText() {
   if (!document.activeElement?.matches("input, select, textarea")) view?.focus();
 }

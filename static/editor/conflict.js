@@ -1,4 +1,4 @@
-// A file that has changed on disk while its text was changed here: both are shown, and the user chooses.
+// A file that has changed on disk while its text was edited here: shows both versions, and the user chooses.
 
 import { html, useEffect, useRef } from "../vendor/preact.js";
 import { EditorState, EditorView, lineNumbers, unifiedMergeView } from "../vendor/codemirror.js";
@@ -6,7 +6,7 @@ import { look as colours } from "./look.js";
 
 const FOLD = { margin: 3, minSize: 6 };
 
-/** @param document The text, with `theirs`. @param choose Is told "mine", "theirs" or "edit". */
+/** @param document The text, with `theirs`. @param choose Called with "mine", "theirs" or "edit". */
 export function Conflict({ document, choose }) {
   const place = useRef(null);
   const first = useRef(null);
@@ -17,8 +17,8 @@ export function Conflict({ document, choose }) {
       doc: document.text,
       extensions: [
         lineNumbers(),
-        EditorView.lineWrapping, // what differs may stand far to the right
-        colours, // without those of the language, which cannot be read on every ground
+        EditorView.lineWrapping, // differences may be far to the right
+        colours, // without the colours of the language, which are not readable on every background
         EditorState.readOnly.of(true),
         EditorView.contentAttributes.of({ "aria-label": "Both texts" }),
         unifiedMergeView({ original: theirs.text, mergeControls: false, collapseUnchanged: FOLD }),

@@ -1,4 +1,4 @@
-// The texts that are open: each with its history, what the file had when it was read, and what is known of the file now.
+// The open texts: each with its history, the file's text when it was read, and what is known of the file now.
 
 import { signal } from "../vendor/preact.js";
 import { call } from "../server.js";
@@ -7,52 +7,52 @@ import { freshState, watchText } from "./code.js";
 import * as drafts from "./drafts.js";
 import { marksOf, sameMarks } from "./marks.js";
 
-/** No model file has more [bytes]; the server takes none that is larger. */
+/** The maximum size of a model file [bytes]; the server rejects larger ones. */
 export const LARGEST = 1_000_000;
-const KEPT_AFTER = 300; // how long it waits with a draft after a change [ms]
+const KEPT_AFTER = 300; // the delay after a change before the draft is stored [ms]
 
-/** The texts that are open, by path. */
+/** The open texts, by path. */
 export const documents = signal(new Map());
-/** The one that is shown: its path, and why it cannot be, where it cannot. */
+/** The text that is shown: its path, and the error if it cannot be shown. */
 export const shown = signal({ path: null, error: null });
-/** A line to be gone to as soon as its text is shown: {path, line}. */
+/** A line to go to when its text is shown: {path, line}. */
 export const wanted = signal(null);
 
-/** Returns the text that is shown; null where there is none. */
+/** Returns the text that is shown; null if there is none. */
 export function shownDocument() {
   return documents.value.get(shown.value.path) ?? null;
 }
 
-/** Is told of each text that is opened or has changed. */
+/** Called with each text that is opened or has changed. */
 export const watching = { changed: () => {} };
 
 /** One open text. */
 class Document {
   constructor(path, text, base, version) {
     this.path = path;
-    /** What the editor keeps: text, history, selection, marks. */
+    /** The editor's state: text, history, selection, marks. */
     this.state = freshState(base ?? text);
-    /** The text of the file that this one began from, as the editor keeps it; null where it is not known. */
+    /** The file's text from which this one was edited, as an editor document; null if unknown. */
     this.base = base === null ? null : this.state.doc;
     this.version = version;
-    /** How the text came from `base`, so that lines of the file are found in it. */
+    /** The changes from `base` to the text, for finding lines of the file in it. */
     this.since = this.state.changes([]);
     this.scroll = 0;
-    /** A place that is to be scrolled into view as soon as the text is in sight; null for none. */
+    /** A position to scroll to when the text becomes visible; null for none. */
     this.revealed = null;
     this.saving = signal(false);
-    /** Whether the save that was begun last has come to its end. */
+    /** Whether the latest save has finished. */
     this.saved = Promise.resolve(true);
     this.dirty = signal(base === null);
-    /** What the file has that this text did not begin from: {text, version}; {text: null} where there is no file any more. */
+    /** The file's text if this text was not edited from it: {text, version}; {text: null} if the file no longer exists. */
     this.theirs = signal(null);
     this.marks = signal([]);
-    /** What was done last: a few words. */
+    /** The latest action, in a few words. */
     this.note = signal("");
     if (base !== null && text !== base) this.change(minimal(this.state, text));
   }
 
-  /** Takes note of what the editor did, or does it, where this text is not the one in the editor. */
+  /** Stores an update of the editor, or applies it if this text is not in the editor. */
   took(transactions) {
     const before = marksOf(this.state).length;
     this.state = transactions.at(-1).state;
@@ -74,7 +74,7 @@ class Document {
     this.dirty.value = this.base === null || !this.state.doc.eq(this.base);
   }
 
-  /** Takes a text as that of the file. */
+  /** Marks a text as that of the file. */
   based(text, version) {
     this.base = this.state.toText(text);
     this.version = version;
@@ -88,7 +88,7 @@ class Document {
   }
 }
 
-/** Returns the change that makes another text of a state, which leaves alone what is the same at both ends. */
+/** Returns the change from a state to another text, without the equal parts at both ends. */
 export function minimal(state, text) {
   const now = state.doc.toString();
   let from = 0;
@@ -119,7 +119,7 @@ function keepAll() {
   for (const document of [...timers.keys()]) keepNow(document);
 }
 
-/** The files with unsaved work in this tab; also of those that were not opened since it was loaded again. */
+/** The files with unsaved work in this tab; including those not opened since the page was reloaded. */
 export function unsaved() {
   const dirty = [...documents.value.values()].filter((document) => document.dirty.value).map(({ path }) => path);
   return [...new Set([...dirty, ...drafts.drafted.value.filter((path) => !documents.value.has(path))])];
@@ -133,7 +133,7 @@ addEventListener("beforeunload", (event) => {
 
 // -- opening and closing
 
-/** Shows a model file in the editor; opens it where it is not yet. Nothing of it is run. What is asked for last is shown. */
+/** Shows a model file in the editor, and opens it if necessary. Runs nothing. The latest request counts. */
 export async function open(path, line = null) {
   shown.value = { path, error: null };
   wanted.value = line ? { path, line } : null;
@@ -174,14 +174,14 @@ function put(document) {
   watching.changed(document);
 }
 
-/** Forgets a text: its file is gone, or has another name. */
+/** Removes a text whose file was deleted or renamed. */
 export function close(path) {
   documents.value = new Map([...documents.value].filter(([other]) => other !== path));
   drafts.forget(path);
   if (shown.value.path === path) shown.value = { path: null, error: null };
 }
 
-/** Gives an open text the name that its file has now. */
+/** Gives an open text the new name of its file. */
 export function renamed(path, file) {
   const document = documents.value.get(path);
   if (!document) return;
@@ -194,9 +194,9 @@ export function renamed(path, file) {
 
 // -- the file
 
-/** Writes a text to its file; returns whether it is there now. Where the file has changed meanwhile, that is told and nothing is written.
- * `over` is the version that is to be replaced; the one that the text began from, where none is given. One at a time: a save that
- * begins while another is under way would take that one's text for somebody else's. */
+/** Writes a text to its file; returns whether it was written. If the file has changed meanwhile, reports that and writes nothing.
+ * `over` is the version to replace; by default the one that the text was edited from. Only one save at a time: a second save
+ * during the first would take the first one's text for somebody else's. */
 export function save(document, over = undefined) {
   document.saved = document.saved.then(() => saveNow(document, over));
   return document.saved;
@@ -210,7 +210,7 @@ async function saveNow(document, over) {
   document.saving.value = true;
   try {
     if (over !== undefined) return await write(document, over);
-    await look(document, true).catch(() => {}); // a conflict is better seen before than after
+    await look(document, true).catch(() => {}); // a conflict should be visible before the save
     return !document.theirs.value && (await write(document, document.version));
   } finally {
     document.saving.value = false;
@@ -238,7 +238,7 @@ async function write(document, over) {
   }
 }
 
-/** Looks what the file has now. A text that was not changed here becomes that of the file; one that was waits for its user to choose. */
+/** Checks the file for changes. An unedited text is replaced by the file's; for an edited one, the user must choose. */
 export async function look(document, again = false) {
   if (document.saving.value && !again) return;
   const known = document.version;
@@ -254,7 +254,7 @@ export async function look(document, again = false) {
   else document.theirs.value = { text: file.text, version: file.version };
 }
 
-/** Puts the text of the file in place of the one here; it can be undone. */
+/** Replaces the text by the file's; this can be undone. */
 export function take(document, { text, version }) {
   document.change(minimal(document.state, text));
   document.based(text, version);

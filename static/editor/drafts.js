@@ -1,27 +1,27 @@
-// Unsaved work, kept by the browser so that it survives a reload: one draft a file and tab, with the version that it began from.
+// Unsaved work, stored in the browser so that it survives a reload: one draft per file and tab, with the version it was edited from.
 
 import { signal } from "../vendor/preact.js";
 import { complain } from "../store.js";
 
 const PREFIX = "actr3d.draft.";
 const MOST = 20;
-const LARGEST = 2_000_000; // all drafts together [characters]; browsers keep about five million of a site
-const PATIENCE = 20_000; // so long it waits for a tab that neither ends nor answers, as one that is held in a debugger [ms]
+const LARGEST = 2_000_000; // all drafts together [characters]; browsers store about five million per site
+const PATIENCE = 20_000; // how long to wait for a tab that neither closes nor answers, such as one paused in a debugger [ms]
 
-/** The files of which this tab has a draft. */
+/** The files with a draft of this tab. */
 export const drafted = signal([]);
 
-const tabs = new BroadcastChannel("actr3d.tabs"); // on which a tab asks whether another one has its name
-addEventListener("pagehide", () => tabs.close()); // what is left then answers nobody
+const tabs = new BroadcastChannel("actr3d.tabs"); // a tab asks here whether another one has its name
+addEventListener("pagehide", () => tabs.close()); // a closed page must not answer
 
 let tab = "";
 
-/** Settles whose drafts are this tab's: its own from before a reload, and those of tabs that are no more. */
+/** Determines which drafts belong to this tab: its own from before a reload, and those of closed tabs. */
 export const ready = settle();
 
 async function settle() {
   tab = sessionStorage.getItem("tab") ?? crypto.getRandomValues(new Uint32Array(2)).join("");
-  // A tab that was duplicated has the same name as the other one, which holds its lock.
+  // A duplicated tab has the same name as the original, which holds the lock of the name.
   if (navigator.locks && !(await locked(tab))) {
     tab = crypto.getRandomValues(new Uint32Array(2)).join("");
     await locked(tab);
@@ -38,8 +38,8 @@ async function settle() {
   refresh();
 }
 
-/** Takes the lock of a name; tells whether this tab has it. It has not where another living tab says that the name is its own. The
- * page that was here before a reload says nothing any more: its lock comes free, however long that takes. */
+/** Takes the lock of a name; returns whether this tab has it: not if another open tab answers that the name is its own. The
+ * page that was here before a reload does not answer: its lock is released, however long that takes. */
 function locked(name) {
   const taken = new AbortController();
   const hear = ({ data }) => data.has === name && taken.abort();
@@ -48,9 +48,9 @@ function locked(name) {
     navigator.locks
       .request(`actr3d.tab.${name}`, { signal: AbortSignal.any([taken.signal, AbortSignal.timeout(PATIENCE)]) }, () => {
         tabs.addEventListener("message", ({ data }) => data.asks === name && tabs.postMessage({ has: name }));
-        tabs.postMessage({ has: name }); // to those that have asked before
+        tabs.postMessage({ has: name }); // to the tabs that asked before
         resolve(true);
-        return new Promise(() => {}); // as long as the tab is there
+        return new Promise(() => {}); // as long as the tab is open
       })
       .catch(() => resolve(false))
       .finally(() => tabs.removeEventListener("message", hear));
@@ -60,7 +60,7 @@ function locked(name) {
 
 const keyOf = (path) => `${PREFIX}${tab} ${path}`;
 
-/** All drafts of all tabs, the oldest first. */
+/** Returns all drafts of all tabs, the oldest first. */
 function all() {
   const found = [];
   for (const key of Object.keys(localStorage).filter((name) => name.startsWith(PREFIX))) {
@@ -78,7 +78,7 @@ function refresh() {
   drafted.value = all().filter(({ key, draft }) => key === keyOf(draft.path)).map(({ draft }) => draft.path);
 }
 
-/** Returns the draft of a file: {path, text, base (the text that it began from), version}; null where there is none. */
+/** Returns the draft of a file: {path, text, base (the text it was edited from), version}; null if there is none. */
 export function read(path) {
   try {
     return JSON.parse(localStorage.getItem(keyOf(path)));
@@ -89,7 +89,7 @@ export function read(path) {
 
 let told = false;
 
-/** Keeps a draft. The oldest ones go where there are too many. */
+/** Stores a draft; removes the oldest ones if there are too many. */
 export function keep(path, text, version) {
   if (!tab) return;
   if (!write(keyOf(path), { path, text, version, at: Date.now() }) && !told) {
@@ -120,7 +120,7 @@ function drop(others) {
   return draft.text.length;
 }
 
-/** Forgets a draft: it is saved, or thrown away. */
+/** Removes a draft that was saved or discarded. */
 export function forget(path) {
   localStorage.removeItem(keyOf(path));
   refresh();

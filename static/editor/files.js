@@ -1,4 +1,4 @@
-// New, duplicate, rename, delete: asks for a name, and says what is wrong with it.
+// New, duplicate, rename, delete: asks for a name, and shows what is wrong with it.
 
 import { listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
@@ -7,7 +7,7 @@ import { complain, session } from "../store.js";
 import { close, open, renamed, save, shown } from "./documents.js";
 import { TEMPLATES } from "./templates.js";
 
-/** Begins a new model file. It is opened here; it runs when it is told to. */
+/** Creates a new model file and opens it here; it does not run yet. */
 export async function makeNew() {
   const before = shown.peek();
   const choices = TEMPLATES.map(({ value, text }) => ({ value, text }));
@@ -18,12 +18,12 @@ export async function makeNew() {
   showNew(file, before);
 }
 
-/** Opens a new file, but not in place of another that the user has chosen since. */
+/** Opens a new file, unless the user has chosen another one since. */
 function showNew(file, before) {
   if (file && shown.peek() === before) open(file.path);
 }
 
-/** Copies a model file, as it is saved. */
+/** Copies the saved version of a model file. */
 export async function duplicate(path) {
   const before = shown.peek();
   const to = path.replace(/\.py$/, "_copy.py");
@@ -31,7 +31,7 @@ export async function duplicate(path) {
   showNew(file, before);
 }
 
-/** Gives a model file another name; a run of it goes on. */
+/** Renames a model file; its run continues. */
 export async function rename(path) {
   const file = await named(`Rename ${path}`, "New name", path, "Rename", {}, (to) => (to === path ? null : call("POST", "/api/model/rename", { path, to })));
   if (!file) return;
@@ -39,7 +39,7 @@ export async function rename(path) {
   if (session.value?.model === path || session.value?.model === file.path) note(file.path);
 }
 
-/** Puts a model file into the trash folder, after asking. */
+/** Moves a model file to the trash folder, after asking. */
 export async function remove(path, unsaved) {
   const text = `It is moved to the trash folder inside the models folder.${unsaved ? " Its unsaved changes are lost." : ""}`;
   if (!(await confirmed(`Delete ${path}?`, text, "Delete"))) return;
@@ -54,12 +54,12 @@ export async function remove(path, unsaved) {
   }
 }
 
-/** Saves a text whose file is gone as a new file. */
+/** Saves a text whose file was deleted as a new file. */
 export function saveAgain(document) {
   return save(document, null).then(listModels);
 }
 
-/** Asks for a name until it is one that can be used, or the user gives up; returns the file. */
+/** Asks for a name until it is valid or the user cancels; returns the file. */
 async function named(title, label, name, action, more, work) {
   let problem = null;
   for (;;) {

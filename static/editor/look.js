@@ -1,4 +1,4 @@
-// The look of code, in the colours of style.css, which are light or dark by themselves.
+// The theme of the code, in the colours of style.css, which adapt to light and dark themselves.
 
 import { EditorView, HighlightStyle, syntaxHighlighting, tags } from "../vendor/codemirror.js";
 

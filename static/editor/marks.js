@@ -1,13 +1,13 @@
-// What is marked in a text: what a check says of it, and what a run has said, at their lines as these move.
+// The marks in a text: problems found by a check or reported by a run, at lines that move with the text.
 
 import { setDiagnostics, StateEffect, StateField } from "../vendor/codemirror.js";
 
 const MOST_RUN = 100; // marks of a run in one text
 
-/** Puts marks of one origin ("check" or "run") in place of those there are: {origin, marks}. */
+/** Replaces the marks of one origin ("check" or "run"): {origin, marks}. */
 const putMarks = StateEffect.define();
 
-/** The marks of a text: {origin, level, message, detail, from, to}; `from` is null for what has no line. */
+/** The marks of a text: {origin, level, message, detail, from, to}; `from` is null for marks without a line. */
 const marksField = StateField.define({
   create: () => [],
   update(marks, transaction) {
@@ -20,7 +20,7 @@ const marksField = StateField.define({
   },
 });
 
-/** What a run said of a line holds until that line is changed; what a check said is checked anew anyway. */
+/** A run's mark is valid until its line is changed; a text is checked again anyway. */
 function moved(mark, { changes, startState, newDoc }) {
   if (mark.from === null) return mark;
   const line = startState.doc.lineAt(mark.from);
@@ -29,7 +29,7 @@ function moved(mark, { changes, startState, newDoc }) {
   return { ...mark, from: start(at), to: at.to };
 }
 
-/** Whether a line's own text changes, not only what stands before or behind it. */
+/** Whether a line's own text changes, not only the text before or after it. */
 function changesText(changes, line) {
   let does = false;
   changes.iterChanges((from, to, _, __, inserted) => {
@@ -47,16 +47,16 @@ function start(line) {
 
 export const marking = marksField;
 
-/** Whether there is more to tell than the message. */
+/** Whether there are more details than the message. */
 export const hasMore = ({ message, detail }) => detail.trim().includes("\n") && detail.trim() !== message.trim();
 
-/** Returns marks without those that say again what another one says at that line; a run tells more than a check. */
+/** Returns marks without duplicates of a message at a line; a run's mark, which has more details, is preferred. */
 function distinct(marks) {
   const last = new Map(marks.toSorted((one, other) => (one.origin < other.origin ? -1 : 1)).map((mark) => [`${mark.from} ${mark.message}`, mark]));
   return [...last.values()];
 }
 
-/** Returns the marks of a state, with their line numbers, first those that come first in the text. */
+/** Returns the marks of a state, with their line numbers, ordered by position. */
 export function marksOf(state) {
   return distinct(state.field(marksField))
     .map((mark) => ({ ...mark, line: mark.from === null ? null : state.doc.lineAt(mark.from).number }))
@@ -70,7 +70,7 @@ export function markAt(doc, origin, { level, message, detail = "", line }) {
   return { origin, level, message, detail, from: start(place), to: place.to };
 }
 
-/** Returns the transaction that puts marks of an origin into a state. */
+/** Returns the transaction that adds marks of an origin to a state. */
 export function withMarks(state, origin, marks) {
   const list = origin === "run" ? marks.slice(-MOST_RUN) : marks;
   const all = [...state.field(marksField).filter((mark) => mark.origin !== origin), ...list];
@@ -78,7 +78,7 @@ export function withMarks(state, origin, marks) {
   return { ...shown, effects: [shown.effects ?? [], putMarks.of({ origin, marks: list })].flat() };
 }
 
-/** Returns the transaction that shows the marks that are left, after others have gone. */
+/** Returns the transaction that shows the remaining marks after others were removed. */
 export function sameMarks(state) {
   return setDiagnostics(state, diagnostics(state.field(marksField)));
 }
@@ -95,7 +95,7 @@ function diagnostic(mark) {
   return { from, to, severity: level, message, source: origin === "run" ? "the run" : undefined, renderMessage: () => written(mark) };
 }
 
-/** Writes a message and its traceback, as text. */
+/** Returns a message and its traceback as text. */
 function written(mark) {
   const box = document.createElement("div");
   const text = document.createElement("div");

@@ -1,4 +1,4 @@
-// What is wrong with a text, as a list; choosing one goes to its line.
+// The problems of a text as a list; choosing one goes to its line.
 
 import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";

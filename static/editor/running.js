@@ -1,4 +1,4 @@
-// Save and run, and whether what is shown is a run of the present text.
+// Save and run, and whether the run that is shown is one of the current text.
 
 import { computed, html } from "../vendor/preact.js";
 import { runModel } from "../bar/models.js";
@@ -7,22 +7,22 @@ import { complain, notices, session } from "../store.js";
 import { documents, save, shown } from "./documents.js";
 import { openTab } from "../tabs.js";
 
-/** Saves a text, where it is to be saved, and runs it from its start. */
+/** Saves a text if necessary, and runs it from its start. */
 export async function saveAndRun(document) {
   const wanted = sinceNow();
   if ((document.dirty.value || document.theirs.value) && !(await save(document))) return;
-  if (!wanted()) return; // while it was being saved the user has chosen what else is to be shown
+  if (!wanted()) return; // during the save, the user has chosen to show something else
   await runModel(document.path).catch((error) => complain(error.message));
 }
 
-/** What to say of the run that is shown, where it is not that of the file: {text, failed, gone, path}; null where all is well. */
+/** Returns a notice if the run that is shown is not one of the file's text: {text, failed, gone, path}; otherwise null. */
 export const former = computed(() => {
   const told = session.value;
   if (!told || told.recorded !== null) return null; // a recording is a run of the text of its time
   if (told.gone) return { text: "The file of this run is gone from the folder: the run can go on, but not begin again.", gone: true, path: told.model };
   if (told.loading) return null;
   if (!told.stale) return null;
-  // The newest attempt to begin a run has not become the run that is shown.
+  // The newest attempt failed if it reported an error and is not the run that is shown.
   const failed = told.attempt !== told.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === told.attempt);
   const text = `What is shown is the run of the former text${failed ? "; the new one does not load" : ""}.`;
   return { text, failed, path: told.model };
@@ -34,10 +34,10 @@ export function runNew(path) {
   return open ? saveAndRun(open) : runModel(path).catch((error) => complain(error.message));
 }
 
-/** Says in the line below that what is shown is the run of a former text, with what to do. */
+/** Shows in the status line that the run is one of an earlier text, with a button to run the new one. */
 export function Former() {
   const told = former.value;
-  // The editor says it itself, beside the text.
+  // The editor shows this itself, beside the text.
   if (!told || (openTab.value === "editor" && shown.value.path === told.path)) return null;
   return html`<span class="former" role="status">
     ${told.text}

@@ -1,11 +1,11 @@
-// One line between the text and its problems, where something is to be decided: the file has changed, or the run is of a former text.
+// A banner between the text and its problems for decisions: the file has changed, or the run is one of an earlier text.
 
 import { html } from "../vendor/preact.js";
 import { close } from "./documents.js";
 import { saveAgain } from "./files.js";
 import { former, runNew } from "./running.js";
 
-/** @param document The text that is shown. @param compare Shows both texts, where the file has another one. */
+/** @param document The text that is shown. @param compare Shows both texts if the file has another one. */
 export function Strip({ document, compare }) {
   const theirs = document.theirs.value;
   const run = former.value;

@@ -1,4 +1,4 @@
-// What a new model begins with: short, and it runs.
+// The templates of new models: short and runnable.
 
 const MIND = `"""Says in a line what this model is about."""
 
@@ -85,7 +85,7 @@ def build(parameters: Parameters) -> Simulation:
     return Simulation(scene, {"walker": mind})
 `;
 
-/** What a user may begin with: {value, text, source}. */
+/** The templates to choose from: {value, text, source}. */
 export const TEMPLATES = [
   { value: "mind", text: "A mind alone", source: MIND },
   { value: "body", text: "A mind with a body in a world", source: BODY },

@@ -1,4 +1,4 @@
-// Completion: the words of the core, besides those of Python and of the file itself.
+// Completion: the names of the core, besides those of Python and of the file itself.
 
 const CORE = {
   class: [
@@ -14,7 +14,7 @@ const METHODS = ["add", "clear", "isEmpty", "modify", "now", "request", "run", "
 const core = Object.entries(CORE).flatMap(([type, words]) => words.map((label) => ({ label, type })));
 const methods = METHODS.map((label) => ({ label, type: "method" }));
 
-/** Says how a word could go on, where it stands in code. */
+/** Returns completions for the word at the cursor, if it is in code. */
 export function complete(context) {
   const member = context.matchBefore(/\.\w*$/);
   if (member) return { from: member.from + 1, options: methods, validFor: /^\w*$/ };

@@ -4,8 +4,8 @@ import { scaled } from "../parts/surface.js";
 import { channels, labelColour } from "../scene/palette.js";
 import { colour } from "../theme.js";
 
-const FAR = 12; // from here on nothing gets any paler [m]
-const PALEST = 0.6; // so much of the background there is in the colour of what is far away
+const FAR = 12; // from this distance on, colours get no paler [m]
+const PALEST = 0.6; // the share of the background in the colour of distant objects
 const GROUNDS = { light: 255, dark: 24 };
 
 /** Returns the colour of a label at a distance [m]: that of its edges in the scene, paler with distance. */
@@ -15,7 +15,7 @@ export function shadeOf(label, distance, dark) {
   return `rgb(${mixed.join(" ")})`;
 }
 
-/** Draws a view ({rows, extents}: each [row, label, y, x1, x2, d1, d2, a1, a2]); `chosen` is a label to be framed. */
+/** Draws a view ({rows, extents}: each [row, label, y, x1, x2, d1, d2, a1, a2]); `chosen` is a label to frame. */
 export function drawView(canvas, view, dark, chosen = null) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const context = scaled(canvas, width, height);
@@ -45,7 +45,7 @@ export function drawView(canvas, view, dark, chosen = null) {
   }
 }
 
-/** Returns the extent at a place of the screen (x and y from 0 to 1), or null. */
+/** Returns the extent at a position on the screen (x and y from 0 to 1), or null. */
 export function extentAt(view, x, y) {
   if (!view) return null;
   const row = Math.floor(y * view.rows);

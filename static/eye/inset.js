@@ -1,4 +1,4 @@
-// The retina as a small picture over the 3D view; it is not there while the tab Eye shows the large one.
+// The retina as a small picture over the 3D view; hidden while the tab Eye shows the large one.
 
 import { html } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";

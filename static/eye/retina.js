@@ -1,18 +1,18 @@
-// The retina: what an eye sees, as a picture; the pointer tells label, place and distance.
+// The retina: a picture of what an eye sees; the pointer shows label, position and distance.
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { dark } from "../theme.js";
 import { drawView, extentAt } from "./drawing.js";
 
-/** Says an extent in words. */
+/** Returns an extent in words. */
 export function extentText([row, label, , x1, x2, d1, d2]) {
   return `label ${label} · row ${row} · x ${x1.toFixed(3)} to ${x2.toFixed(3)} · ${d1.toFixed(2)} m to ${d2.toFixed(2)} m`;
 }
 
 /**
- * @param view What the question `view` answers; null for nothing yet.
- * @param chosen A label to be framed.
+ * @param view The answer to the question `view`; null if there is none yet.
+ * @param chosen A label to frame.
  */
 export function Retina({ view, chosen = null }) {
   const canvas = useRef(null);

@@ -1,16 +1,16 @@
-// Whose parts are whose: the tree that a state's `parts` are, grouped by agent.
+// Groups a state's tree of `parts` by agent.
 
 /** Returns the paths of the production systems, in the order of the tree. */
 export function systemsOf(parts) {
   return Object.keys(parts ?? {}).filter((path) => parts[path].is === "system");
 }
 
-/** Whether a part stands below another in the tree; the first run's top model is `top`, but its parts do not say so. */
+/** Whether a part is below another in the tree; the first run's top model is `top`, which is omitted from its parts' paths. */
 export function isBelow(path, above) {
   return path !== above && (path.startsWith(`${above}.`) || (above === "top" && !path.startsWith("top#")));
 }
 
-/** Returns the agents: the production systems that stand in no other one. */
+/** Returns the agents: the production systems that are not inside another one. */
 export function agentsOf(parts) {
   const systems = systemsOf(parts);
   return systems.filter((path) => !systems.some((other) => isBelow(path, other)));
@@ -21,7 +21,7 @@ export function agentOf(path, agents) {
   return agents.find((agent) => agent === path || isBelow(path, agent)) ?? null;
 }
 
-/** Returns the name of a part as its agent calls it. */
+/** Returns the name of a part relative to its agent. */
 export function nameIn(agent, path) {
   return agent && path.startsWith(`${agent}.`) ? path.slice(agent.length + 1) : path;
 }

@@ -1,15 +1,15 @@
-// What the user wants to have explained: which production, and of which moment.
+// The explanation that the user requests: of which production, and at which moment.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
 import { events, session } from "../store.js";
 import { eventAt } from "./sifted.js";
 
-/** The production that is explained: {system, name}; null for whichever is of interest at that moment. */
+/** The production to explain: {system, name}; null for the relevant one at that moment. */
 export const production = signal(null);
-/** The moment that is explained [s]; null for the present one. */
+/** The moment to explain [s]; null for the current one. */
 export const at = signal(null);
-/** Which of the explanations is shown: "why", "conflict" or "retrievals". */
+/** The explanation that is shown: "why", "conflict" or "retrievals". */
 export const shownReasons = remembered("reasons", "why");
 
 const run = computed(() => `${session.value?.id} ${session.value?.run}`);
@@ -18,10 +18,10 @@ effect(() => {
   at.value = null;
 });
 
-/** The question that is asked of the run. */
+/** The question sent to the run. */
 export const question = computed(() => (at.value === null ? { type: "explain" } : { type: "explain", at: at.value }));
 
-/** Explains the moment of an event; of a firing that of the choice that led to it, for when it has fired that is over. */
+/** Explains the moment of an event; for a firing, the moment of the choice that led to it, because its conflict is over by then. */
 export function askWhy(number) {
   const [time, source, kind, data] = eventAt(number);
   let moment = time;

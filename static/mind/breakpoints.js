@@ -1,4 +1,4 @@
-// Breakpoints: productions after which the run pauses; all who watch share them.
+// Breakpoints: productions after which the run pauses; shared by all viewers.
 
 import { computed, html } from "../vendor/preact.js";
 import { settable } from "../parts/settable.js";
@@ -12,19 +12,19 @@ const list = settable(
 
 export const breakpoints = list.value;
 
-/** The production at whose breakpoint the run stands; null where it does not. */
+/** The production at whose breakpoint the run is paused; null if there is none. */
 export const held = computed(() => {
   const { status, reason } = state.value ?? {};
   return status === "paused" ? /^breakpoint: (.*) fired$/s.exec(reason)?.[1] ?? null : null;
 });
 
-/** Sets a breakpoint on a production, or takes it away. */
+/** Sets a breakpoint on a production, or removes it. */
 export function toggleBreakpoint(name) {
   const now = breakpoints.value;
   list.set(now.includes(name) ? now.filter((one) => one !== name) : [...now, name]);
 }
 
-/** Says that the run stands at a breakpoint. */
+/** Shows that the run is paused at a breakpoint. */
 export function HeldNote() {
   const name = held.value;
   if (name === null) return null;

@@ -1,4 +1,4 @@
-// The conflict set: what matched in the last cycle, with utilities, and which was chosen.
+// The conflict set: the productions that matched in the last cycle, with utilities, and the chosen one.
 
 import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
@@ -12,10 +12,10 @@ import { eventAt, useSifted } from "./sifted.js";
 
 const isChoice = ([, , kind, data]) => kind === "select" || kind === "fire" || kind === "changed" || (kind === "conflict" && Object.keys(data.utilities).length > 0);
 
-/** Returns by system its last cycle before an event: {time, conflict, select, fire, over}, each as far as it came. */
+/** Returns the last cycle of each system before an event: {time, conflict, select, fire, over}, as far as it got. */
 function lastCycles(sifted, end, time) {
   const cycles = new Map();
-  const after = new Map(); // what came after the conflict, by system
+  const after = new Map(); // the events after the conflict, by system
   for (let n = sifted.below(end) - 1; n >= 0 && n > sifted.below(end) - 2000; n -= 1) {
     const [when, source, kind, data] = eventAt(sifted.numbers[n]);
     if (cycles.has(source) || (time !== null && when > time)) continue;

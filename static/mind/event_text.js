@@ -1,9 +1,9 @@
-// Events as one reads them: which belong together, and each as a line.
+// Events as text: groups of kinds, and each event as a line.
 
 import { chunkText, valueText } from "../parts/chunk.js";
 import { commandText } from "../timeline/commands.js";
 
-/** Which events can be chosen for the trace: {id, text, kinds, first: whether it shows them at first}. */
+/** The groups of events in the trace's filter: {id, text, kinds, first: whether they are shown by default}. */
 export const GROUPS = [
   { id: "fire", text: "Firings", kinds: ["fire", "changed"], first: true },
   { id: "output", text: "Prints", kinds: ["output"], first: true },
@@ -50,21 +50,21 @@ const TEXTS = {
   utility: (data) => ["utility", `${data.production} ${data.part} ${valueText(data.value)}`],
 };
 
-/** Returns [what happened, with what particulars] of an event; a firing is said by its production alone. */
+/** Returns [what happened, its details] of an event; a firing is described by its production alone. */
 export function eventText(event) {
   const [, , kind, data] = event;
   if (kind === "fire") return [data.production, pairs(data.bound)];
   return (TEXTS[kind] ?? ((all) => [kind, pairs(all)]))(data ?? {}, event);
 }
 
-/** Says names with their values in one line. */
+/** Returns names with their values in one line. */
 export function pairs(data) {
   return Object.entries(data ?? {})
     .map(([name, value]) => `${name}=${valueText(value)}`)
     .join("  ");
 }
 
-/** Says a time of the run [us] in seconds. */
+/** Returns a time of the run [us] as text in seconds. */
 export function timeText(time) {
   return (time / 1e6).toFixed(3);
 }

@@ -1,11 +1,11 @@
-// Shows that something has changed: it lights up once, also where it goes on changing.
+// Highlights a change: once, even if further changes follow quickly.
 
 import { html, useEffect, useRef, useState } from "../vendor/preact.js";
 import { session } from "../store.js";
 
-const CALM = 1200; // so long it must have stayed the same before it lights up again [ms]
+const CALM = 1200; // how long the text must stay the same before it is highlighted again [ms]
 
-/** A text that lights up when it has become another; not for another run. */
+/** A text that is highlighted when it has changed; but not for another run. */
 export function Flash({ text, class: name = "", children }) {
   const run = `${session.value?.id} ${session.value?.run}`;
   const before = useRef({ text, run });

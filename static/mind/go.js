@@ -1,12 +1,12 @@
-// Going to the moment of an event.
+// Goes to the moment of an event.
 
 import { complain, events, session } from "../store.js";
 import { travel } from "../timeline/seek.js";
 
 const runOf = (source) => (source.startsWith("top#") ? source.slice(4).split(".")[0] : "1");
 
-/** Returns when an event happened in the time of the whole session [us]: where a program makes one run after another, what all of
- * them have taken until then. Null where that is not known, for what came first is gone. */
+/** Returns the time of an event in the whole session [us]: if a program makes one run after another, this adds the durations of
+ * the earlier runs. Null if unknown, because the first events are no longer kept. */
 function clockAt(number) {
   const { list, first } = events.peek();
   const [time, source] = list[number - first];
@@ -17,7 +17,7 @@ function clockAt(number) {
   return [...latest.values()].reduce((sum, one) => sum + one, 0);
 }
 
-/** Takes the run to the first moment that it stands at after an event. */
+/** Takes the run to its first stop after an event. */
 export function goTo(number) {
   const time = clockAt(number);
   if (time === null) {

@@ -8,7 +8,7 @@ import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
 import { chosenText, isBare, isGone, nothing } from "../standing.js";
 import { state } from "../store.js";
 
-/** How a production stands: [class, sign, in words]. */
+/** The status of a production: [class, sign, in words]. */
 export function howItStands(reason) {
   if (!reason) return ["", "", ""];
   if (reason.matches === null) return ["unknown", "?", "cannot be told"];
@@ -16,7 +16,7 @@ export function howItStands(reason) {
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }
 
-/** Returns the productions as [{system, name, reason}]; `reasons` as the run explains them, or null. */
+/** Returns the productions as [{system, name, reason}]; `reasons` are from the run's explanation, or null. */
 export function productionsOf(parts, reasons) {
   const key = (system, name) => `${system}\n${name}`;
   const known = new Map((reasons ?? []).map((reason) => [key(reason.system, reason.name), reason]));
@@ -30,7 +30,7 @@ export function productionsOf(parts, reasons) {
 
 const same = (one, other) => Boolean(one && other) && one.system === other.system && one.name === other.name;
 
-/** Returns the production that is explained: the one that is wanted, else the one that is chosen or the first that matches. */
+/** Returns the production to explain: the requested one, else the chosen one or the first that matches. */
 export function explained(all) {
   const wanted = all.find((one) => same(one, production.value));
   const rank = ({ reason }) => (reason?.selected ? 0 : reason?.matches ? 1 : 2);
@@ -53,7 +53,7 @@ function Item({ item, chosen, several }) {
   </li>`;
 }
 
-/** @param all What `productionsOf` returns; `chosen` the one that is explained. */
+/** @param all The result of `productionsOf`; `chosen` is the one that is explained. */
 export function ProductionList({ all, chosen }) {
   const [words, setWords] = useState("");
   const box = useRef(null);

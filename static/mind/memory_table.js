@@ -1,16 +1,16 @@
-// A memory as a table: chunks with their activations and the parts of these, sorted as the user likes.
+// A memory as a table: chunks with their activations and the components of these, sorted as the user chooses.
 
 import { html, useMemo, useState } from "../vendor/preact.js";
 import { Chunk, chunkText, valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
 
-/** Returns the slots of a row that are shown, in the order in which the model wrote them: what tells chunks apart mostly comes first. */
+/** Returns the slots of a row that are shown, in the model's order: the slots that distinguish chunks mostly come first. */
 function shownSlots({ slots }) {
   return Object.fromEntries(Object.entries(slots).filter(([name]) => !name.startsWith("_")));
 }
 
-/** Returns rows in order; what is not known comes last. */
+/** Returns rows in order; unknown values come last. */
 export function sorted(rows, { by, down }) {
   const value = (row) => (by === "chunk" ? chunkText(shownSlots(row)) : by === "activation" ? row.activation : row.parts[by]);
   const isKnown = (row) => value(row) !== null && value(row) !== undefined;
@@ -40,7 +40,7 @@ function Chosen({ row, names, threshold }) {
   </section>`;
 }
 
-/** @param answer What the run has answered to `memory`. */
+/** @param answer The run's answer to `memory`. */
 export function MemoryTable({ answer, words }) {
   const { rows, threshold, memory } = answer;
   const [sort, setSort] = useState({ by: "activation", down: true });

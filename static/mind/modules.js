@@ -1,4 +1,4 @@
-// The modules of an agent: busy or not, in error or not, what they wait for, and all their plain attributes.
+// The modules of an agent: whether they are busy or in error, what they wait for, and all their plain attributes.
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
@@ -9,7 +9,7 @@ import { pairs, timeText } from "./event_text.js";
 import { Flash } from "./flash.js";
 import { eventAt, useSifted } from "./sifted.js";
 
-/** Returns the newest request to each part up to the present moment, by path. */
+/** Returns the newest request to each part up to the current moment, by path. */
 export function useRequests(paths) {
   const sifted = useSifted((event) => event[2] === "request", "requests");
   const found = new Map();
@@ -27,7 +27,7 @@ function requestText([time, , , data]) {
   return `${asked !== undefined ? `'${asked}'` : `${call ?? "request"} ${pairs(given)}`}, asked at ${timeText(time)} s`;
 }
 
-/** Says what a part is about: what it waits for, which production is about to fire, how many chunks it has. */
+/** Returns the status of a part: what it waits for, which production is about to fire, how many chunks it has. */
 export function doing(part, request) {
   if (part.is === "system") return part.chosen ? `${part.chosen} ${chosenText()}` : "nothing matches";
   if (part.state?.busy === true) {
@@ -55,7 +55,7 @@ function Lamp({ name, on, level }) {
   return html`<span class="lamp ${on ? level : "off"}" aria-label="${on ? "" : "not "}${name}" role="img">${name}</span>`;
 }
 
-/** One module, memory or production system: a line that opens. */
+/** A module, memory or production system: a row that can be expanded. */
 export function Module({ path, name, part, request }) {
   const { busy, error } = part.state ?? {};
   const text = doing(part, request);
@@ -73,7 +73,7 @@ export function Module({ path, name, part, request }) {
   </details>`;
 }
 
-/** A part that is neither a buffer nor a module: its attributes in a line, and below it when opened. */
+/** A part that is neither a buffer nor a module: its attributes in a line, and below it when expanded. */
 export function Plain({ path, name, part }) {
   const text = pairs(part.state);
   return html`<details class="part" data-path=${path}>

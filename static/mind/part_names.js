@@ -1,9 +1,9 @@
-// What the parts of activations are called, and how their numbers stand in columns.
+// The names of the components of activations, and the format of their numbers in columns.
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 
-/** What modules of the library add to an activation, as people call it. */
+/** The names that users see for the components that library modules add to an activation. */
 const NAMES = {
   DMBaseLevel: "base level",
   DMFixed: "fixed",
@@ -15,18 +15,18 @@ const NAMES = {
   partial: "partial match",
 };
 
-/** Returns what a part of an activation is called. */
+/** Returns the name of a component of an activation. */
 export function partName(part) {
   const [, name, number] = /^(.*?)( \d+)?$/.exec(part);
   return (NAMES[name] ?? name) + (number ?? "");
 }
 
-/** Says a number with three digits after the point, so that a column of them can be compared. */
+/** Returns a number with three decimals, so that a column of them can be compared. */
 export function fixed(value) {
   return typeof value === "number" ? value.toFixed(3) : valueText(value);
 }
 
-/** Says a part of a utility or an activation; what is drawn by lot only when it is needed is not known before. */
+/** Returns a component of a utility or an activation as text; noise that is drawn only when needed is not known before. */
 export function Part({ value }) {
   if (value !== null && value !== undefined) return html`<span title=${value}>${fixed(value)}</span>`;
   return html`<span class="quiet" title="Drawn only when it is needed, or known only to the model's own code">not drawn</span>`;

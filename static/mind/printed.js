@@ -1,22 +1,22 @@
-// What the model prints, line by line with the numbers of its events: kept whole, though the list of events forgets the oldest.
+// The model's output, line by line with the numbers of its events: kept completely, although the list of events drops the oldest.
 
 import { signal } from "../vendor/preact.js";
 import { say } from "../server.js";
 import { alive, listeners, state, whichRun } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
-const MOST = 500_000; // lines; of more the oldest are left out
-const AT_ONCE = 20_000; // so many events the run is asked for at once
+const MOST = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
+const AT_ONCE = 20_000; // the number of events requested at once
 
-/** Counts how often the lines have changed. */
+/** Counts the changes of the lines. */
 export const printedVersion = signal(0);
 
-/** The lines in order, each {number, text}; `gaps` are the events that were never told, each [from, to]. */
+/** The lines in order, each {number, text}; `gaps` are the events that were never received, each [from, to]. */
 let lines = [];
 let gaps = [];
-let next = 0; // the number of the event that comes next
-let dropped = 0; // how many lines were left out, for there are too many
-let of = ""; // of which run of which session
+let next = 0; // the number of the next event
+let dropped = 0; // the number of lines dropped because there were too many
+let of = ""; // the session and run of the lines
 
 function reset(run) {
   lines = [];
@@ -27,7 +27,7 @@ function reset(run) {
   printedVersion.value += 1;
 }
 
-/** Returns where in the lines the first is whose event has at least a number. */
+/** Returns the index of the first line whose event has at least a given number. */
 function placeOf(number) {
   return firstWhere(lines, (line) => line.number >= number);
 }
@@ -68,7 +68,7 @@ export function printed() {
 
 let asking = false;
 
-/** Asks the run for what was printed in events that the page was never told, up to the present moment. */
+/** Requests the output in events that the page never received, up to the current moment. */
 export async function fillGaps() {
   if (asking || !alive.peek() || of !== whichRun()) return;
   const [from, to] = gaps[0] ?? [];
@@ -84,10 +84,10 @@ export async function fillGaps() {
     lines.splice(placeOf(from), 0, ...found.filter(({ number }) => number < gap[1]));
     gap[0] = Math.min(answer.next, gap[1]);
     if (gap[0] >= gap[1]) gaps.shift();
-    if (answer.next <= from) gaps.shift(); // the run does not know them, either
+    if (answer.next <= from) gaps.shift(); // the run does not have them either
     printedVersion.value += 1;
   } catch {
-    // Another run is shown by now, or it has ended: what is missing is said.
+    // Another run is shown by now, or it has ended: the gap is shown.
   } finally {
     asking = false;
   }

@@ -1,8 +1,8 @@
-// What was measured of a run that is over, as people read it.
+// The measured result of a finished run, formatted for users.
 
 import { html } from "../vendor/preact.js";
 
-/** Units by the end of a name: [ending, unit, digits after the point, factor]. */
+/** Units by the ending of a name: [ending, unit, decimals, factor]. */
 const UNITS = [
   ["_m_s", "m/s", 2],
   ["_deg", "°", 1],
@@ -14,7 +14,7 @@ const UNITS = [
   ["_kg", "kg", 2],
 ];
 
-/** Returns what a number of a result is called and its text with its unit. */
+/** Returns the label of a number of a result, and its text with its unit. */
 export function measured(name, value) {
   const [ending, unit, digits, factor = 1] = UNITS.find(([one]) => name.endsWith(one)) ?? ["", "", 4];
   const bare = name.slice(0, name.length - ending.length).replaceAll("_", " ");

@@ -1,10 +1,10 @@
-// Why a retrieval went as it did: which chunks competed, what their activations were made of, and what came of it.
+// Explains a retrieval: which chunks competed, the components of their activations, and the result.
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 
-const MOST = 200; // so many candidates are listed
+const MOST = 200; // the maximum number of candidates listed
 
 function outcomeText({ outcome, candidates, excluded, threshold, latency }) {
   const takes = latency === null ? "" : ` in ${valueText(latency)} s`;
@@ -60,7 +60,7 @@ function Retrieval({ reason }) {
   </section>`;
 }
 
-/** Why a search of the eyes went as it did. */
+/** Explains a visual search. */
 export function Search({ reason }) {
   const { module, asked, time, bottom_up: up, outcome, why, features } = reason;
   return html`<section aria-label="Search of ${module}">
@@ -86,7 +86,7 @@ export function Search({ reason }) {
   </section>`;
 }
 
-/** @param explanations What the run has answered to `explain`. */
+/** @param explanations The run's answer to `explain`. */
 export function Retrievals({ explanations }) {
   const retrievals = explanations.flatMap((one) => one.retrievals);
   const searches = explanations.flatMap((one) => one.searches);

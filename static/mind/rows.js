@@ -1,19 +1,19 @@
-// A long table of which only the rows in sight are drawn; all rows are equally high.
+// A long table that draws only its visible rows; all rows have the same height.
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 
 export const ROW = 23; // the height of a row, as panels/productions.css has it [px]
-const HEAD = 26; // and of the head [px]
-const SPARE = 12; // so many rows are drawn beyond what is in sight
+const HEAD = 26; // the height of the head [px]
+const SPARE = 12; // the number of rows drawn beyond the visible ones
 
 /**
- * @param count How many rows there are.
+ * @param count The number of rows.
  * @param row Returns row n.
  * @param head The cells of the head.
- * @param aim The number of a row that is kept in sight, as long as the user does not scroll away from it; null for none.
- * @param chosen The number of the row that the keyboard is at, or null; `onChoose` is told another.
- * @param onOpen Is told the row on which Enter is pressed.
- * @param keys Other keys: what is done with the chosen row, by name.
+ * @param aim The number of a row that stays visible until the user scrolls away from it; null for none.
+ * @param chosen The number of the row selected by keyboard, or null; `onChoose` is called with a new one.
+ * @param onOpen Called with the row on which Enter is pressed.
+ * @param keys Other keys: actions on the chosen row, by key name.
  */
 export function Rows({ id, label, count, row, head, columns, aim = null, chosen = null, onChoose, onOpen, keys = {}, empty = null }) {
   const box = useRef(null);
@@ -23,7 +23,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   const last = useRef(chosen);
   const known = useRef(count);
 
-  // A scrolled or observed box may be gone when that is told.
+  // The box may be removed before its scroll or resize event arrives.
   function look() {
     if (!box.current) return;
     const { scrollTop: top, clientHeight: height } = box.current;
@@ -54,10 +54,10 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
   }, []);
   useLayoutEffect(() => {
     if (count < known.current) {
-      // They are another run's, or the first are gone, and others stand here now.
+      // They belong to another run, or the first ones are gone and the numbers have shifted.
       away.current = false;
       set.current = box.current.scrollTop;
-    } else if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // of which nothing may have been told yet
+    } else if (Math.abs(box.current.scrollTop - set.current) > 2) scrolled(); // the scroll event may not have arrived yet
     known.current = count;
     if (aim !== null && !away.current) {
       show(aim);
@@ -77,7 +77,7 @@ export function Rows({ id, label, count, row, head, columns, aim = null, chosen 
     if (to !== undefined && count > 0) {
       const n = Math.max(0, Math.min(count - 1, to));
       onChoose?.(n);
-      show(n); // also where it was chosen before
+      show(n); // also if it was chosen before
     } else if (event.target === box.current && event.key === "Enter" && chosen !== null) onOpen?.(chosen);
     else if (event.target === box.current && keys[event.key] && chosen !== null) keys[event.key](chosen);
     else return;

@@ -1,4 +1,4 @@
-// The body schema: what the agent knows of its postures, with the size of its body in each.
+// The body schema: the postures that the agent knows, with the size of its body in each.
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
@@ -10,7 +10,7 @@ export function postures(rows) {
   return rows.filter(({ slots }) => "posture" in slots && "width" in slots);
 }
 
-/** @param rows What `postures` returns. */
+/** @param rows The result of `postures`. */
 export function SchemaTable({ rows }) {
   const joints = [...new Set(rows.flatMap(({ slots }) => Object.keys(slots)))].filter((name) => !FIRST.includes(name)).sort();
   return html`<div class="wide schema" tabindex="0" role="region" aria-label="Body schema">

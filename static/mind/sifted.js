@@ -1,11 +1,11 @@
-// Some of the run's events, by their numbers, kept as the list grows: each event is looked at once.
+// A filtered list of the run's events, by their numbers, updated as the list grows: each event is checked once.
 
 import { useMemo } from "../vendor/preact.js";
 import { events } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
 export class Sifted {
-  /** @param takes Tells of an event whether it is wanted. */
+  /** @param takes Returns whether an event is wanted. */
   constructor(takes) {
     this.takes = takes;
     this.numbers = [];
@@ -13,7 +13,7 @@ export class Sifted {
     this.last = null;
   }
 
-  /** Looks at what is new; at all where the run has gone another way. */
+  /** Checks the new events; or all of them if the run has changed its past. */
   update({ list, first }) {
     let known = this.next - first;
     if (known < 0 || known > list.length || (known > 0 && list[known - 1] !== this.last)) {
@@ -28,13 +28,13 @@ export class Sifted {
     return this;
   }
 
-  /** Returns how many of them come before an event. */
+  /** Returns the number of filtered events before an event. */
   below(number) {
     return firstWhere(this.numbers, (one) => one >= number);
   }
 }
 
-/** Returns the events that a test takes, as they are now; `key` differs where the test does. */
+/** Returns the filtered events at this moment; `key` differs if the filter does. */
 export function useSifted(takes, key) {
   const sifted = useMemo(() => new Sifted(takes), [key]);
   return sifted.update(events.value);

@@ -1,28 +1,28 @@
-// Where something touches a body, as rows of the trace: the recording has no event for it, so the page makes them of the curves.
+// Contacts of a body as rows of the trace: the recording has no event for them, so the page computes them from the curves.
 
 import { contacts } from "../timeline/curves.js";
 import { firstWhere } from "../timeline/search.js";
 import { eventAt } from "./sifted.js";
 
-/** Returns touches as events, in their order: when each begins, who is touched, how hard and for how long. */
+/** Returns contacts as events, in order: the start of each, the body, the force and the duration. */
 export function touchEvents() {
   return contacts.value.map(({ begins, to, from, hardest, body }) => [Math.round(begins * 1e6), body, "contact", { force: hardest, lasts: to - from }]);
 }
 
-/** Rows of events with touches between them, by their times. A touch is known by a number below 0. */
+/** Rows of events merged with contacts by time. A contact has a negative number. */
 export class Mixed {
-  /** @param numbers The numbers of events, in their order; `touches` what `touchEvents` returns of those that are wanted. */
+  /** @param numbers The numbers of events, in order; `touches` the result of `touchEvents`, filtered. */
   constructor(numbers, touches) {
     this.numbers = numbers;
     this.touches = touches;
-    this.places = touches.map(([time], n) => firstWhere(numbers, (number) => eventAt(number)[0] > time) + n); // the rows that they have
+    this.places = touches.map(([time], n) => firstWhere(numbers, (number) => eventAt(number)[0] > time) + n); // their row numbers
   }
 
   get count() {
     return this.numbers.length + this.touches.length;
   }
 
-  /** Returns the number of what is in a row. */
+  /** Returns the number of the event or contact in a row. */
   numberAt(row) {
     const touch = this.places.indexOf(row);
     return touch >= 0 ? -1 - touch : this.numbers[row - this.places.filter((place) => place < row).length];
@@ -33,12 +33,12 @@ export class Mixed {
     return this.places.reduce((row, place) => (place <= row ? row + 1 : row), n);
   }
 
-  /** Returns the row of a touch. */
+  /** Returns the row of a contact. */
   rowOfTouch(number) {
     return this.places[-1 - number];
   }
 
-  /** Returns what has a number, as an event. */
+  /** Returns the event or contact with a number, as an event. */
   at(number) {
     return number < 0 ? this.touches[-1 - number] : eventAt(number);
   }

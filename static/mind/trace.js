@@ -1,4 +1,4 @@
-// The firing trace: what happened, line by line, with what is wanted of it.
+// The firing trace: the events, line by line, filtered as the user chooses.
 
 import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
@@ -15,7 +15,7 @@ import { events, session, state } from "../store.js";
 import { remembered } from "../remembered.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
-const TIME = "88px"; // so wide that there is room for times of some hours
+const TIME = "88px"; // wide enough for times of some hours
 const wantedWords = remembered("trace words", "");
 
 function testOf(kinds, words, agent) {

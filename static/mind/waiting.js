@@ -1,9 +1,9 @@
-// What stands in the place of an answer that is not there: why not, or that it takes a while.
+// Placeholder for an answer that is not available: shows why, or that it takes a while.
 
 import { html } from "../vendor/preact.js";
 import { isGone, standing } from "../standing.js";
 
-/** @param told What `useAnswer` returns. */
+/** @param told The result of `useAnswer`. */
 export function Waiting({ told }) {
   const { is, text } = standing.value;
   if (isGone.value) return html`<p class="empty">${text}</p>`;

@@ -1,4 +1,4 @@
-// Why one production matches or does not: condition by condition, and what its utility is made of.
+// Explains why a production matches or not: condition by condition, and the components of its utility.
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
@@ -45,7 +45,7 @@ function Utility({ reason }) {
   </p>`;
 }
 
-/** @param item One of `productionsOf`; its reason is null while the run has not been asked. */
+/** @param item An item of `productionsOf`; its reason is null before the run was asked. */
 export function Why({ item }) {
   if (!item) return null;
   const { reason, name } = item;

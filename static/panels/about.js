@@ -1,4 +1,4 @@
-// What the model says of itself: its docstring, with values to try, and the way to its text.
+// The model's description: its docstring, with values to try, and a link to its source.
 
 import { h, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
@@ -7,11 +7,11 @@ import { call, order } from "../server.js";
 import { standing } from "../standing.js";
 import { session } from "../store.js";
 
-/** The elements that a description may have; the server sends no others. */
+/** The elements allowed in a description; the server sends no others. */
 const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"]);
 const told = signal({ key: "", answer: null, problem: null });
 
-/** Says of which text of which run a description is. */
+/** Returns a key for the text and the run that a description belongs to. */
 function keyOf({ id, run, attempt, shown_attempt: shown }) {
   return `${id} ${run} ${shown ?? attempt}`;
 }
@@ -30,12 +30,12 @@ async function follow(wanted) {
   if (told.peek().key === key) told.value = { key, answer, problem };
 }
 
-/** Runs the model from its start with these values of parameters. */
+/** Runs the model from its start with these parameter values. */
 function attempt(settings) {
   order({ type: "restart", settings, run: true });
 }
 
-/** Draws a node: a text, or an element with what is in it. Whatever it says is text. */
+/** Draws a node: a text, or an element with its children. All content is shown as text. */
 function Node({ node }) {
   if (typeof node === "string") return node;
   const { tag, children, settings, href } = node;

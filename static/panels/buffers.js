@@ -1,4 +1,4 @@
-// What the mind holds: every buffer with its chunk, every module with its state, agent by agent; and the result of a run.
+// The contents of the agents: every buffer with its chunk, every module with its state, by agent; and the result of a run.
 
 import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { agentOf, agentsOf, nameIn } from "../mind/agents.js";
@@ -10,11 +10,11 @@ import { chunkText, slotsOf } from "../parts/chunk.js";
 import { nothing } from "../standing.js";
 import { running, session, state } from "../store.js";
 
-const LINES = 3; // so much of a chunk is shown, unless more is asked for
-const KEPT = 1000; // while the run goes on, a row stays as high as it was for so long [ms]
+const LINES = 3; // the number of lines of a chunk shown unless expanded
+const KEPT = 1000; // how long a row keeps its height while the run is active [ms]
 
-/** Returns how many lines a row needs, up to those that are shown, and whether there are more. A row that needs fewer lines shrinks:
- * at once where the run stands; while it goes on only after a moment, so that what is below does not jump with each retrieval. */
+/** Returns the number of lines that a row needs, up to the limit, and whether there are more. A row that needs fewer lines shrinks:
+ * at once if the run is paused; otherwise after a delay, so that what is below does not jump at each retrieval. */
 function useLines(text, open) {
   const box = useRef(null);
   const content = useRef(null);
@@ -34,7 +34,7 @@ function useLines(text, open) {
   return { box, content, lines: running.value ? kept : needed.lines, more: needed.more };
 }
 
-/** A buffer: some lines of its chunk at most, unless all of it is asked for. */
+/** A buffer: the first lines of its chunk, or all of it if expanded. */
 function Buffer({ path, name, chunk }) {
   const [open, setOpen] = useState(false);
   const slots = slotsOf(chunk);

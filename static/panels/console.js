@@ -1,4 +1,4 @@
-// What the model prints, as it is printed, with the warnings and errors of the run at their places; it goes back with the run.
+// The model's output as it is printed, with the warnings and errors of the run between its lines; goes back with the run.
 
 import { html, useEffect, useMemo } from "../vendor/preact.js";
 import { fillGaps, printed, printedVersion } from "../mind/printed.js";
@@ -13,20 +13,20 @@ import { nothingYet } from "../standing.js";
 import { alive, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
-const LONGEST = 2000; // so much of a line is drawn [characters]
+const LONGEST = 2000; // the number of characters of a line that are drawn
 const words = remembered("console words", "");
 
-/** What a terminal would obey, or what turns the order of letters: it is shown, and does nothing. */
+/** Control characters for terminals, and those that change the direction of text: shown as signs, without effect. */
 const CONTROL = /\u001b\[[0-?]*[ -/]*[@-~]|[\u0000-\u0008\u000a-\u001f\u007f-\u009f\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ufeff]/g;
 
-/** Returns a control character as Python writes it, with what belongs to it. */
+/** Returns a control character and its sequence as Python writes it. */
 function signOf(control) {
   const code = control.codePointAt(0);
   const sign = { 10: "\\n", 13: "\\r" }[code] ?? (code < 0x100 ? `\\x${code.toString(16).padStart(2, "0")}` : `\\u${code.toString(16).padStart(4, "0")}`);
   return sign + control.slice(1);
 }
 
-/** Draws a text of any kind as it is: spaces and tabs as they are, and what controls terminals as signs. */
+/** Draws any text literally: with its spaces and tabs, and with control characters as signs. */
 function Written({ text }) {
   const shown = text.slice(0, LONGEST);
   const parts = [];
@@ -40,19 +40,19 @@ function Written({ text }) {
   return html`${parts}${more > 0 ? html`<span class="control"> … ${more.toLocaleString("en")} more characters; a copy has them</span>` : null}`;
 }
 
-/** Returns the notices of the run that is shown which came before an event, in order. */
+/** Returns the notices of the shown run that came before an event, in order. */
 function noticesUpTo(now) {
   const { shown_attempt: attempt, cuts = [] } = session.value ?? {};
   const isGone = ({ number, events }) => cuts.some(([before, cut]) => number < before && events > cut);
   return notices.value.filter((notice) => notice.attempt === attempt && notice.number >= 0 && notice.events <= now && !isGone(notice)).toSorted((one, other) => one.events - other.events);
 }
 
-/** What is in the console: lines and notices, each at its place. */
+/** The contents of the console: lines and notices, in order. */
 class Listed {
   constructor(lines, told) {
     this.lines = lines;
     this.told = told;
-    /** The place of each notice among all. */
+    /** The position of each notice among all. */
     this.places = told.map(({ events }, n) => firstWhere(lines, ({ number }) => number >= events) + n);
     this.count = lines.length + told.length;
   }
@@ -63,7 +63,7 @@ class Listed {
     return this.places[before] === place ? [null, this.told[before]] : [this.lines[place - before], null];
   }
 
-  /** Returns all of it as text. */
+  /** Returns all contents as text. */
   get text() {
     return Array.from({ length: this.count }, (_, n) => textOf(this.at(n))).map((line) => `${line}\n`).join("");
   }

@@ -1,4 +1,4 @@
-// The editor: any model file of the folder, what is wrong with it, and whether the run that is shown is one of this text.
+// The editor: any model file of the folder, its problems, and whether the run that is shown is one of this text.
 
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { folder, listModels, model, models } from "../bar/models.js";
@@ -14,11 +14,11 @@ import { bindKey, noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
-const AGAIN = 3000; // how often it looks whether the file has changed on disk [ms]
+const AGAIN = 3000; // how often it checks whether the file has changed on disk [ms]
 
 /** The text whose two versions are compared. */
 const comparing = signal(null);
-let followed = { of: null, id: null }; // the model that was opened here last because it is shown, and in which session
+let followed = { of: null, id: null }; // the model that was last opened because it is shown, and its session
 
 async function saveShown() {
   const document = shownDocument();
@@ -38,21 +38,21 @@ bindKey("Mod+s", "Save the text", saveShown, "Editor");
 bindKey("Mod+Enter", "Save the text, and run it", runShown, "Editor");
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
-/** Does what the user has chosen of two texts. */
+/** Applies the user's choice between two versions. */
 async function choose(document, which) {
   comparing.value = null;
   const theirs = document.theirs.value;
   if (which === "mine" && !(await save(document, theirs.version)) && document.theirs.value) comparing.value = document;
   if (which === "theirs") take(document, theirs);
-  requestAnimationFrame(focusText); // once it is seen again
+  requestAnimationFrame(focusText); // once it is visible again
 }
 
-/** Looks again and again whether files have changed on disk, while the editor is seen. */
+/** Checks regularly whether files have changed on disk, while the editor is visible. */
 function useLooking() {
   useEffect(() => {
     function lookAt(list) {
       if (document.visibilityState === "hidden") return;
-      for (const one of list) look(one).catch(() => {}); // whoever cannot be asked now is asked again
+      for (const one of list) look(one).catch(() => {}); // a failed request is repeated next time
     }
     function returned() {
       lookAt(documents.peek().values());
@@ -103,10 +103,10 @@ function Editor() {
   const compares = document && comparing.value === document && document.theirs.value?.text != null;
   const { id = null, model: of = model.value } = session.value ?? {};
   useLooking();
-  // At once, not after the next picture: by then the user may have chosen a file, which this would take away again.
+  // At once, not after the next picture: by then the user may have chosen another file, which this would replace.
   useLayoutEffect(() => {
     if (!of) return;
-    const other = of !== followed.of && (id === null || id !== followed.id); // not only another name of the same
+    const other = of !== followed.of && (id === null || id !== followed.id); // not only another name of the same model
     followed = { of, id };
     if (other && !wanted.value) open(of);
   }, [of, id]);

@@ -18,7 +18,7 @@ export function seeing() {
   return Object.entries(session.value?.world?.bodies ?? {}).filter(([, { eye: name }]) => name).map(([body]) => body);
 }
 
-/** Sums a view up by label: {label, extents, rows, left, right, nearest}. */
+/** Returns a summary of a view by label: {label, extents, rows, left, right, nearest}. */
 function objectsOf({ extents }) {
   const found = new Map();
   for (const [row, label, , x1, x2, d1, d2] of extents) {
@@ -56,14 +56,14 @@ function Objects({ view }) {
   </table>`;
 }
 
-const DIGITS = { m: 2, "°": 1 }; // after the point, by unit
+const DIGITS = { m: 2, "°": 1 }; // decimals, by unit
 
-/** What a column of edges is called, with its unit. */
+/** Returns the heading of a column of edges, with its unit. */
 function fieldText({ name, unit }) {
   return unit ? `${name} [${unit}]` : name;
 }
 
-/** What the columns of edges mean, as the camera documents its fields. */
+/** The descriptions of the columns of edges, as the camera documents its fields. */
 function Legend({ fields }) {
   return html`<details class="legend">
     <summary>What the columns mean</summary>

@@ -1,4 +1,4 @@
-// Declarative memory: its chunks with their activations, the body schema in it, and what the eyes have last found.
+// Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
 import { MemoryTable } from "../mind/memory_table.js";
@@ -12,12 +12,12 @@ import { remembered } from "../remembered.js";
 import { nothing } from "../standing.js";
 import { running, session, state } from "../store.js";
 
-const MOST = 5000; // so many chunks are asked for
-const LIVE = 150; // a memory with no more chunks than these is shown while the run goes on, too
-const TYPED = 200; // so long after the last key the search begins [ms]
+const MOST = 5000; // the maximum number of chunks requested
+const LIVE = 150; // a memory with at most this many chunks is also shown while the run is active
+const TYPED = 200; // the delay between the last key and the search [ms]
 
 const view = remembered("memory view", "chunks");
-const wanted = signal(""); // which memory
+const wanted = signal(""); // the chosen memory
 
 function Seen() {
   const told = useAnswer({ type: "explain" });

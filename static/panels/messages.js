@@ -1,4 +1,4 @@
-// What the user is told: errors with their lines, warnings, what the model's process prints.
+// Messages to the user: errors with their lines, warnings, output of the model's process.
 
 import { computed, html, useEffect } from "../vendor/preact.js";
 import { hasMore } from "../editor/marks.js";
@@ -7,13 +7,13 @@ import { remembered } from "../remembered.js";
 import { isSettled, notices, settle } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
-const MOST = 300; // more are not drawn
+const MOST = 300; // the maximum number drawn
 
 const hidden = remembered("messages hidden", []);
-/** The messages that the user has not cleared away. */
+/** The messages that the user has not cleared. */
 const kept = computed(() => notices.value.filter((notice) => !isSettled(notice, "cleared")));
 
-/** The errors that were told since the tab was last open. */
+/** The errors since the tab was last open. */
 function unseen() {
   return kept.value.filter((notice) => notice.level === "error" && !isSettled(notice, "seen")).length;
 }

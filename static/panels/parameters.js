@@ -1,4 +1,4 @@
-// The model's parameters, as its class declares them: live ones act at once, the others with the next run.
+// The model's parameters, as its class declares them: live ones take effect at once, the others with the next run.
 
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
@@ -8,14 +8,14 @@ import { call, isLeft, order } from "../server.js";
 import { standing } from "../standing.js";
 import { complain, session, state } from "../store.js";
 
-const listing = signal(null); // what the model's text says of itself
-const drafts = signal({}); // what is written in fields and not yet in force, by name
-const told = signal({}); // what live parameters have been set to in this run, by name
+const listing = signal(null); // the declarations in the model's text
+const drafts = signal({}); // entered values that are not yet in effect, by name
+const told = signal({}); // values that live parameters were set to in this run, by name
 const seed = signal("");
 let of = {};
 
-/** Reads the parameters of the model anew, where it is another one, another run or another text. What is written in fields stays,
- * but for what is in force now. */
+/** Reads the model's parameters again if the model, the run or the text has changed. Entered values stay, except those
+ * that are now in effect. */
 async function follow({ id, model, run, stale }) {
   if (of.id === id && of.run === run && of.stale === stale) return;
   const other = of.id !== id;
@@ -39,7 +39,7 @@ async function follow({ id, model, run, stale }) {
   }
 }
 
-/** Returns the value that a parameter has in the run; of the only doorway's width the world's, which the slider changes, too. */
+/** Returns the value of a parameter in the run; for the width of a single doorway the world's value, which the slider changes too. */
 function inForce({ name, live, default: otherwise }) {
   const begun = session.value?.parameters?.[name];
   const widths = Object.values(state.value?.apertures ?? {});
@@ -52,7 +52,7 @@ function known() {
   return (listing.value?.parameters ?? []).filter((parameter) => parameter.known);
 }
 
-/** The values with which the run began of parameters that the text has no longer. */
+/** The initial values of the run's parameters that no longer exist in the text. */
 function forgotten() {
   const names = new Set(known().map(({ name }) => name));
   return Object.keys(session.value?.settings ?? {}).filter((name) => !names.has(name));
@@ -70,12 +70,12 @@ function waiting() {
   });
 }
 
-/** Takes what is written in a field; a live parameter acts at once. */
+/** Stores an entered value; a live parameter takes effect at once. */
 async function write(parameter, text, whole) {
   const { name } = parameter;
   const { value, problem } = read(parameter, text);
   const holds = !problem && value === inForce(parameter);
-  // While one is still writing, «1.» on the way to «1.5» stays as it is, though it is 1.
+  // During typing, «1.» on the way to «1.5» stays unchanged, although it equals 1.
   if (holds && whole) drop(name);
   else drafts.value = { ...drafts.value, [name]: text };
   if (!parameter.live || problem || !whole || holds || !session.value?.alive) return;
@@ -83,13 +83,13 @@ async function write(parameter, text, whole) {
   try {
     const sent = await change({ type: "set", name, value });
     if (run === of && sent) told.value = { ...told.value, [name]: value };
-    if (run === of && drafts.value[name] === text) drop(name); // else more was written meanwhile
+    if (run === of && drafts.value[name] === text) drop(name); // otherwise more was typed meanwhile
   } catch (error) {
     if (!isLeft(error)) complain(error.message);
   }
 }
 
-/** Forgets what is written in a field. */
+/** Discards the entered value of a field. */
 function drop(name) {
   const { [name]: gone, ...others } = drafts.value;
   drafts.value = others;
@@ -144,7 +144,7 @@ function Field({ parameter }) {
 
 function Parameters() {
   const shown = session.value;
-  useLayoutEffect(() => void (shown && follow(shown))); // before anything is written into a field of the model before
+  useLayoutEffect(() => void (shown && follow(shown))); // before anything can be typed into a field of the previous model
   if (!shown) return html`<p class="empty">${standing.value.text}</p>`;
   if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
   const fields = known();

@@ -1,4 +1,4 @@
-// The productions: the firing trace above, and below it why: conditions, the conflict set, retrievals.
+// The productions: the firing trace above, and the explanations below: conditions, the conflict set, retrievals.
 
 import { html, useLayoutEffect, useState } from "../vendor/preact.js";
 import { at, question, shownReasons } from "../mind/asked.js";
@@ -35,7 +35,7 @@ function Moment({ told }) {
     <button aria-pressed=${at.value === null} title="Explain the present moment" onClick=${() => (at.value = null)}>Now</button>`;
 }
 
-/** What to do where the run cannot explain the moment that was asked for. */
+/** The hint if the run cannot explain the requested moment. */
 function Elsewhere() {
   const known = at.value <= (state.value?.furthest ?? 0) && at.value > (state.value?.time ?? 0);
   return html`<p class="elsewhere">

@@ -1,4 +1,4 @@
-// The recordings: what was run, with what, what came of it; to open, run again, compare, delete, take away.
+// The recordings, with their settings and results; to open, run again, compare, delete, download.
 
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Comparison } from "../compare/compare.js";
@@ -9,7 +9,7 @@ import { follow, listRuns, loading, problem, runs as list, total } from "../runs
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/words.js";
 
-/** Returns the recordings in which every word of a search stands. */
+/** Returns the recordings that contain every word of a search. */
 function found(all, search) {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
   if (words.length === 0) return all;
@@ -19,7 +19,7 @@ function found(all, search) {
   });
 }
 
-/** Tells of a recording of which nothing was ever run, such as of a model that was only looked at. */
+/** Returns whether nothing was ever run in a recording, for example of a model that was only opened. */
 function isIdle(run) {
   return run.time === 0 && !run.ended && !run.failed && !run.session && !run.problem;
 }

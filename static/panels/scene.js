@@ -1,4 +1,4 @@
-// The 3D view: viser's page in a frame that never moves, for moving it would load it again; and the switches on its edge.
+// The 3D view: viser's page in a frame that never moves, because moving it would reload it; and the buttons on its edge.
 
 import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { RetinaInset } from "../eye/inset.js";
@@ -16,8 +16,8 @@ const open = remembered("overlays open", false);
 const view = remembered("view", "follow");
 if (!(view.value in VIEWS)) view.value = "follow";
 const resets = signal(0); // how often the view was reset
-const BETWEEN = 250; // between two looks at what time the 3D view shows [ms]
-const LATE = 0.5; // what it shows may be so old before that is said [s]
+const BETWEEN = 250; // the interval between two checks of the time that the 3D view shows [ms]
+const LATE = 0.5; // the delay of the 3D view from which it is reported [s]
 const NO_WEBGL =
   "This browser cannot draw in 3D, for its WebGL is off or missing: switch on hardware acceleration in its settings, or take another browser. All else works without it.";
 
@@ -32,7 +32,7 @@ function overlay(name) {
   return overlays.get(name);
 }
 
-/** From where this browser sees the scene, and what is drawn over it for all who watch. */
+/** The controls for this browser's view of the scene, and for the overlays shared by all viewers. */
 function ViewBar() {
   return html`<div class="view-bar" role="toolbar" aria-label="3D view">
       <select aria-label="Camera" title="From where the scene is seen (V)" value=${view.value} onChange=${(event) => (view.value = event.currentTarget.value)}>
@@ -52,7 +52,7 @@ function ViewBar() {
     </div>`}`;
 }
 
-/** Puts the camera back to where the chosen view begins. */
+/** Moves the camera back to the start of the chosen view. */
 function resetView() {
   resets.value += 1;
 }
@@ -67,13 +67,13 @@ bindKey("v", "Next view: with the body, free, from the side, from above, through
 bindKey("Shift+v", "Reset view", resetView, "3D view");
 noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
 
-/** Says what time the 3D view shows, where it cannot keep up with the run. */
+/** Shows the time of the 3D view if it cannot keep up with the run. */
 function Lag({ frame }) {
   const shown = useSignal(null);
   useEffect(() => {
     if (!running.value) return undefined;
     const timer = setInterval(() => {
-      const time = Number(/t = ([\d.]+) s/.exec(frame.current?.contentDocument?.body?.textContent)?.[1] ?? NaN); // in viser's own panel
+      const time = Number(/t = ([\d.]+) s/.exec(frame.current?.contentDocument?.body?.textContent)?.[1] ?? NaN); // from viser's own panel
       const { time: now, measured } = state.peek() ?? {};
       shown.value = now - time > LATE * (measured ?? Infinity) ? time : null;
     }, BETWEEN);
@@ -85,7 +85,7 @@ function Lag({ frame }) {
   return shown.value === null ? null : html`<p class="scene-lag number" title="The run goes faster than this machine can draw it">3D view of ${shown.value.toFixed(1)} s</p>`;
 }
 
-/** Says why there is nothing to see: [text, whether there will be in a while]; null where there is. `drawn` is what the frame tells. */
+/** Returns why there is no picture: [text, whether there will be one]; null if there is one. `drawn` is reported by the frame. */
 function missing(drawn) {
   const { world, scene, alive } = session.value ?? {};
   if (world && scene) return drawn === null ? ["The 3D view loads …", true] : drawn ? null : [NO_WEBGL, false];

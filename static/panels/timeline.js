@@ -1,4 +1,4 @@
-// The timeline: one axis of time for mind and body, on which one goes back and forth.
+// The timeline: one axis of time for agents and body, for going back and forth.
 
 import { computed, html } from "../vendor/preact.js";
 import { nothingYet } from "../standing.js";
@@ -8,7 +8,7 @@ import { column } from "../timeline/rows.js";
 import { Stage } from "../timeline/stage.js";
 import { Tools } from "../timeline/tools.js";
 
-/** What is said where there is nothing to show yet; an empty text where there is. */
+/** The text shown if there is nothing to draw yet; otherwise empty. */
 const nothing = computed(() => {
   lanesVersion.value;
   curvesVersion.value;

@@ -1,11 +1,11 @@
-// Values of parameters as they are written in fields, read, and checked against their bounds.
+// Formats, parses and checks values of parameters.
 
-/** Returns a value as it is written in a field. */
+/** Returns a value as text for a field. */
 export function written(value) {
   return value === null || value === undefined ? "" : String(value);
 }
 
-/** Says within which bounds a parameter is: "above 0, at most 3". */
+/** Returns the bounds of a parameter as text: "above 0, at most 3". */
 export function boundsText({ above, least, below, most, optional }) {
   const parts = [
     above === null ? null : `above ${above}`,
@@ -17,7 +17,7 @@ export function boundsText({ above, least, below, most, optional }) {
   return parts.filter(Boolean).join(", ");
 }
 
-/** Reads what is written in a field: {value}, or {problem} that says what would be right. */
+/** Parses the text of a field: {value}, or {problem} with a description of valid values. */
 export function read(parameter, text) {
   const { takes, optional } = parameter;
   if (takes === "switch") return { value: text === true || text === "true" };

@@ -1,21 +1,21 @@
-// Questions to a run, asked again whenever it stands at another moment.
+// Questions to a run, sent again whenever the run is at another moment.
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
 import { say } from "../server.js";
 import { alive, moment, running, session, whichRun } from "../store.js";
 
-/** How long it waits between two questions while the run goes on [ms]: to answer costs the run time. */
+/** The interval between two questions while the run is active [ms]: answering slows the run down. */
 const WHILE_RUNNING = 100;
 
 const NOTHING = { answer: null, error: null, waiting: false, of: null };
 
 /**
- * Asks a question of `protocol.py` now and whenever the run stands at another moment; one question at a time.
+ * Sends a question of `protocol.py` now and whenever the run is at another moment; one question at a time.
  *
- * @param question What is asked; null for nothing.
- * @param live Whether it is also asked while the run goes on.
- * @param once Whether it is asked once while the run goes on, as a question about a past moment.
- * @returns {answer, error, waiting}: the newest answer (kept until the next one is there, but not for another session), or why
+ * @param question The question; null for none.
+ * @param live Whether it is also sent while the run is active.
+ * @param once Whether it is sent once while the run is active, such as a question about a past moment.
+ * @returns {answer, error, waiting}: the newest answer (kept until the next one arrives, but not for another session), or why
  *   there is none.
  */
 export function useAnswer(question, { live = false, once = false } = {}) {
@@ -41,7 +41,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
         (error) => ({ answer: null, error: error.message, of }),
       );
       if (over || newest.current !== key) return;
-      setTold((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // what another run says is no answer
+      setTold((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // an answer of another run is ignored
       busy = false;
       timer = setTimeout(ask, running.peek() ? WHILE_RUNNING : 0);
     }

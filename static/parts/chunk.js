@@ -1,20 +1,20 @@
-// Chunks and values as one reads them.
+// Chunks and values as text.
 
 import { html } from "../vendor/preact.js";
 
-/** Returns the slots of a chunk as [name, text]; those that are known by place have an empty name. */
+/** Returns the slots of a chunk as [name, text]; positional slots have an empty name. */
 export function slotsOf(chunk) {
   return Object.entries(chunk ?? {}).map(([slot, value]) => [/^\d+$/.test(slot) ? "" : slot, valueText(value)]);
 }
 
-/** Says a value: numbers with at most four digits after the point, texts as they are. */
+/** Returns a value as text: numbers with at most four decimals, texts unchanged. */
 export function valueText(value) {
   if (typeof value === "number") return Number.isInteger(value) ? String(value) : String(Number(value.toFixed(4)));
   if (value === null || value === undefined) return "none";
   return typeof value === "object" ? JSON.stringify(value) : String(value);
 }
 
-/** Says a chunk in one line: places first, then slots. */
+/** Returns a chunk in one line: positional slots first, then named ones. */
 export function chunkText(chunk) {
   if (!chunk) return "";
   return slotsOf(chunk)

@@ -1,12 +1,12 @@
-// A button that copies something to the clipboard, and says on itself that it is there.
+// A button that copies text to the clipboard, and confirms it on itself.
 
 import { html, useEffect, useState } from "../vendor/preact.js";
 import { complain } from "../store.js";
 import { Icon } from "./icon.js";
 
-const SHOWN = 2000; // how long it says so [ms]
+const SHOWN = 2000; // how long the confirmation is shown [ms]
 
-/** @param text What is on the button. @param copied Returns what is copied, or a promise of it. @param title What more there is to say. */
+/** @param text The button's text. @param copied Returns the text to copy, or a promise of it. @param title The tooltip. */
 export function CopyButton({ text, copied, disabled = false, title = undefined }) {
   const [count, setCount] = useState(0);
   const [done, setDone] = useState(false);
@@ -27,7 +27,7 @@ export function CopyButton({ text, copied, disabled = false, title = undefined }
     }
   }
 
-  // As wide as with either text, so that nothing moves.
+  // As wide as the longer text, so that nothing moves.
   return html`<button class="copy ${done ? "done" : ""}" disabled=${disabled} title=${title} onClick=${copy}>
     <${Icon} name=${done ? "check" : "copy"} /><span>${text}</span><span class="said" role="status">${done ? "Copied" : ""}</span>
   </button>`;

@@ -1,6 +1,6 @@
-// Counts as one reads them.
+// Counts as text.
 
-/** Says how many there are of something: «1 chunk», «2 chunks»; `many` where the plural has no mere s. */
+/** Returns a count with its noun: «1 chunk», «2 chunks»; `many` is for irregular plurals. */
 export function counted(count, one, many = `${one}s`) {
   return `${count.toLocaleString("en")} ${count === 1 ? one : many}`;
 }

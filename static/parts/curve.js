@@ -1,19 +1,19 @@
-// Draws curves over time in a box: a scale at its left, lines at round values, each curve in a colour of its own.
+// Draws curves over time in a box: a scale at the left, lines at round values, each curve in its own colour.
 
 import { numberText, roundRange, stepFor, ticks, timeText } from "./ticks.js";
 import { cut, widthOf } from "./surface.js";
 
 export const COLOURS = 6;
-const LEAST_RANGE = 0.01; // what differs by less is drawn as a line, not as what numerical noise makes of it
-const DOT = 2; // so wide is a value that stands alone [px]
-const EDGE = 6; // so far from the ends of an axis its first and last text keep [px]
+const LEAST_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
+const DOT = 2; // the width of a single value [px]
+const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
 /** Returns the name of the colour of the nth curve. */
 export function seriesColour(n) {
   return `series-${(n % COLOURS) + 1}`;
 }
 
-/** Returns the number of the first of ascending times that is not before a time. */
+/** Returns the index of the first of ascending times that is not before a given time. */
 export function firstFrom(times, time) {
   let [low, high] = [0, times.length];
   while (low < high) {
@@ -24,13 +24,13 @@ export function firstFrom(times, time) {
   return low;
 }
 
-/** Returns the value that a curve has at a time: that of the last moment known up to then, null where there is none. */
+/** Returns the value of a curve at a time: that of the last known moment until then, or null. */
 export function valueAt(times, values, time) {
   const at = firstFrom(times, time + 1e-6) - 1;
   return at < 0 ? null : values[at];
 }
 
-/** Returns the least and the largest value of some curves: a round range. */
+/** Returns a round range that contains the values of some curves. */
 export function rangeOf(series) {
   let [least, most] = [Infinity, -Infinity];
   for (const { values } of series) {
@@ -45,7 +45,7 @@ export function rangeOf(series) {
   return roundRange(least - room, most + room);
 }
 
-/** Returns a curve as points of a box; where several values share a pixel, its least and its largest. */
+/** Returns a curve as points in a box; if several values share a pixel, its minimum and maximum. */
 function pointsOf(times, values, span, box, yOf) {
   const scale = box.width / (span.to - span.from);
   const [begin, end] = [Math.max(0, firstFrom(times, span.from) - 1), Math.min(times.length, firstFrom(times, span.to) + 1)];
@@ -71,7 +71,7 @@ function pointsOf(times, values, span, box, yOf) {
   return withDots(points);
 }
 
-/** Returns points of which none is alone between two gaps: a line through one point would not be seen. */
+/** Returns points of which none is alone between two gaps: a line through a single point would be invisible. */
 function withDots(points) {
   const made = [];
   for (let n = 0; n < points.length; n += 2) {
@@ -83,7 +83,7 @@ function withDots(points) {
   return made;
 }
 
-/** Returns the values that a scale names: at least two, for one alone tells of no size; otherwise no more than there is room for. */
+/** Returns the values labelled on a scale: at least two, because one alone shows no size; otherwise as many as fit. */
 function scaleOf(least, most, room) {
   const values = ticks(least, most, stepFor(most - least, room));
   return values.length > 1 ? values : ticks(least, most, stepFor(most - least, room + 1));
@@ -92,10 +92,10 @@ function scaleOf(least, most, room) {
 /**
  * Draws curves.
  *
- * @param surface What is drawn on.
- * @param box {x, y, width, height} of the place of the curves; the scale stands left of it.
+ * @param surface The surface to draw on.
+ * @param box {x, y, width, height} of the curves; the scale is left of it.
  * @param series [{name, unit, values, times?, colour?, dash?}]
- * @param times Those of the series that have none of their own [s].
+ * @param times The times of the series without their own [s].
  * @param span {from, to}: the times from the left to the right edge [s].
  * @param range [least, most]: the values from the lower to the upper edge.
  */
@@ -115,7 +115,7 @@ export function drawCurves(surface, box, { series, times, span, range }) {
   });
 }
 
-/** Draws an axis of time with its lines; returns the step between them [s]. `box` is where what it belongs to stands. */
+/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to. */
 export function drawTimes(surface, box, span, { y, height = 18, lines = true } = {}) {
   const step = stepFor(span.to - span.from, Math.max(2, Math.floor(box.width / 80)));
   const scale = box.width / (span.to - span.from);
@@ -130,7 +130,7 @@ export function drawTimes(surface, box, span, { y, height = 18, lines = true } =
   return step;
 }
 
-/** Draws what the curves are called, from x on, as far as there is room. */
+/** Draws the names of the curves, from x on, as far as there is room. */
 export function drawLegend(surface, x, y, width, series) {
   let at = x;
   series.forEach(({ name, colour, dash }, n) => {

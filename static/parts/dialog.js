@@ -1,39 +1,39 @@
-// Dialogs, as the browser makes them: they hold the focus, and Escape closes them.
+// Dialogs, based on the browser's own: they hold the focus, and Escape closes them.
 
 import { html, signal, useLayoutEffect, useRef } from "../vendor/preact.js";
 
 const open = signal(null);
 
-/** Shows a dialog: `title`, `body` (what `html` makes) and `actions` [{text, kind, value}]. Returns the value of the one that is
- * chosen; null where it is closed. With `ask` {label, value, problem?, choices?}
- * there is a line to write in, and what was written is returned; with choices [{value, text}] {text, choice}. */
+/** Shows a dialog: `title`, `body` (made by `html`) and `actions` [{text, kind, value}]. Returns the value of the chosen action;
+ * null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
+ * with choices [{value, text}], {text, choice}. */
 export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined }) {
-  open.peek()?.resolve(null); // one that comes late takes the place of what is asked now
+  open.peek()?.resolve(null); // a new dialog replaces the open one
   return new Promise((resolve) => (open.value = { title, body, actions, ask, resolve }));
 }
 
-/** Asks whether something is to be done; returns whether. */
+/** Asks for confirmation; returns whether the user agrees. */
 export function confirmed(title, text, action) {
   const actions = [{ text: "Cancel", value: false }, { text: action, value: true, kind: "danger" }];
   return dialog({ title, body: html`<p>${text}</p>`, actions }).then(Boolean);
 }
 
-/** Asks for a text; returns it, or null. `more` may have `problem`, why the text is not right, and `choices`; see `dialog`. */
+/** Asks for a text; returns it, or null. `more` may have `problem`, why the text is not valid, and `choices`; see `dialog`. */
 export function asked(title, label, value, action, more = {}) {
   return dialog({ title, ask: { label, value, ...more }, actions: [{ text: "Cancel", value: null }, { text: action, value: true, kind: "primary" }] });
 }
 
-/** The place of the dialogs. */
+/** The container of the dialogs. */
 export function Dialogs() {
   const box = useRef(null);
   const line = useRef(null);
   const shown = open.value;
-  // At once: what the user presses next is meant for it.
+  // At once: the next key press is meant for the dialog.
   useLayoutEffect(() => {
     if (!shown) return;
     box.current.showModal();
     const { activeElement } = document;
-    if (activeElement.matches("input:not([type=radio], [type=checkbox])")) activeElement.select(); // what is written now takes its place
+    if (activeElement.matches("input:not([type=radio], [type=checkbox])")) activeElement.select(); // typing replaces the selected text
   }, [shown]);
   if (!shown) return null;
 

@@ -1,4 +1,4 @@
-// Small pictures for buttons, drawn in a square of 16; they take the colour of the text.
+// Small icons for buttons, drawn in a square of 16; they have the colour of the text.
 
 import { html } from "../vendor/preact.js";
 

@@ -1,14 +1,14 @@
-// Long text, line by line, of which only the lines in sight are drawn; it stays at its end until the user scrolls away from it.
+// Long text that draws only its visible lines; it stays at its end until the user scrolls away from it.
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 
 const LINE = 18; // the height of a line, as lines.css has it [px]
-const SPARE = 20; // so many lines are drawn beyond what is in sight
+const SPARE = 20; // the number of lines drawn beyond the visible ones
 
 /**
- * @param count How many lines there are.
- * @param line Returns line n, drawn; it is as high as all others.
- * @param of What the lines are of: where that is another one, the end is shown again.
+ * @param count The number of lines.
+ * @param line Returns line n, drawn; all lines have the same height.
+ * @param of The source of the lines: if it changes, the end is shown again.
  */
 export function Lines({ label, count, line, of }) {
   const box = useRef(null);

@@ -1,8 +1,8 @@
-// Pictures that are kept: whatever draws on a surface, as PNG or SVG.
+// Saved pictures: anything that draws on a surface, as PNG or SVG.
 
 import { CanvasSurface, SvgSurface } from "./surface.js";
 
-const SHARPNESS = 2; // pixels of a PNG for each of the page
+const SHARPNESS = 2; // pixels of a PNG per pixel of the page
 const TITLE = 26; // height of the line above a picture [px]
 const MARGIN = 12; // [px]
 
@@ -56,13 +56,13 @@ export function pngBlob(picture) {
   return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
 }
 
-/** Keeps a picture as a file: `kind` is "png" or "svg". */
+/** Saves a picture as a file: `kind` is "png" or "svg". */
 export async function savePicture(picture, kind) {
   const blob = kind === "svg" ? new Blob([svgText(picture)], { type: "image/svg+xml" }) : await pngBlob(picture);
   saveFile(`${picture.name}.${kind}`, blob);
 }
 
-/** Hands the user a file. */
+/** Downloads a file to the user's computer. */
 export function saveFile(name, blob) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);

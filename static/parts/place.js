@@ -13,7 +13,7 @@ export function openAt(path, line) {
   return open(path, line);
 }
 
-/** Returns what a file is called in the models folder; null where it is not in there. */
+/** Returns the name of a file in the models folder; null if it is not there. */
 function inFolder(file) {
   const root = `${folder.value}/`;
   if (folder.value && file.startsWith(root)) return file.slice(root.length);
@@ -27,7 +27,7 @@ export function Place({ file, line }) {
   return html`<button class="place link" title="Open in the editor" onClick=${() => openAt(path, line)}>${text}</button>`;
 }
 
-/** A traceback as text, in which the lines of the folder's files can be gone to. */
+/** A traceback as text, with links to the lines of the folder's files. */
 export function Traceback({ text }) {
   return html`<pre>
 ${text

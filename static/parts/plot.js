@@ -1,4 +1,4 @@
-// One plot of curves over time, with its scale, its axis and what the pointer is at; kept as PNG or SVG.
+// One plot of curves over time, with its scale, its axis and the values at the pointer; can be saved as PNG or SVG.
 
 import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js";
 import { dark } from "../theme.js";
@@ -8,7 +8,7 @@ import { savePicture } from "./picture.js";
 import { CanvasSurface, scaled } from "./surface.js";
 import { numberText, timeText } from "./ticks.js";
 
-const LEFT = 46; // room for the scale [px]
+const LEFT = 46; // the width of the scale [px]
 const RIGHT = 8;
 const AXIS = 18; // [px]
 
@@ -16,7 +16,7 @@ function boxOf(width, height) {
   return { x: LEFT, y: 4, width: Math.max(10, width - LEFT - RIGHT), height: Math.max(10, height - AXIS - 4) };
 }
 
-/** Returns from when to when some curves go [s]. */
+/** Returns the first and last time of some curves [s]. */
 export function spanOf(series, times) {
   const all = series.map(({ times: own }) => own ?? times).filter((list) => list?.length);
   const [from, to] = [Math.min(...all.map((list) => list[0])), Math.max(...all.map((list) => list.at(-1)))];
@@ -33,15 +33,15 @@ function drawPlot(surface, width, height, { series, times, span, range, at }) {
 }
 
 /**
- * @param title What the plot shows.
- * @param series [{name, unit, values, times?, colour?, dash?}]: curves that share a scale; null is a gap. One with `times` of its
- *   own is drawn over those [s], such as a curve of another run.
+ * @param title The title of the plot.
+ * @param series [{name, unit, values, times?, colour?, dash?}]: curves that share a scale; null is a gap. One with its own `times` [s]
+ *   is drawn over the others, such as a curve of another run.
  * @param times The moments of all the others [s], ascending.
- * @param span {from, to}: what is shown [s]; as far as the curves go where it is missing.
+ * @param span {from, to}: the visible times [s]; by default the whole length of the curves.
  * @param height [px]
- * @param cursor A signal with the time that the pointer is at [s], or null: plots that share one show the same moment.
+ * @param cursor A signal with the time at the pointer [s], or null: plots that share it show the same moment.
  * @param onPick Called with the time where the user clicks [s].
- * @param source Said in a picture beside the title: which model, run and seed.
+ * @param source Shown in a picture beside the title: the model, run and seed.
  */
 export function Plot({ title, series, times = [], span = null, height = 120, cursor = null, onPick = null, source = "" }) {
   const canvas = useRef(null);

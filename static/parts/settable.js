@@ -1,19 +1,19 @@
-// What the user sets and the run keeps, such as a speed: what was set last is shown until the run has taken it, however long that takes.
+// A value that the user sets and the run confirms, such as a speed: the latest input is shown until the run has accepted it.
 
 import { computed, signal } from "../vendor/preact.js";
 import { order } from "../server.js";
 import { session } from "../store.js";
 
 /**
- * Returns {value, set}: a signal with the value to be shown, and what sets it. One command at a time is under way; of what is set
- * meanwhile the newest is said next.
+ * Returns {value, set}: a signal with the value to show, and the function that sets it. One command at a time is sent; of the
+ * values set meanwhile, the newest is sent next.
  *
- * @param told Returns the value that the run is known to have.
+ * @param told Returns the value last reported by the run.
  * @param command Returns the command that sets a value.
- * @param send Sends it, and shows what is wrong.
+ * @param send Sends it, and shows errors.
  */
 export function settable(told, command, send = order) {
-  const wanted = signal(null); // {value}; null where the run has what was set
+  const wanted = signal(null); // {value}; null if the run has confirmed the value
   let saying = false;
 
   async function say() {

@@ -2,16 +2,16 @@
 
 import { html } from "../vendor/preact.js";
 
-const STEP = 24; // one press of an arrow key [px]
+const STEP = 24; // the step of an arrow key [px]
 
 /**
  * @param size A signal with the size that it sets [px].
  * @param along "columns" for a bar between left and right, "rows" for one between above and below.
- * @param label What its size is the size of.
- * @param least The smallest size [px].
- * @param most Returns the largest size [px].
+ * @param label The name of the panel whose size it sets.
+ * @param least The minimum size [px].
+ * @param most Returns the maximum size [px].
  *
- * The panel whose size it is stands after the bar: right of it, or below.
+ * The panel whose size it sets comes after the bar: right of it, or below.
  */
 export function Splitter({ size, along, label, least, most }) {
   const clamp = (value) => Math.round(Math.max(least, Math.min(most(), value)));
@@ -22,7 +22,7 @@ export function Splitter({ size, along, label, least, most }) {
     const from = place(event);
     const before = size.value;
     bar.setPointerCapture(event.pointerId);
-    document.body.dataset.dragging = along; // frames take no pointer events meanwhile
+    document.body.dataset.dragging = along; // frames receive no pointer events meanwhile
     bar.onpointermove = (moved) => (size.value = clamp(before + from - place(moved)));
     bar.onpointerup = bar.onpointercancel = () => {
       bar.onpointermove = bar.onpointerup = bar.onpointercancel = null;

@@ -1,4 +1,4 @@
-// What one draws on: a canvas, or an SVG that is kept. Both take the same calls, so that a picture is like what is on the page.
+// Drawing surfaces: a canvas, or an SVG to save. Both have the same methods, so that a saved picture looks like the page.
 
 import { colour } from "../theme.js";
 
@@ -6,12 +6,12 @@ const measure = document.createElement("canvas").getContext("2d");
 const MOST_WIDTHS = 5000;
 const widths = new Map();
 
-/** Returns a font as CSS writes it. */
+/** Returns a font in CSS syntax. */
 function fontOf({ mono = false, size = 11, bold = false }) {
   return `${bold ? "600 " : ""}${size}px ${colour(mono ? "mono" : "sans")}`;
 }
 
-/** Returns how wide a text is [px]. */
+/** Returns the width of a text [px]. */
 export function widthOf(text, style = {}) {
   const key = `${style.mono ? "m" : "s"}${style.size ?? 11}${style.bold ? "b" : ""}${text}`;
   let width = widths.get(key);
@@ -24,7 +24,7 @@ export function widthOf(text, style = {}) {
   return width;
 }
 
-/** Returns as much of a text as there is room for, with an ellipsis where it is cut. */
+/** Returns as much of a text as fits, with an ellipsis if it is cut. */
 export function cut(text, most, style = {}) {
   const line = text.length > 400 ? text.slice(0, 400) : text;
   if (widthOf(line, style) <= most) return line;
@@ -92,7 +92,7 @@ export class CanvasSurface {
     context.fill();
   }
 
-  /** A text whose middle is at height y; `anchor` is start, middle or end. */
+  /** Draws a text whose middle is at height y; `anchor` is start, middle or end. */
   text(text, x, y, name, style = {}) {
     const { context } = this;
     context.font = this.#font(style);
@@ -102,7 +102,7 @@ export class CanvasSurface {
     context.fillText(text, x, y);
   }
 
-  /** Draws something of which only what lies in a rectangle is seen. */
+  /** Draws with clipping to a rectangle. */
   within(x, y, width, height, draw) {
     const { context } = this;
     context.save();
@@ -114,7 +114,7 @@ export class CanvasSurface {
   }
 }
 
-/** Makes an SVG that needs nothing else. Colours are names of style.css. */
+/** Creates a self-contained SVG. Colours are names of style.css. */
 export class SvgSurface {
   constructor(width, height) {
     this.size = [width, height];
@@ -175,7 +175,7 @@ function node(name, attributes) {
   return made;
 }
 
-/** Gives a canvas as many points as the screen has for a size [CSS px], and clears it; returns its context, in CSS pixels. */
+/** Sets a canvas's resolution to the screen's for a size [CSS px], and clears it; returns its context, in CSS pixels. */
 export function scaled(canvas, width, height) {
   const scale = devicePixelRatio || 1;
   const [wide, high] = [Math.round(width * scale), Math.round(height * scale)];

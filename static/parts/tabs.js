@@ -1,12 +1,13 @@
-// Tabs: one panel shown of several, chosen by pointer or by arrow keys, with a link to its page of the manual.
+// Tabs: one of several panels is shown, chosen by pointer or by arrow keys, with a link to its page of the manual.
 
 import { html } from "../vendor/preact.js";
 import { ManualLink } from "./manual.js";
 
 /**
- * @param label What the tabs are.
- * @param tabs [{id, title, View, badge?}]; `badge` returns {text, title?, level?} for a mark beside the title (a dot, where the text is empty), or nothing.
- * @param shown A signal with the id of the one that is shown.
+ * @param label The accessible name of the tab list.
+ * @param tabs [{id, title, View, badge?}]; `badge` returns {text, title?, level?} for a mark beside the title (a dot if the text is
+ *   empty), or nothing.
+ * @param shown A signal with the id of the visible tab.
  */
 export function Tabs({ label, tabs, shown }) {
   const open = tabs.find(({ id }) => id === shown.value) ?? tabs[0];

@@ -1,8 +1,8 @@
-// Where an axis has its lines, and what stands at them.
+// The ticks of an axis, and their labels.
 
 const STEPS = [1, 2, 5, 10];
 
-/** Returns the round step with which `most` steps or fewer cover a span. */
+/** Returns the round step that covers a span with at most `most` steps. */
 export function stepFor(span, most) {
   if (!(span > 0)) return 1;
   const rough = span / Math.max(1, most);
@@ -10,7 +10,7 @@ export function stepFor(span, most) {
   return power * STEPS.find((step) => step * power >= rough * (1 - 1e-9));
 }
 
-/** Returns the multiples of a step from one number to another, as exact as can be. */
+/** Returns the multiples of a step from one number to another, as exactly as possible. */
 export function ticks(from, to, step) {
   const found = [];
   const digits = digitsOf(step);
@@ -18,12 +18,12 @@ export function ticks(from, to, step) {
   return found;
 }
 
-/** Returns with how many digits after the point multiples of a step are written. */
+/** Returns the number of decimals for multiples of a step. */
 export function digitsOf(step) {
   return Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 }
 
-/** Returns a round range with some room around the values: [least, most]. */
+/** Returns a round range with some margin around the values: [least, most]. */
 export function roundRange(least, most) {
   if (!(least <= most)) return [0, 1];
   if (most - least < 1e-9 * Math.max(1, Math.abs(most))) {
@@ -34,12 +34,12 @@ export function roundRange(least, most) {
   return [Math.floor(least / step + 1e-6) * step, Math.ceil(most / step - 1e-6) * step];
 }
 
-/** Says a time with as many digits as a step asks for, and its unit. */
+/** Returns a time as text with the decimals for a step, and its unit. */
 export function timeText(time, step = 0.01) {
   return `${time.toFixed(digitsOf(step))} s`;
 }
 
-/** Says a value of a curve: four digits that count, no more. */
+/** Returns a value of a curve as text with at most four significant digits. */
 export function numberText(value) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);

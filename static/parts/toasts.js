@@ -1,4 +1,4 @@
-// What has just gone wrong, shown for a while over the page; all of it stays in the tab Messages.
+// The latest problem, shown for a while over the page; all problems stay in the tab Messages.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { isSettled, notices, session, settle } from "../store.js";
@@ -11,13 +11,13 @@ export function Toasts() {
   const list = notices.value;
   useEffect(() => {
     if (list.length === 0) return;
-    // What an attempt before the newest has told is settled by that.
+    // A newer attempt settles the notices of earlier ones.
     const isOpen = ({ level, attempt }) => level === "error" && (attempt === undefined || attempt === session.peek()?.attempt);
     const fresh = list.filter((notice) => isOpen(notice) && !isSettled(notice, "shown"));
     settle("shown");
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [list]);
-  const shown = toast.value; // of another run that was shown before it is no matter any more
+  const shown = toast.value; // a message of a previously shown run no longer matters
   useEffect(() => {
     if (!shown) return undefined;
     const timer = setTimeout(() => (toast.value = null), SHOWN);

@@ -1,4 +1,4 @@
-// What is chosen in the list, and what can be done with it.
+// The chosen recordings, and the actions on them.
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";

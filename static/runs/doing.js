@@ -1,4 +1,4 @@
-// What can be done with recordings: open, run again, delete. What goes on and what came of it is known here.
+// Actions on recordings: open, run again, delete; with their progress and results.
 
 import { chooseRecording } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
@@ -11,15 +11,15 @@ import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
 import { whenText } from "./words.js";
 
-/** By their ids, what came of running recordings again: {since, share} while that goes on, then {agrees, text}. */
+/** The results of replays by id: {since, share} while one is running, then {agrees, text}. */
 export const replays = signal({});
-/** What is being done and takes a while; null for nothing: {text, done?, of?}. */
+/** The current slow action; null for none: {text, done?, of?}. */
 export const busy = signal(null);
 
-const LOOK = 300; // how often it is asked how far one has been run again [ms]
+const LOOK = 300; // the interval between two requests for the progress of a replay [ms]
 const cancels = new Map();
 
-/** Begins a session that lives through a recording again, and shows it; one that was only looked at is ended. */
+/** Starts a session that replays a recording, and shows it; closes the session of one that was only viewed. */
 export async function openRun(run) {
   if (busy.value || run.problem) return;
   busy.value = { text: "Opening …" };
@@ -32,7 +32,7 @@ export async function openRun(run) {
   busy.value = null;
 }
 
-/** Ends the sessions that show recordings at which nobody looks any more: they can be opened again. */
+/** Closes the sessions of recordings that nobody views any more: they can be opened again. */
 async function leaveUnwatched() {
   const { sessions } = await call("GET", "/api/sessions");
   const left = sessions.filter(({ id, recorded, watching }) => recorded !== null && id !== session.value?.id && watching.length === 0);
@@ -45,7 +45,7 @@ function note(id, told) {
   replays.value = { ...replays.value, [id]: told };
 }
 
-/** Runs a recording again in a process of its own; what comes of it stands in `replays`. */
+/** Runs a recording again in a separate process; the result is stored in `replays`. */
 export async function replayRun(run) {
   const cancel = new AbortController();
   cancels.set(run.id, cancel);
@@ -70,7 +70,7 @@ export function cancelReplay(id) {
   cancels.get(id)?.abort();
 }
 
-/** Deletes recordings, after asking; but for those that a run is still writing. */
+/** Deletes recordings, after asking; except those that a run is still writing. */
 export async function deleteRuns(all) {
   const list = all.filter((run) => !run.session);
   const open = all.filter((run) => run.session);

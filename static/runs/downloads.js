@@ -1,4 +1,4 @@
-// Files of recordings: made by the server, which may take a while, and handed to the user; several at once.
+// Downloads of recordings: created by the server, which may take a while; several at once.
 
 import { html, signal, useEffect, useSignal } from "../vendor/preact.js";
 import { saveFile } from "../parts/picture.js";
@@ -6,7 +6,7 @@ import { fetchFile } from "../server.js";
 import { complain } from "../store.js";
 import { nameOf, sizeText } from "./words.js";
 
-/** Those that go on: {key, text, since, come, all}, with the bytes that have come and their number, 0 while the file is being made. */
+/** The active downloads: {key, text, since, come, all}, with the bytes received and their total, 0 while the file is being created. */
 const downloads = signal([]);
 const cancels = new Map();
 
@@ -14,10 +14,10 @@ function note(key, told) {
   downloads.value = downloads.value.map((one) => (one.key === key ? { ...one, ...told } : one));
 }
 
-/** Fetches a file of a recording and hands it to the user. What goes wrong is shown as a message. */
+/** Fetches a file of a recording and saves it on the user's computer. Errors are shown as messages. */
 export async function download(run, form, title) {
   const key = `${run.id}.${form}`;
-  if (cancels.has(key)) return; // it is on its way
+  if (cancels.has(key)) return; // it is already being downloaded
   const cancel = new AbortController();
   cancels.set(key, cancel);
   const text = `${title} of ${nameOf(run)}`;
@@ -46,7 +46,7 @@ function Going({ key_, text, since, come, all }) {
   </li>`;
 }
 
-/** The downloads that go on, of any recording. */
+/** The active downloads, of any recording. */
 export function Downloads() {
   if (downloads.value.length === 0) return null;
   return html`<ul class="going" role="status" aria-label="Downloads">${downloads.value.map((one) => html`<${Going} key=${one.key} key_=${one.key} ...${one} />`)}</ul>`;

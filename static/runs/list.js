@@ -1,4 +1,4 @@
-// The recordings that the server has, read in parts: the newest first, and again when a run ends.
+// The server's recordings, read in parts: the newest first, and again when a run ends.
 
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
@@ -9,20 +9,20 @@ const PART = 250;
 const LATER = 700; // [ms]
 const MOST_TRIES = 5;
 
-/** What is known of recordings (`Summary` of the server), the newest first; null before the first are there. */
+/** The summaries of recordings (`Summary` of the server), the newest first; null before the first arrive. */
 export const runs = signal(null);
-/** How many there are on the server. */
+/** The number of recordings on the server. */
 export const total = signal(0);
-/** Why they cannot be listed; null where they can. */
+/** Why they cannot be listed; null if they can. */
 export const problem = signal(null);
 export const loading = signal(false);
-/** The recording that the present run writes; null where it writes none. */
+/** The recording that the current run writes; null if there is none. */
 export const present = computed(() => session.value?.recording ?? null);
 
 let asked = 0;
 let tries = 0;
 
-/** Reads the list anew, in parts; what is there already stays on screen until it is known better. */
+/** Reads the list again, in parts; known entries stay on screen until they are replaced. */
 export async function listRuns() {
   asked += 1;
   const mine = asked;
@@ -49,7 +49,7 @@ export async function listRuns() {
   awaitEnd(mine);
 }
 
-/** Reads anew soon, where the file of the present run is not there yet, or does not say that it is over: it is written a moment later. */
+/** Reads the list again soon if the file of the current run is missing or not marked as ended: it is written a moment later. */
 function awaitEnd(mine) {
   const own = runs.value?.find(({ id }) => id === present.value);
   const late = own ? state.value?.status === "ended" && !own.ended : present.value !== null && session.value.alive;
@@ -57,13 +57,13 @@ function awaitEnd(mine) {
   if (tries > 0 && tries <= MOST_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
 }
 
-/** Forgets a recording that is deleted. */
+/** Removes a deleted recording from the list. */
 export function forgetRun(id) {
   runs.value = runs.value.filter((run) => run.id !== id);
   total.value -= 1;
 }
 
-/** Keeps the list as the server has it for as long as it is shown; returns what ends that. */
+/** Keeps the list up to date while it is shown; returns the function that stops this. */
 export function follow() {
   const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value}`);
   return effect(() => {

@@ -1,4 +1,4 @@
-// The table of recordings: only the rows that are seen are drawn, so that thousands cost no more than a few.
+// The table of recordings: draws only the visible rows, so that thousands cost no more than a few.
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
@@ -7,9 +7,9 @@ import { present } from "./list.js";
 import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./words.js";
 
 const ROW = 44; // [px]; style.css has the same
-const AROUND = 6; // so many rows are drawn beyond what is seen
+const AROUND = 6; // the number of rows drawn beyond the visible ones
 
-/** What one can sort by: where its head stands, and what is compared. */
+/** The sort keys: their column headings, and the values to compare. */
 const KEYS = {
   made: { column: "when", text: "Began", of: (run) => run.made },
   model: { column: "model", text: "Model", of: (run) => run.model },
@@ -25,7 +25,7 @@ const order = remembered("runs sorted", { by: "made", down: true });
 /** The ids of the chosen recordings. */
 export const chosen = signal(new Set());
 
-/** Returns recordings in the order that the user wants. */
+/** Returns recordings in the order that the user has chosen. */
 export function sorted(list) {
   const { of } = KEYS[order.value.by] ?? KEYS.made;
   const sign = order.value.down ? -1 : 1;
@@ -53,7 +53,7 @@ function Head({ column }) {
   </th>`;
 }
 
-/** How long a run is; that of the present run grows while one looks on. */
+/** The length of a run; for the current run, it grows. */
 function Length({ run }) {
   const goesOn = alive.value && run.session === session.value.id && run.id === session.value.recording;
   return `${(goesOn ? state.value.furthest : run.time).toFixed(2)} s`;
@@ -87,8 +87,8 @@ function Row({ run, number, now, toggle, open }) {
 }
 
 /**
- * @param list The recordings in their order.
- * @param open Called with a recording that is to be opened.
+ * @param list The recordings in order.
+ * @param open Called with a recording to open.
  */
 export function Table({ list, open }) {
   const box = useRef(null);
@@ -113,7 +113,7 @@ export function Table({ list, open }) {
   const first = Math.max(0, Math.min(list.length - 1, Math.floor(seen.value.top / ROW) - AROUND));
   const beyond = Math.min(list.length, first + Math.ceil(seen.value.height / ROW) + 2 * AROUND);
 
-  /** Chooses a row alone; with Ctrl, or its box, besides the others; with Shift all up to it. */
+  /** Chooses a single row; with Ctrl, or its checkbox, in addition to others; with Shift, a range. */
   function toggle(id, event, besides = event.ctrlKey || event.metaKey) {
     const ids = list.map((run) => run.id);
     const from = ids.indexOf(last.current);

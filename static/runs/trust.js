@@ -1,4 +1,4 @@
-// Code of recordings that were made elsewhere: it is run only after the user has seen whose it is, and agreed.
+// Code of recordings that were made elsewhere: runs only after the user has seen its origin and agreed.
 
 import { dialog } from "../parts/dialog.js";
 import { call } from "../server.js";
@@ -7,12 +7,12 @@ import { html } from "../vendor/preact.js";
 const UNTRUSTED = 403;
 
 /**
- * Does something that runs the code of a recording; where the server refuses that for a recording that was made elsewhere, asks
- * the user first. Returns what `work` returns, or null where the user does not agree.
+ * Performs an action that runs the code of a recording; if the server refuses this for a recording that was made elsewhere, asks
+ * the user first. Returns the result of `work`, or null if the user declines.
  *
  * @param id The recording.
- * @param doing What is to be done with it, as in «Open it».
- * @param work Does it; called with whether the code may be run whoever has made it.
+ * @param doing The name of the action, as in «Open it».
+ * @param work Performs it; called with whether the code may run regardless of its origin.
  */
 export async function withTrust(id, doing, work) {
   try {

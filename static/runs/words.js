@@ -1,4 +1,4 @@
-// Recordings in words: when, what was chosen, what came of them.
+// Recordings as text: date, parameters, results.
 
 import { valueText } from "../parts/chunk.js";
 
@@ -18,7 +18,7 @@ const FULL = new Intl.DateTimeFormat(undefined, { dateStyle: "medium", timeStyle
 const AGO = new Intl.RelativeTimeFormat("en", { numeric: "auto", style: "short" });
 const UNITS = [["year", 31_536_000], ["month", 2_592_000], ["day", 86_400], ["hour", 3600], ["minute", 60]];
 
-/** Says when a run began: the time of today, day and time of this year, or the date. */
+/** Returns when a run began: the time if today, day and time if this year, otherwise the date. */
 export function whenText(made) {
   const then = new Date(1000 * made);
   const today = then.toDateString() === new Date().toDateString();
@@ -30,12 +30,12 @@ export function whenInFull(made) {
   return FULL.format(new Date(1000 * made));
 }
 
-/** Names a recording: its model, and when it began. */
+/** Returns the name of a recording: its model, and when it began. */
 export function nameOf(run) {
   return `${run.model || run.id} ${whenText(run.made)}`;
 }
 
-/** Says how long ago something was. */
+/** Returns how long ago something was, as text. */
 export function agoText(made, now = Date.now() / 1000) {
   const passed = now - made;
   const [unit, length] = UNITS.find(([, seconds]) => passed >= seconds) ?? [];
@@ -48,12 +48,12 @@ export function sizeText(bytes) {
   return bytes < 1e9 ? `${(bytes / 1e6).toFixed(1)} MB` : `${(bytes / 1e9).toFixed(1)} GB`;
 }
 
-/** Says the parameters that are not the defaults in one line. */
+/** Returns the parameters that differ from the defaults in one line. */
 export function differentText(run) {
   return run.different.map((name) => `${name} ${valueText(run.parameters[name])}`).join(", ");
 }
 
-/** Says what came of a run in a few words. */
+/** Returns the result of a run in a few words. */
 export function outcomeText(run) {
   if (run.problem) return "unreadable";
   if (run.failed) return "failed";
@@ -64,14 +64,14 @@ export function outcomeText(run) {
   return run.session ? "not over" : "not finished";
 }
 
-/** Says the most telling number of a result. */
+/** Returns the most informative number of a result. */
 export function resultText(run) {
   const angle = run.result?.peak_angle_deg;
   if (typeof angle === "number") return `${angle.toFixed(1)}°`;
   return "";
 }
 
-/** Says how a run ended. */
+/** Returns how a run ended, as text. */
 export function endedText(run) {
   if (run.problem || run.failed) return run.problem ?? run.failed;
   if (run.ended) return ENDED[run.ended] ?? run.ended;
@@ -80,19 +80,19 @@ export function endedText(run) {
 
 const UNIT_ENDS = [["_deg", "°"], ["_m_s", " m/s"], ["_m", " m"], ["_n", " N"], ["_s", " s"]];
 
-/** Says a name of the model without its unit: `peak_angle_deg` is `peak angle`. */
+/** Returns a name of the model without its unit: `peak_angle_deg` becomes `peak angle`. */
 export function labelOf(name) {
   const unit = UNIT_ENDS.find(([end]) => name.endsWith(end));
   return (unit ? name.slice(0, -unit[0].length) : name).replaceAll("_", " ");
 }
 
-/** Says a measured value with the unit that its name ends with. */
+/** Returns a measured value with the unit in its name's ending. */
 export function measureText(name, value) {
   if (typeof value !== "number") return value === null || value === undefined ? "–" : valueText(value);
   return `${valueText(value)}${UNIT_ENDS.find(([end]) => name.endsWith(end))?.[1] ?? ""}`;
 }
 
-/** Returns all that a search looks at. */
+/** Returns all text that a search includes. */
 export function textOf(run) {
   const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), run.branched === null ? "" : "branch", whenText(run.made)];
   return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();

@@ -1,11 +1,11 @@
-// The camera of this browser: which view it has, and how it goes along with the body. It moves viser's own camera controls, which
-// turn, shift and zoom by mouse.
+// The camera of this browser: its view, and how it follows the body. It moves viser's own camera controls, which
+// rotate, pan and zoom by mouse.
 
 import { FOV, anchorOf, standing } from "./stage.js";
 import { cross, plus } from "./space.js";
 
-const SLIGHT = 1e-6; // smaller moves are none [m]
-const DEEP = 500; // without perspective, so much before and behind what is looked at is seen [m]
+const SLIGHT = 1e-6; // smaller movements are ignored [m]
+const DEEP = 500; // without perspective, the visible depth before and behind the target [m]
 
 /** @param viewer Viser's own objects. */
 export class SceneCamera {
@@ -38,13 +38,13 @@ export class SceneCamera {
     return this.viewer.nodeRefFromName[""];
   }
 
-  /** Returns a place of the world, or a direction, in the frame of three.js. */
+  /** Converts a position in the world, or a direction, to the frame of three.js. */
   toThree(place, direction = false) {
     const found = this.vector.set(...place).applyMatrix4(this.root.matrixWorld);
     return direction ? found.sub(this.other.set(0, 0, 0).applyMatrix4(this.root.matrixWorld)) : found;
   }
 
-  /** Puts the camera where a view begins. From the view with the body, `free` stays where it is. */
+  /** Moves the camera to the start of a view. When coming from the view of the body, `free` keeps its place. */
   choose(view, stage, now) {
     const stays = view === "free" && this.view === "follow";
     this.view = view;
@@ -53,7 +53,7 @@ export class SceneCamera {
     const { controls, camera, actions } = this;
     this.flat = view === "top" || view === "side";
     controls.setFocalOffset(0, 0, 0, false);
-    // What is seen without perspective is shifted, not turned; what is followed is shifted within the picture, so that it turns about the body.
+    // A view without perspective pans and does not rotate; one that follows the body pans within the picture and rotates about the body.
     controls.mouseButtons.left = this.flat ? actions.TRUCK : actions.ROTATE;
     controls.mouseButtons.right = view === "follow" ? actions.OFFSET : actions.TRUCK;
     controls.maxPolarAngle = this.flat ? Math.PI : 0.52 * Math.PI; // not below the ground
@@ -75,13 +75,13 @@ export class SceneCamera {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Moves the camera with what is shown now; just before each picture. */
+  /** Moves the camera with what is shown now; called just before each picture. */
   follow(stage, now) {
     if (this.view === "eye") {
       if (now.eye) this.lookThrough(now.eye);
       return;
     }
-    // The picture's shape has changed, as a panel has become wider: what was in view stays in view.
+    // The picture's aspect ratio has changed, for example with a panel's width: what was in view stays in view.
     if (!this.touched && Math.abs(this.camera.aspect - this.aspect) > 0.01) this.choose(this.view, stage, now);
     const anchor = anchorOf(this.view, stage, now.body);
     const target = this.controls.getTarget(this.other.clone());
@@ -90,13 +90,13 @@ export class SceneCamera {
     const way = wanted.clone().sub(target);
     if (way.length() > SLIGHT) {
       this.controls.moveTo(...wanted.toArray(), false);
-      this.camera.position.add(way); // the controls do so only for the next picture
+      this.camera.position.add(way); // the controls would do this only for the next picture
     }
     if (this.flat) this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }
 
-  /** Looks where an eye looks, as high as it sees; how wide a browser sees depends on its window. */
+  /** Looks from an eye, with its vertical field of view; the horizontal one depends on the browser's window. */
   lookThrough({ place, forward, up, fov }) {
     const { camera } = this;
     this.setFov(Math.min(fov, 2.6));
@@ -107,7 +107,7 @@ export class SceneCamera {
     camera.updateMatrixWorld();
   }
 
-  /** Replaces the projection by one without perspective, as high as the picture was at what the camera looks at. */
+  /** Replaces the projection by one without perspective, with the height that the picture had at the target. */
   flatten() {
     const { camera } = this;
     const high = this.controls.distance * Math.tan(FOV / 2);
@@ -116,7 +116,7 @@ export class SceneCamera {
     camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
   }
 
-  /** Returns where a place of the world is in the picture: x and y from 0 to 1, from the left and from above, and its depth [m]. */
+  /** Returns the position of a world point in the picture: x and y from 0 to 1, from the left and from the top, and its depth [m]. */
   at(place) {
     const point = this.toThree(place).applyMatrix4(this.camera.matrixWorldInverse);
     const depth = this.flat ? 1 : -point.z;
@@ -124,13 +124,13 @@ export class SceneCamera {
     return { x: (1 + point.x) / 2, y: (1 - point.y) / 2, depth };
   }
 
-  /** Returns how high in the picture one metre is at a depth, as a part of its height. */
+  /** Returns the height of one metre in the picture at a depth, as a part of the picture's height. */
   scaleAt(depth) {
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
     return 1 / (2 * half * (this.flat ? this.controls.distance : Math.max(depth, 0.05)));
   }
 
-  /** Returns where the horizon is in the picture, from 0 above to 1 below; without perspective, where the ground of the stage is. */
+  /** Returns the height of the horizon in the picture, from 0 (top) to 1; without perspective, that of the ground of the stage. */
   horizon(stage) {
     const { camera } = this;
     const forward = camera.getWorldDirection(this.other.clone());

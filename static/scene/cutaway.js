@@ -1,12 +1,12 @@
-// What stands between the camera and the body is cut away around the body, with a shaded rim. The camera itself stays where it is, so that
-// the picture never jumps; and as the body has a fixed place in it, so has the opening.
+// Cuts away what is between the camera and the body, around the body, with a shaded rim. The camera itself is not moved, so that the
+// picture never jumps; as the body has a fixed place in the picture, so has the opening.
 
 import { dot, plus, unit } from "./space.js";
 
-const WIDE = 0.62; // how wide the opening is at least, by its height
-const ROUND = 1.25; // how much larger than the body it is
-const AHEAD = 0.05; // what is farther than this before the middle of the body stands before it [m]
-const LOW = 0.05; // what is no higher than this above the feet is ground [m]
+const WIDE = 0.62; // the minimum width of the opening, relative to its height
+const ROUND = 1.25; // the size of the opening relative to the body
+const AHEAD = 0.05; // what is nearer to the camera than the body's middle by more than this can hide it [m]
+const LOW = 0.05; // what is at most this high above the feet counts as ground [m]
 
 const DECLARED = `
 uniform vec4 cutAt; uniform vec4 cutFront; uniform vec4 cutLow;
@@ -34,7 +34,7 @@ export class Cutaway {
     };
   }
 
-  /** Cuts for the next picture, where a camera looks at the body. */
+  /** Sets the opening for the next picture, for a camera that looks at the body. */
   draw(stage, now, camera) {
     const { cutAt, cutFront, cutLow } = this.uniforms;
     cutAt.value = [0, 0, 0, 0];
@@ -47,14 +47,14 @@ export class Cutaway {
     if (!(size > 0)) return;
     cutAt.value = [middle[0] / -middle[2], middle[1] / -middle[2], size * WIDE, size];
     const upward = camera.toThree([0, 0, 1], true).transformDirection(view).toArray();
-    // From the body to the camera, level: a wall beside the body stands before it wherever it is on the camera's side.
+    // The horizontal direction from the body to the camera: a wall beside the body hides it wherever it is on the camera's side.
     const way = unit(middle.map((x) => -x));
     const level = unit(plus(way, upward, -dot(way, upward)));
     cutFront.value = [...level, dot(level, middle) + AHEAD];
     cutLow.value = [...upward, dot(upward, middle) - stage.height / 2 + LOW];
   }
 
-  /** Prepares the materials of all that is no part of the body, as they come. */
+  /** Prepares the materials of everything that is not part of the body, as they are added. */
   prepare(own) {
     for (const [name, node] of Object.entries(this.viewer.nodeRefFromName)) {
       if (!/^\/(fixed_)?bodies\//.test(name) || own.some((body) => `${name}/`.startsWith(`/bodies/${body}/`))) continue;
@@ -63,7 +63,7 @@ export class Cutaway {
           if (!one || one.isShaderMaterial || this.prepared.has(one)) continue;
           this.prepared.add(one);
           one.onBeforeCompile = this.compile;
-          one.customProgramCacheKey = () => "cut away"; // viser's instanced meshes do not tell one `onBeforeCompile` from another
+          one.customProgramCacheKey = () => "cut away"; // viser's instanced meshes do not distinguish two `onBeforeCompile` functions
           one.needsUpdate = true;
         }
       });

@@ -1,10 +1,10 @@
-// The ground and the sky of the 3D view: the colours of the theme, a horizon, and soft shade where things stand, which costs little even
-// where the processor draws.
+// The ground and the sky of the 3D view: the colours of the theme, a horizon, and soft shadows under objects, which cost little even if
+// the processor draws.
 
 import { palette } from "./palette.js";
 
-const MOST = 64; // so many shades there are at most
-const LIFT = 0.004; // how far above the ground they lie [m]
+const MOST = 64; // the maximum number of shadows
+const LIFT = 0.004; // their height above the ground [m]
 
 const VERTEX = `
 attribute vec2 local; attribute vec4 form; varying vec2 at; varying vec4 shape;
@@ -24,7 +24,7 @@ export class Ground {
     this.horizon = null;
     this.styled = new WeakMap();
     const pattern = this.backdrop();
-    pattern.visible = false; // viser's background image, which there is none of, is drawn over the whole picture
+    pattern.visible = false; // viser's background image, which is unused here, would be drawn over the whole picture
     this.shades = this.makeShades(pattern);
   }
 
@@ -37,7 +37,7 @@ export class Ground {
     return found;
   }
 
-  /** Makes one mesh for all shades; three.js is within viser's bundle, so its classes are taken from a mesh of viser's. */
+  /** Creates one mesh for all shadows; three.js is inside viser's bundle, so its classes are taken from a mesh of viser's. */
   makeShades({ constructor: Mesh, material: { constructor: Material }, geometry: plane }) {
     const Geometry = Object.getPrototypeOf(plane.constructor);
     const Attribute = Object.getPrototypeOf(plane.attributes.position.constructor);
@@ -53,7 +53,7 @@ export class Ground {
     return mesh;
   }
 
-  /** Takes the shades that are told: x, y, the direction of the first side as cosine and sine, two half sides, softness [m] and strength. */
+  /** Sets the shadows: x, y, the direction of the first side as cosine and sine, two half sides, softness [m] and strength. */
   shade(shades, ground) {
     const { geometry } = this.shades;
     const { position, local, form } = geometry.attributes;
@@ -72,7 +72,7 @@ export class Ground {
     for (const attribute of [position, local, form]) attribute.needsUpdate = true;
   }
 
-  /** Colours sky and ground by the theme, and puts the horizon where the camera sees it. */
+  /** Colours sky and ground by the theme, and draws the horizon where the camera sees it. */
   draw(theme, horizon, stage, flat) {
     const colours = palette[theme];
     const root = this.viewer.nodeRefFromName[""];

@@ -1,15 +1,15 @@
-// The labels in the 3D view: text of the page over the picture, which never covers another label or a head.
+// The labels in the 3D view: HTML text over the picture, which never covers another label or a head.
 
 const GAP = 3; // between labels [px]
-const LIFT = 10; // how far above its place a label stands [px]
-const STEPS = 40; // so many places are tried for each
-const AWAY = 26; // a label farther from its place than this has a line to it [px]
+const LIFT = 10; // the height of a label above its point [px]
+const STEPS = 40; // the number of positions tried for each
+const AWAY = 26; // a label farther from its point than this has a line to it [px]
 
 const overlap = (a, b) => a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height && b.top < a.top + a.height;
 
 /**
- * Returns for each label its rectangle, or null where there is no room; earlier ones come first.
- * @param wanted Labels: `x` and `y` of their places, `width` and `height` [px].
+ * Returns the rectangle of each label, or null if there is no room; earlier labels have priority.
+ * @param wanted Labels: `x` and `y` of their points, `width` and `height` [px].
  * @param blocked Rectangles that stay free.
  * @param size Width and height of the picture [px].
  */
@@ -19,7 +19,7 @@ export function placed(wanted, blocked, size) {
     if (x < 0 || x > size.width || y < 0 || y > size.height || width > size.width) return null;
     const left = Math.max(0, Math.min(size.width - width, x - width / 2));
     for (let step = 0; step < STEPS; step++) {
-      // Above its place, higher and higher; then below, lower and lower.
+      // Above its point, higher and higher; then below, lower and lower.
       for (const top of [y - LIFT - height - step * 6, y + LIFT + step * 6]) {
         const box = { left: left - GAP, top: top - GAP, width: width + 2 * GAP, height: height + 2 * GAP };
         if (top < 0 || top + height > size.height || taken.some((other) => overlap(box, other))) continue;
@@ -41,7 +41,7 @@ export class Labels {
   }
 
   /**
-   * @param labels What is told: `text`, `place` in the world, whether attention was given to it (`chosen`).
+   * @param labels The labels: `text`, `place` in the world, whether the agent attends to it (`chosen`).
    * @param heads Spheres that no label covers: x, y, z, radius.
    */
   draw(labels, heads, camera) {

@@ -1,4 +1,4 @@
-// Vectors of three numbers, in the world's frame: z points up.
+// Vectors of three numbers, in the world frame: z points up.
 
 export const plus = (a, b, part = 1) => a.map((x, axis) => x + b[axis] * part);
 export const minus = (a, b) => plus(a, b, -1);

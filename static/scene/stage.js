@@ -1,16 +1,16 @@
-// Where a camera stands so that what it is to show is in its picture: numbers only, so that tests can compute with them.
+// Computes the camera positions that show the scene: numbers only, so that tests can use it without a browser.
 
 import { cross, dot, minus, plus, unit } from "./space.js";
 
-/** From where the scene can be seen, with titles. */
+/** The views of the scene, with titles. */
 export const VIEWS = { follow: "with the body", free: "free", side: "from the side", top: "from above", eye: "through the eye" };
 export const FOV = (50 * Math.PI) / 180; // the vertical field of view, except through an eye
 const DEGREE = Math.PI / 180;
-const ROOM = 1.06; // how much farther away than necessary a camera stands
-const BODY_PART = 0.4; // how much of the picture's height the body takes where the camera goes with it
-const FARTHEST = 1.6; // to have the doorway in the picture, too, the camera stands at most this many times as far away
+const ROOM = 1.06; // the distance of a camera relative to the minimum
+const BODY_PART = 0.4; // the body's part of the picture's height if the camera follows it
+const FARTHEST = 1.6; // to show the doorway too, the camera is at most this many times as far away
 
-/** Returns the direction from what is seen to a camera behind it: so far to the side and so far above [degrees]. */
+/** Returns the direction from the target to a camera behind it: an angle to the side and an angle above [degrees]. */
 function behind([x, y], aside, raised) {
   const [c, s, flat] = [Math.cos(aside * DEGREE), Math.sin(aside * DEGREE), Math.cos(raised * DEGREE)];
   return [-flat * (c * x - s * y), -flat * (c * y + s * x), Math.sin(raised * DEGREE)];
@@ -22,8 +22,8 @@ function axesOf(back) {
   return [right, cross(back, right)];
 }
 
-/** Returns the middle of the corners as a camera sees them, and its distance so that all are in the picture; without perspective, `distance` is
- * that at which the field of view would be as large. */
+/** Returns the middle of the corners as a camera sees them, and the distance at which all are in the picture; without perspective,
+ * `distance` is the one at which the field of view would have the same size. */
 function fitted(corners, back, aspect, flat) {
   const [right, up] = axesOf(back);
   const upward = Math.tan(FOV / 2);
@@ -45,8 +45,8 @@ function fitted(corners, back, aspect, flat) {
   return { target, distance: distance * ROOM };
 }
 
-/** Returns how far behind the body a camera stands that goes with it: the corners of the stage are in its picture, too, if the body does not
- * become small by that. */
+/** Returns the distance of a camera that follows the body: the corners of the stage are in its picture too, unless the body would
+ * become too small. */
 function following(stage, target, back, aspect) {
   const [right, up] = axesOf(back);
   const upward = Math.tan(FOV / 2);
@@ -60,17 +60,17 @@ function following(stage, target, back, aspect) {
   return Math.min(distance, FARTHEST * least);
 }
 
-/** Returns the place that a view goes along with: the middle of the body, or how far the body has left the stage. */
+/** Returns the position that a view follows: the middle of the body, or the offset of a body that has left the stage. */
 export function anchorOf(view, stage, body) {
   if (view === "follow") return plus(body, stage.middle);
   return [0, 1].map((axis) => body[axis] - Math.min(Math.max(body[axis], stage.low[axis]), stage.high[axis])).concat(0);
 }
 
 /**
- * Returns where the camera of a view stands at first: what it looks at, the direction from there to the camera, how far away it is, and
+ * Returns the start of a view's camera: its target, the direction from there to the camera, their distance, and
  * whether its picture is without perspective (`flat`).
- * @param aspect The width of the picture by its height.
- * @param room How much of its width nothing of the page covers, from the left.
+ * @param aspect The width of the picture divided by its height.
+ * @param room The part of its width that the page does not cover, from the left.
  */
 export function standing(view, stage, body, aspect, room = 1) {
   const { ahead } = stage;
@@ -80,7 +80,7 @@ export function standing(view, stage, body, aspect, room = 1) {
     return { target: anchor, back, distance: following(stage, plus(stage.start, stage.middle), back, aspect), flat: false };
   }
   const flat = view !== "free";
-  // From above and from the side, what is ahead is to the right, where windows have most room.
+  // From above and from the side, ahead is to the right, because most windows are wide.
   const back = { free: behind(ahead, 10, 25), top: unit([0.001 * ahead[1], -0.001 * ahead[0], 1]), side: [ahead[1], -ahead[0], 0] }[view];
   const { target, distance } = fitted(stage.corners, back, aspect * room, flat);
   const aside = (1 - room) * aspect * distance * Math.tan(FOV / 2);

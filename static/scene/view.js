@@ -1,5 +1,5 @@
-// What the 3D view does beside viser, in viser's page: this browser's camera, ground and sky, labels. What is told comes from the
-// server with each state (`window.scene`, see `framed.js`); what is drawn is changed just before each picture, so that all of it is of one moment.
+// What the 3D view adds to viser, in viser's page: this browser's camera, ground and sky, labels. The server sends the data with each
+// state (`window.scene`, see `framed.js`); everything changes just before each picture, so that all of it shows the same moment.
 
 import { SceneCamera } from "./camera.js";
 import { Cutaway } from "./cutaway.js";
@@ -8,9 +8,9 @@ import { Labels } from "./labels.js";
 import { VIEWS } from "./stage.js";
 
 const { scene: given } = window;
-const HIDDEN = ["/overlays/frustum"]; // what is not drawn where one looks through the eye
+const HIDDEN = ["/overlays/frustum"]; // not drawn in the view through the eye
 
-/** Returns viser's own objects, once there is a scene and something is told of it. */
+/** Returns viser's own objects, once there is a scene and data for it. */
 async function ready() {
   for (;;) {
     const viewer = window.__viserMutable;
@@ -19,7 +19,7 @@ async function ready() {
   }
 }
 
-/** Returns "dark" or "light", as the page around has it, or viser's own. */
+/** Returns "dark" or "light", from the surrounding page or viser's own setting. */
 function theme() {
   const { theme: around } = parent === window ? {} : parent.document.documentElement.dataset;
   return around ?? (document.documentElement.dataset.mantineColorScheme === "dark" ? "dark" : "light");
@@ -35,7 +35,7 @@ let { stage } = told;
 let shaded = null;
 let leftOut = false;
 
-/** Hides what a view leaves out, and shows it again in others, as far as viser shows it. */
+/** Hides what a view omits, and shows it again in other views if viser shows it. */
 function leaveOut() {
   const through = camera.view === "eye";
   if (!through && !leftOut) return;
@@ -46,7 +46,7 @@ function leaveOut() {
   }
 }
 
-/** Returns how much of the picture's width the retina over it leaves free. */
+/** Returns the part of the picture's width that the retina does not cover. */
 function room() {
   const inset = parent === window ? null : parent.document.querySelector(".inset");
   return inset ? Math.max(0.5, (innerWidth - inset.offsetWidth - 8) / innerWidth) : 1;
@@ -54,8 +54,8 @@ function room() {
 
 camera.room = room;
 
-/** Returns what is told of the moment that the shapes are drawn at: viser moves them some pictures after that has come (`Moments` in
- * `workbench/viser_server.py`). */
+/** Returns the data of the moment at which the shapes are drawn: viser moves them some pictures after the data have arrived (`Moments`
+ * in `workbench/viser_server.py`). */
 function drawnNow() {
   let number = Infinity; // as long as there are no shapes
   viewer.nodeRefFromName["/moment"]?.traverse((object) => {
@@ -72,9 +72,9 @@ function choose() {
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (seenBy !== viewer.camera) return;
-  if (renderer.toneMapping) renderer.toneMapping = 0; // colours as they are told
+  if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
   if (told.stage !== stage) {
-    // Another scene: where it is set up differently, the camera begins anew.
+    // Another scene: if its stage differs, the camera returns to the start of its view.
     const same = JSON.stringify({ ...told.stage, grounds: 0 }) === JSON.stringify({ ...stage, grounds: 0 });
     stage = told.stage;
     if (!same) choose();
@@ -94,7 +94,7 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   labels.draw(now.labels, now.heads, camera);
 };
 
-/** Without a page around it, it has switches of its own. */
+/** Without a surrounding page, it has buttons of its own. */
 function addSwitches() {
   const bar = document.createElement("div");
   bar.className = "scene-views";

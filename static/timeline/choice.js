@@ -1,4 +1,4 @@
-// The choice of the curves that are plotted.
+// The menu for the plotted curves.
 
 import { html } from "../vendor/preact.js";
 import { choose, chosen, names, titleOf } from "./curves.js";

@@ -1,15 +1,15 @@
-// What users changed, as one reads it: `aperture 50 -> 40 cm`.
+// Users' changes as text: `aperture 50 -> 40 cm`.
 
 import { valueText } from "../parts/chunk.js";
 import { session } from "../store.js";
 
-const before = new WeakMap(); // by event: the width that it changed [m]
+const before = new WeakMap(); // by event: the previous width [m]
 
-/** Knows the widths of apertures, from event to event. */
+/** Stores the widths of apertures, from event to event. */
 export class Widths {
   #widths = new Map();
 
-  /** Takes note of a command, in the order in which they come. */
+  /** Stores the effect of a command; called in order. */
   take(event) {
     const change = changeOf(event[3]);
     if (!change) return;
@@ -19,7 +19,7 @@ export class Widths {
   }
 }
 
-/** Returns {name, width} of the aperture that a command changes; null of another command. */
+/** Returns {name, width} of the aperture that a command changes; null for other commands. */
 function changeOf({ command, data }) {
   if (command !== "aperture" || typeof data?.values?.[0] !== "number") return null;
   return { name: data.named?.name ?? "aperture", width: data.values[0] };
@@ -27,7 +27,7 @@ function changeOf({ command, data }) {
 
 const cm = (width) => String(Number((100 * width).toFixed(1)));
 
-/** Says a command, after its word. With `first` it is that one and all up to this, as of one drag. */
+/** Returns a command as text, without its name. With `first`, it covers all commands from that one on, for example of one drag. */
 function dataText(event, first) {
   const [, , , { data }] = event;
   const change = changeOf(event[3]);
@@ -39,12 +39,12 @@ function dataText(event, first) {
   return [...(data?.values ?? []).map(valueText), ...named].join(" ");
 }
 
-/** Returns [word, with what] of a command. */
+/** Returns [name, arguments] of a command. */
 export function commandText(event, first = event) {
   return [event[3].command, dataText(event, first)];
 }
 
-/** Whether two commands set the same. */
+/** Whether two commands set the same value. */
 export function setTheSame(event, other) {
   const [one, two] = [changeOf(event[3]), changeOf(other[3])];
   return one !== null && two !== null && one.name === two.name;

@@ -1,5 +1,5 @@
-// The curves that are plotted below the lanes. While the run goes on its newest stretch is asked for, coarsely where it goes fast; what
-// was left out is asked for when it stands: first the stretch that is shown, then the rest, until each tick is known.
+// The curves that are plotted below the lanes. While the run is active, its newest stretch is requested, coarsely if it is fast; what
+// was omitted is requested when it pauses: first the visible stretch, then the rest, until each tick is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../remembered.js";
@@ -9,22 +9,22 @@ import { firstFrom, rangeOf } from "../parts/curve.js";
 import { furthest } from "./seek.js";
 import { span } from "./view.js";
 
-const PAUSE = 400; // between two questions while the run goes on [ms]: to answer costs it time
-const AT_ONCE = 150; // so many moments are asked for at a time while it goes on
-const OVERVIEW = 1500; // so many of a whole run of which nothing is known yet
-const PIECE = 1000; // so many ticks of a run that stands: longer stretches would let commands wait
+const PAUSE = 400; // between two requests while the run is active [ms]: answering slows it down
+const AT_ONCE = 150; // the number of moments per request while it is active
+const OVERVIEW = 1500; // the number of moments for a whole run of which nothing is known yet
+const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
 
 /** All curves there are: [{name, unit, group}]. */
 export const names = signal([]);
 /** Counts the changes of what is known. */
 export const curvesVersion = signal(0);
-/** What is known: moments [s], ascending, values by name, and the stretches [from, to] of which no moment is left out. */
+/** The known data: moments [s], ascending, values by name, and the stretches [from, to] of which every moment is known. */
 export const known = { times: [], values: new Map(), whole: [] };
 
 const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed"]; // in the order in which they are plotted
 const TITLES = { joint: "joints", contact: "contact force", "joint speed": "joint speeds" };
 
-/** What a group of curves is called. */
+/** The title of a group of curves. */
 export function titleOf(group) {
   return TITLES[group] ?? group;
 }
@@ -33,24 +33,24 @@ const kept = remembered("timeline curves", { names: null });
 
 function usual(all) {
   const joints = all.filter(({ group }) => group === "joint");
-  const turns = joints.filter(({ name }) => /(stance|torso)_yaw$/.test(name)); // of people, hips and shoulders
+  const turns = joints.filter(({ name }) => /(stance|torso)_yaw$/.test(name)); // for people: hips and shoulders
   const plotted = turns.length > 0 ? turns : joints.slice(0, 1);
   return all.filter((curve) => plotted.includes(curve) || curve.group === "speed" || curve.group === "clearance").map(({ name }) => name);
 }
 
-/** The names of those that are plotted. */
+/** The names of the plotted curves. */
 export const chosen = computed(() => {
   const there = new Set(names.value.map(({ name }) => name));
   const wanted = kept.value.names?.filter((name) => there.has(name));
   return wanted && (wanted.length > 0 || kept.value.names.length === 0) ? wanted : usual(names.value);
 });
 
-/** Chooses what is plotted; null for what is usual. */
+/** Chooses the plotted curves; null for the default. */
 export function choose(list) {
   kept.value = { names: list };
 }
 
-/** The plots: [{title, unit, series}], one for each group of which something is chosen. */
+/** The plots: [{title, unit, series}], one for each group with chosen curves. */
 export const plots = computed(() => {
   curvesVersion.value;
   const made = new Map();
@@ -65,7 +65,7 @@ export const plots = computed(() => {
   return sorted.map((plot) => ({ ...plot, times: known.times, range: rangeOf(plot.series) }));
 });
 
-/** When something touched the body: bands, of the moments that are known. */
+/** The times of contact with the body: bands, from the known moments. */
 export const contacts = computed(() => {
   curvesVersion.value;
   const bands = [];
@@ -84,12 +84,12 @@ export const contacts = computed(() => {
   return bands.sort((one, other) => one.from - other.from);
 });
 
-let asked = ""; // of which way of which run, and for which curves, what is known is
+let asked = ""; // the history, the run and the curves of the known data
 let busy = false;
 let again = false;
-let newer = false; // whether the newest stretch was asked for last, while the run goes on
+let newer = false; // whether the newest stretch was requested last, while the run is active
 
-const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart are the same [s]
+const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart count as the same [s]
 
 function forget(key) {
   asked = key;
@@ -97,7 +97,7 @@ function forget(key) {
   curvesVersion.value = curvesVersion.peek() + 1;
 }
 
-/** Puts what is told of a stretch in the place of what was known of it. */
+/** Replaces the known data of a stretch by new data. */
 function put(names, { from, to, whole }, { times, curves }) {
   const [begin, end] = [firstFrom(known.times, from - near()), firstFrom(known.times, to + near())];
   const placed = (list, news) => [...list.slice(0, begin), ...news, ...list.slice(end)];
@@ -118,7 +118,7 @@ function joined(stretches) {
   return found;
 }
 
-/** Returns the first stretch between two moments of which some were left out; null where there is none. */
+/** Returns the first stretch with omitted moments between two moments; null if there is none. */
 function gap(begin, end) {
   let from = begin;
   for (const [first, last] of known.whole) {
@@ -130,7 +130,7 @@ function gap(begin, end) {
   return { from, to: Math.min(beyond, end) };
 }
 
-/** Returns the stretch that is asked for next, {from, to, most, whole}; null where all is known that is to be known now. */
+/** Returns the next stretch to request, {from, to, most, whole}; null if everything needed now is known. */
 function next() {
   const end = furthest.peek();
   const tick = session.peek()?.period || 0.01;
@@ -139,7 +139,7 @@ function next() {
   if (last === undefined) return newest(0, OVERVIEW);
   const { from, to } = span.peek();
   const missing = hurried.peek() ? null : (gap(Math.max(0, from), Math.min(to, end)) ?? gap(0, end));
-  // While the run goes on there is always something new: it takes turns with what was left out.
+  // While the run is active there is always new data: requests alternate between it and what was omitted.
   newer = running.peek() && (!newer || !missing);
   if (newer) return end > last + near() ? newest(last, AT_ONCE) : null;
   const ticks = running.peek() ? AT_ONCE : PIECE;
@@ -147,7 +147,7 @@ function next() {
 }
 
 async function ask() {
-  if (running.peek() && document.hidden) return; // nobody looks, and to answer costs the run time
+  if (running.peek() && document.hidden) return; // the page is hidden, and answering slows the run down
   if (busy) {
     again = true;
     return;
@@ -166,10 +166,10 @@ async function ask() {
   }, running.peek() ? PAUSE : 0);
 }
 
-/** Asks for what is not known yet, if there is anything; tells whether there may be more. What is told of another way is left. */
+/** Requests missing data, if any; returns whether there may be more. Ignores data of another history. */
 async function askOnce() {
   const { world } = session.peek() ?? {};
-  const whose = `${way.peek()} ${Boolean(world)}`; // a program may make its world later
+  const whose = `${way.peek()} ${Boolean(world)}`; // a program may create its world later
   if (!asked.startsWith(`${whose} `)) {
     forget(`${whose} `);
     const told = world ? await say({ type: "curves", names: [] }) : { names: [] };
@@ -183,7 +183,7 @@ async function askOnce() {
   if (!stretch) return false;
   const told = await say({ type: "curves", names: list, first: Math.max(0, stretch.from - near()), last: stretch.to + near(), most: stretch.most });
   if (asked !== key || !whose.startsWith(`${way.peek()} `)) return true;
-  if (told.names.length !== names.peek().length) names.value = told.names; // one more world
+  if (told.names.length !== names.peek().length) names.value = told.names; // another world was added
   put(list, stretch, told);
   return known.times.length > 0;
 }

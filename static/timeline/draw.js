@@ -7,32 +7,32 @@ import { bandText } from "./lanes.js";
 import { firstWhere } from "./search.js";
 import { AXIS } from "./rows.js";
 
-const SCALE = 44; // room for the scale of a plot in the column of names [px]
-const ROOM = 34; // no text is drawn in less [px]
+const SCALE = 44; // the width of a plot's scale in the column of names [px]
+const ROOM = 34; // the minimum width for a text [px]
 
 /**
  * @typedef Scene
  * @property {number} width [px]
  * @property {number} height [px]
- * @property {number} column How wide the column of names is [px].
- * @property {number} scroll How far the rows are scrolled up [px].
- * @property {{from: number, to: number}} span What is shown [s].
+ * @property {number} column The width of the column of names [px].
+ * @property {number} scroll The scroll position of the rows [px].
+ * @property {{from: number, to: number}} span The visible times [s].
  * @property {{rows: object[]}} layout See `layout` of rows.js.
- * @property {number} end Where bands end that last [s].
- * @property {number} begin What was before is not known any more [s].
+ * @property {number} end The end of bands that are still open [s].
+ * @property {number} begin Earlier times are no longer known [s].
  */
 
-/** Returns where a time is [px]. */
+/** Returns the position of a time [px]. */
 export function placeOf(time, { column, width, span }) {
   return column + ((time - span.from) / (span.to - span.from)) * (width - column);
 }
 
-/** Returns the time of a place [s]. */
+/** Returns the time at a position [s]. */
 export function timeOf(x, { column, width, span }) {
   return span.from + ((x - column) / Math.max(1, width - column)) * (span.to - span.from);
 }
 
-/** Draws it. */
+/** Draws the timeline. */
 export function drawTimeline(surface, scene) {
   const { width, height, column, span, layout, scroll } = scene;
   const box = { x: column, y: AXIS, width: width - column, height: height - AXIS };
@@ -69,7 +69,7 @@ function drawLane(surface, { lane, label, height }, y, scene) {
 function drawBands(surface, bands, y, height, scene) {
   const { column, width, span, end } = scene;
   const first = firstWhere(bands, (band) => band.to === null || band.to >= span.from);
-  let last = column - 10; // where the last band ended that was drawn: of several in one pixel one is enough
+  let last = column - 10; // the end of the last drawn band: of several in one pixel, one is enough
   for (let n = first; n < bands.length && bands[n].from <= span.to; n += 1) {
     const band = bands[n];
     const from = Math.max(column - 4, placeOf(band.from, scene));
@@ -113,7 +113,7 @@ function drawPlotRow(surface, plot, y, height, scene) {
   drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span });
 }
 
-/** The name of a curve without what goes without saying: the only body's name, and the plot's title. */
+/** Returns the name of a curve without redundant parts: the only body's name, and the plot's title. */
 function shortName(name, { title, series }) {
   const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
   const body = bodies.length === 1 && /^[_ ]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";

@@ -1,4 +1,4 @@
-// What the pointer, the wheel and the keys do on the timeline.
+// The actions of the pointer, the wheel and the keys on the timeline.
 
 import { running, session } from "../store.js";
 import { placeOf, timeOf } from "./draw.js";
@@ -6,22 +6,22 @@ import { AXIS, column } from "./rows.js";
 import { furthest, orderThere, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
-const GRIP = 4; // so near the border of the column of names is taken hold of [px]
-const HANDLE = 7; // so near the playhead it is, in the axis [px]
-const STILL = 3; // a pointer that has moved by no more has clicked [px]
-const COLUMN = [70, 360]; // how wide that may be [px]
-const NOTCH = 0.0015; // how much a pixel of the wheel zooms
+const GRIP = 4; // the distance at which the border of the column of names can be dragged [px]
+const HANDLE = 7; // the same for the playhead, in the axis [px]
+const STILL = 3; // a pointer that has moved by at most this has clicked [px]
+const COLUMN = [70, 360]; // the limits of the column's width [px]
+const NOTCH = 0.0015; // the zoom per pixel of the wheel
 const LINE = 16; // a line of the wheel [px]
-const FEW = 5; // ticks of a step with Shift
+const FEW = 5; // the ticks of a step with Shift
 
-/** Returns what a place of the timeline is: "border", "axis", "names" or "lanes". */
+/** Returns the area at a position of the timeline: "border", "axis", "names" or "lanes". */
 export function partAt(x, y) {
   if (Math.abs(x - column.peek()) <= GRIP) return "border";
   if (x < column.peek()) return "names";
   return y < AXIS ? "axis" : "lanes";
 }
 
-/** The view with the sizes that places are reckoned by. */
+/** Returns the view with the sizes needed to compute positions. */
 function sceneOf(stage) {
   return { column: column.peek(), width: stage.clientWidth, span: span.peek() };
 }
@@ -36,7 +36,7 @@ function placeIn(event, stage) {
   return [event.clientX - left, event.clientY - top];
 }
 
-/** Begins to scrub, to pan or to set the width of the names. */
+/** Starts to scrub, to pan or to set the width of the names. */
 export function begin(event) {
   if (event.button !== 0) return;
   const stage = event.currentTarget;
@@ -68,7 +68,7 @@ export function begin(event) {
   event.preventDefault();
 }
 
-/** Zooms about the pointer; pans with Shift, or where the wheel goes sideways. Over the names the rows scroll as elsewhere. */
+/** Zooms about the pointer; pans with Shift, or if the wheel moves sideways. Over the names, the rows scroll as usual. */
 export function turn(event) {
   const stage = event.currentTarget;
   const [x, y] = placeIn(event, stage);

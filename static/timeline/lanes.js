@@ -1,4 +1,4 @@
-// Lanes made of a run's events as they come: a row for each thing that lasts, with a band for each of its states.
+// Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state.
 
 import { chunkText } from "../parts/chunk.js";
 import { Widths } from "./commands.js";
@@ -7,12 +7,12 @@ import { TAKERS } from "./takers.js";
 
 /**
  * @typedef Band
- * @property {number} from When it begins [s].
- * @property {number | null} to When it ends [s]; null while it lasts.
- * @property {string} [text] What it says; or else `chunk`, whose text is made when it is first shown.
+ * @property {number} from Its start [s].
+ * @property {number | null} to Its end [s]; null while it is open.
+ * @property {string} [text] Its text; or else `chunk`, whose text is made when it is first shown.
  * @property {object} [chunk]
  * @property {string} tone The name of a colour.
- * @property {string} [end] How it ended, where that is worth telling.
+ * @property {string} [end] How it ended, if this is worth showing.
  */
 
 /** One row. */
@@ -21,39 +21,39 @@ class Lane {
     Object.assign(this, { key, group, label, bands: [] });
   }
 
-  /** The band that lasts, if there is one. */
+  /** The open band, if there is one. */
   get open() {
     const last = this.bands.at(-1);
     return last && last.to === null ? last : null;
   }
 
-  /** Ends the band that lasts. */
+  /** Ends the open band. */
   close(time, end = "") {
     const band = this.open;
     if (!band) return;
     band.to = time;
     if (end) band.end = end;
-    // What begins and ends at once, to make place for another, is not seen.
+    // A band that begins and ends at the same time is removed.
     if (band.from === time && !band.mark && !end) this.bands.pop();
   }
 
-  /** Begins a band; the one before it ends. */
+  /** Starts a band; the previous one ends. */
   begin(time, band) {
     this.close(time);
     this.bands.push({ from: time, to: null, ...band });
   }
 
-  /** Sets a mark: something that happens at once. */
+  /** Adds a mark: an event without duration. */
   mark(time, band) {
     this.bands.push({ from: time, to: time, mark: true, ...band });
   }
 
-  /** Returns the number of the first band that lasts beyond a time. */
+  /** Returns the index of the first band that ends after a time. */
   firstAfter(time) {
     return firstWhere(this.bands, (band) => band.to === null || band.to >= time);
   }
 
-  /** Returns the band at a time, or the mark next to it, if there is one; `near` is how far off a mark may be [s]. */
+  /** Returns the band at a time, or the nearest mark, if there is one; `near` is the maximum distance of a mark [s]. */
   at(time, near) {
     let found = null;
     for (let n = this.firstAfter(time - near); n < this.bands.length; n += 1) {
@@ -67,7 +67,7 @@ class Lane {
   }
 }
 
-/** Says a band in one line. */
+/** Returns a band as one line of text. */
 export function bandText(band) {
   band.text ??= chunkText(band.chunk);
   return band.text;
@@ -89,23 +89,23 @@ export class Lanes {
     this.begin = null;
   }
 
-  /** Returns a lane, made where it is new. */
+  /** Returns a lane, and creates it if it is new. */
   lane(key, group, label = key) {
     let lane = this.lanes.get(key);
     if (!lane) this.lanes.set(key, (lane = new Lane(key, group, label)));
     return lane;
   }
 
-  /** Returns the colour of a name: another one for each, as far as there are. */
+  /** Returns the colour of a name: different for each, as far as there are enough. */
   tone(name) {
     if (!this.tones.has(name)) this.tones.set(name, `series-${(this.tones.size % 6) + 1}`);
     return this.tones.get(name);
   }
 
-  /** Takes in one event: [time in us, source, kind, data]. */
+  /** Adds one event: [time in us, source, kind, data]. */
   take(event) {
     const [time, source, kind, data] = event;
-    // Of a program that makes one run after another, each one's time begins anew; on the axis they follow each other.
+    // If a program makes one run after another, each one's time starts at 0; on the axis they follow each other.
     const run = source.startsWith("top#") ? source.slice(0, source.indexOf(".") < 0 ? undefined : source.indexOf(".")) : "top";
     const before = this.clocks.get(run) ?? 0;
     if (time > before) {
@@ -117,7 +117,7 @@ export class Lanes {
     TAKERS[kind]?.(this, now, source, data, event);
   }
 
-  /** Forgets what was over before a time [s]. */
+  /** Removes what was over before a time [s]. */
   forget(time) {
     this.begin = time;
     for (const lane of this.lanes.values()) lane.bands.splice(0, lane.firstAfter(time));

@@ -1,9 +1,9 @@
-// Draws again when something has changed: at once where the user does it, else not more often than one sees.
+// Draws again after a change: at once for the user's actions, otherwise at a limited rate.
 
 const BETWEEN = 66; // between two drawings while a run goes on [ms]
 
 export class Painter {
-  /** @param paint Draws. */
+  /** @param paint The function that draws. */
   constructor(paint) {
     this.paint = paint;
     this.drawn = 0;
@@ -11,7 +11,7 @@ export class Painter {
     this.frame = 0;
   }
 
-  /** Asks for a drawing: at the next frame, or `later`, with what else changes until then. */
+  /** Requests a drawing: at the next frame, or `later`, together with other changes until then. */
   ask(later = false) {
     const wait = later ? this.drawn + BETWEEN - performance.now() : 0;
     if (this.frame || (later && this.timer)) return;
@@ -22,7 +22,7 @@ export class Painter {
 
   #next() {
     this.timer = 0;
-    // A page that is not seen gets no frames.
+    // A hidden page gets no frames.
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       this.drawn = performance.now();

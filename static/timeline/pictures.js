@@ -1,4 +1,4 @@
-// Keeps the timeline, or one of its plots, as PNG or SVG.
+// Saves the timeline, or one of its plots, as PNG or SVG.
 
 import { html, signal } from "../vendor/preact.js";
 import { drawCurves, drawLegend, drawTimes } from "../parts/curve.js";
@@ -12,7 +12,7 @@ import { scene } from "./stage.js";
 const [WIDE, HIGH, LEFT] = [900, 260, 46]; // of a plot [px]
 const which = signal("");
 
-/** Says which run it is. */
+/** Returns a description of the run. */
 function runText() {
   const { model, run, seed } = session.peek();
   return `${model}, run ${run}${seed === null || seed === undefined ? "" : `, seed ${seed}`}`;
@@ -34,7 +34,7 @@ function ofPlot(plot) {
   return { width: WIDE, height: HIGH, title: `${plot.title} [${plot.unit}]: ${runText()}`, draw };
 }
 
-/** Asks for what is to be kept, and keeps it. */
+/** Asks what to save, and saves it. */
 export async function savePictures() {
   which.value = "";
   const body = html`<label class="field">

@@ -1,4 +1,4 @@
-// The lanes of the run that is shown, fed with its events as they come.
+// The lanes of the run that is shown, updated with its events as they arrive.
 
 import { effect, signal } from "../vendor/preact.js";
 import { events } from "../store.js";
@@ -12,7 +12,7 @@ const taken = { list: null, first: 0, next: 0 };
 
 effect(() => {
   const { list, first, cut } = events.value;
-  // Where the end of a run is cut off, it is simplest to begin anew: it happens only when a user sends it another way.
+  // If the end of a run is cut off, all lanes are rebuilt: it happens only when a user changes the run's past.
   if (list !== taken.list || cut) {
     lanes.clear();
     Object.assign(taken, { list, first, next: first });

@@ -1,4 +1,4 @@
-// Which rows the timeline has, in which order, and how high they are.
+// The rows of the timeline, their order and their heights.
 
 import { remembered } from "../remembered.js";
 import { contacts, names, plots } from "./curves.js";
@@ -19,19 +19,19 @@ export const GROUPS = [
   { id: "modules", text: "Modules", title: "When modules and muscles are busy, and errors" },
 ];
 
-/** Which groups are hidden. */
+/** The hidden groups. */
 export const hidden = remembered("timeline hidden", []);
-/** How wide the column of names is [px]. */
+/** The width of the column of names [px]. */
 export const column = remembered("timeline names", 150);
 
-/** Which groups there is anything of. */
+/** The groups that are not empty. */
 export function groupsThere() {
   const there = new Set([...lanes.lanes.values()].map(({ group }) => group));
   if (names.value.length > 0) there.add("curves");
   return GROUPS.filter(({ id }) => there.has(id));
 }
 
-/** What the labels of all lanes begin with, such as the only agent's name; it is left out. */
+/** The common prefix of the labels of all lanes, such as the only agent's name; it is omitted. */
 function commonStart(list) {
   const paths = list.filter(({ group }) => group === "buffers" || group === "modules" || group === "plan").map(({ label }) => label);
   const start = paths[0]?.includes(".") ? paths[0].slice(0, paths[0].indexOf(".") + 1) : "";
@@ -49,9 +49,9 @@ function bandAt(time, near) {
 }
 
 /**
- * Returns {rows, height}: each row has its place y and height, and `lane` with its `label`, or `plot`.
+ * Returns {rows, height}: each row has its position y and height, and `lane` with its `label`, or `plot`.
  *
- * @param filter Only lanes and plots with this in their name are shown.
+ * @param filter Only lanes and plots with this text in their name are shown.
  */
 export function layout(filter) {
   const all = [...lanes.lanes.values()];

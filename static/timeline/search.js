@@ -1,6 +1,6 @@
-// Looks for a place in a list that is in order.
+// Binary search in a sorted list.
 
-/** Returns the number of the first entry of which something holds, where it holds of all that follow it; the length where of none. */
+/** Returns the index of the first entry with a property that all later entries have too; the length if there is none. */
 export function firstWhere(list, holds) {
   let [low, high] = [0, list.length];
   while (low < high) {

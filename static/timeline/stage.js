@@ -1,4 +1,4 @@
-// The part of the timeline that is drawn: the canvas, the playhead over it, and what the pointer is at.
+// The drawn part of the timeline: the canvas, the playhead over it, and what is at the pointer.
 
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { CanvasSurface, scaled } from "../parts/surface.js";
@@ -17,12 +17,12 @@ import { settle, span } from "./view.js";
 
 const size = signal({ width: 0, height: 0 });
 const scroll = signal(0);
-/** How high all rows are [px]. */
+/** The height of all rows [px]. */
 const height = signal(0);
-/** What lanes and plots are called that are shown. */
+/** The names of the visible lanes and plots. */
 export const filter = signal("");
 
-/** Returns all that a drawing needs to know; `whole` is for a picture with all rows. */
+/** Returns everything that a drawing needs; `whole` is for a picture with all rows. */
 export function scene(whole = false) {
   const rows = layout(filter.peek());
   const { width, height: seen } = size.peek();
@@ -45,7 +45,7 @@ function paint(canvas) {
   if (now.width > now.column) drawTimeline(new CanvasSurface(context), now);
 }
 
-/** Sets the playhead and the veil over what is ahead of it. */
+/** Places the playhead, and the veil over the future. */
 function place(stage) {
   const view = { column: column.value, width: size.value.width, span: span.value };
   const inside = (x) => Math.min(Math.max(x, view.column), view.width);
@@ -59,7 +59,7 @@ function place(stage) {
   end.style.transform = `translateX(${far}px)`;
 }
 
-/** Draws what has changed, as long as the stage is there. */
+/** Draws changes, as long as the component is mounted. */
 function attend(stage) {
   const painter = new Painter(() => paint(stage.querySelector("canvas")));
   const watch = new ResizeObserver(() => {
@@ -87,7 +87,7 @@ function attend(stage) {
   };
 }
 
-/** Returns what is at a place of the stage. */
+/** Returns what is at a position of the stage. */
 function lookUp(event, stage) {
   const { left, top } = stage.getBoundingClientRect();
   const [x, y] = [event.clientX - left, event.clientY - top];

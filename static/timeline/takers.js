@@ -1,4 +1,4 @@
-// What each kind of event (`actr3d/kinds.py`) means for the lanes.
+// The effect of each kind of event (`actr3d/kinds.py`) on the lanes.
 
 import { valueText } from "../parts/chunk.js";
 import { commandText, setTheSame } from "./commands.js";
@@ -6,14 +6,14 @@ import { commandText, setTheSame } from "./commands.js";
 const LEVELS = { planning_unit: "planning unit", unit_task: "unit task", method: "method", operator: "operator" };
 const BEGINS = new Set(["begun", "resumed", "going on"]);
 
-/** What is before the last dot of a path. */
+/** Returns the part of a path before the last dot. */
 function owner(path) {
   return path.includes(".") ? path.slice(0, path.lastIndexOf(".")) : "";
 }
 
 function level(kind) {
   return (lanes, time, source, { name, what, path, by }) => {
-    // All four rows of an agent are there from the first on, in their order.
+    // All four rows of an agent exist from the start, in their order.
     for (const [one, label] of Object.entries(LEVELS)) lanes.lane(`${one} ${owner(source)}`, "plan", [owner(source), label].filter(Boolean).join("."));
     const lane = lanes.lane(`${kind} ${owner(source)}`, "plan");
     if (BEGINS.has(what)) lane.begin(time, { text: name, tone: lanes.tone(name), more: path });
@@ -55,7 +55,7 @@ function buffer(lanes, time, source, { chunk }) {
   else lane.close(time);
 }
 
-/** What a module was last asked for, in a few words. */
+/** Returns the latest request to a module in a few words. */
 function request(lanes, time, source, data) {
   const text = valueText(data.asked ?? data.movement ?? data.word ?? data.pattern ?? data.call ?? "");
   lanes.asked.set(source, { time, text });
@@ -97,7 +97,7 @@ function refused(lanes, time, source, { movement, group, why }) {
   lane.mark(time, { text: `${movement}: ${why}`, tone: "bad", more: group ?? "" });
 }
 
-/** Rows that are there before there is anything in them, so that others do not move. */
+/** Creates the rows that exist before they have contents, so that others do not move. */
 function start(lanes) {
   lanes.lane("said", "marks", "printed");
 }
@@ -106,7 +106,7 @@ function output(lanes, time, _source, { text }) {
   lanes.lane("said", "marks", "printed").mark(time, { text: String(text), tone: "text" });
 }
 
-/** Of changes of the same at the same moment only the last has an effect: they are one. */
+/** Of several changes of one value at the same moment, only the last has an effect: they are merged. */
 function command(lanes, time, _source, _data, event) {
   lanes.widths.take(event);
   const lane = lanes.lane("commands", "marks", "commands");
@@ -120,7 +120,7 @@ function reward(lanes, time, source, { value }) {
   lanes.lane("rewards", "marks", "rewards").mark(time, { text: `${valueText(value)} to ${source}`, tone: "good" });
 }
 
-/** By the kind of the event: takes it into the lanes at a time of the axis [s]. */
+/** By the kind of the event: the function that adds it to the lanes, at a time of the axis [s]. */
 export const TAKERS = {
   ...Object.fromEntries(Object.keys(LEVELS).map((kind) => [kind, level(kind)])),
   select,

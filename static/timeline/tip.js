@@ -1,15 +1,15 @@
-// What the pointer is at, told beside it.
+// A tooltip for what is at the pointer.
 
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { seriesColour, valueAt } from "../parts/curve.js";
 import { numberText, timeText } from "../parts/ticks.js";
 import { bandText } from "./lanes.js";
 
-const NEAR = 4; // so far off a mark is still pointed at [px]
+const NEAR = 4; // the maximum distance of a mark from the pointer [px]
 const AWAY = 14; // from the pointer [px]
-const MOST = 1200; // characters of a text
+const MOST = 1200; // the maximum number of characters
 
-/** Returns what there is at a place: {row, time, band}. */
+/** Returns what is at a position: {row, time, band}. */
 export function found(row, time, secondsPerPixel) {
   return row ? { row, time, band: row.lane?.at(time, NEAR * secondsPerPixel) ?? null } : null;
 }
@@ -41,7 +41,7 @@ function OfPlot({ plot, time }) {
     })}`;
 }
 
-/** @param at {x, y} of the pointer in the window [px], and what is there (see `found`), or the `named` row; null for nothing. */
+/** @param at {x, y} of the pointer in the window [px], and the result of `found`, or the `named` row; null for nothing. */
 export function Tip({ at }) {
   const box = useRef(null);
   const shown = at && (at.row.plot || at.band || at.named);

@@ -1,4 +1,4 @@
-// The tools above the timeline: what is shown of it, how near, and where the run goes on.
+// The tools above the timeline: visible rows, zoom, and where the run continues.
 
 import { html } from "../vendor/preact.js";
 import { bindKey, noteKey } from "../keys.js";
@@ -16,7 +16,7 @@ import { savePictures } from "./pictures.js";
 import { filter } from "./stage.js";
 import { fit, mode, zoom } from "./view.js";
 
-const STEP = 1.6; // of a press on a button that zooms
+const STEP = 1.6; // the factor of a zoom button
 
 function Groups() {
   lanesVersion.value;

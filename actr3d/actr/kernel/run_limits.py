@@ -1,4 +1,4 @@
-"""What a whole program of models is held to while it is being loaded and run: its seed, its end, its trace."""
+"""The limits of a program of models while it is loaded and run: its seed, its end, its trace."""
 
 from __future__ import annotations
 
@@ -17,29 +17,29 @@ from actr3d.trace import Trace
 
 
 class EndOfRun(BaseException):
-    """Ends a program that goes on asking for time after its last moment has come.
+    """Ends a program that keeps asking for time after its end.
 
-    It is no `Exception`, so that a model's own `except Exception` does not keep the program alive.
+    It is not an `Exception`, so that a model's own `except Exception` does not keep the program alive.
     """
 
 
 MOST_REFUSALS = 100
-"""A program that has asked so often for time after its end swallows every error: it is never going to end by itself."""
+"""The number of refused requests for time after which a program counts as one that catches every error and never ends by itself."""
 
 
 class Recorder(Protocol):
-    """Takes down what the simulations of a program do that is no event; by the number that the program's trace gives each."""
+    """Records what the simulations of a program do besides events; `run` is the number in the program's trace."""
 
     def state(self, run: int, tick: int, data: bytes) -> None:
-        """Takes the physics at the start of a run, or at the end of a tick."""
+        """Records the physics state at the start of a run, or at the end of a tick."""
         ...
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
-        """Takes what a body answered at the end of a tick."""
+        """Records a body's answer at the end of a tick."""
         ...
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
-        """Takes what a user did after a tick."""
+        """Records a user's command that was given after a tick."""
         ...
 
 
@@ -48,25 +48,25 @@ class RunLimits:
     """The seed, end and trace of every top model made inside a `with RunLimits(...)` block, also by threads started in it."""
 
     seed: int | str | None = None
-    """What all random choices come from; None draws a seed for each block, which its runs record."""
+    """The seed of all random choices; None draws a seed for each block, which its runs record."""
     until: float | None = None
-    """When every run ends at the latest [s of its own simulated time]; the program ends with the first run that is cut short
-    there. What ends by itself is never cut, and so a program that makes one short run after another without end goes on until
-    it is interrupted. None for no end."""
+    """The end of every run [s of its own simulated time]; the program ends with the first run that is cut short there. A run that ends
+    by itself is never cut, so a program that makes one short run after another without end continues until it is interrupted.
+    None for no end."""
     trace: Trace | None = None
-    """Where events go; None for no trace."""
+    """The trace that receives the events; None for no trace."""
     recorder: Recorder | None = None
-    """Where else simulations tell what they do, beside a trace of everything; None for nowhere."""
+    """The recorder for what simulations do besides a trace of everything; None for none."""
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
-    """Tells the time of the latest run [us]."""
+    """Returns the time of the latest run [us]."""
     passing: Callable[[int, int], object] | None = field(default=None, repr=False)
-    """Called before the time of a run goes on, when all that was to happen at that time has happened: from when, and to when
-    [us]. Here a program can be held up, or ended by an `EndOfRun`."""
+    """Called before the time of a run advances, after all events at that time: with the old and the new time [us]. It can hold
+    the program up, or end it with an `EndOfRun`."""
     ticked: Callable[[Any, int], object] | None = field(default=None, repr=False)
-    """Called with a simulation before its first tick and after each tock, and with how much time has passed [us]; in place of
-    `passing`, which would come in the midst of a tick."""
+    """Called with a simulation before its first tick and after each tock, and with the time passed [us]; replaces `passing`,
+    which would be called within a tick."""
     last_resort: Callable[[], Any] | None = field(default=None, repr=False)
-    """What ends a program that goes on asking for time though every further run raises `EndOfRun`: called after 100 times."""
+    """Ends a program that keeps asking for time although every further run raises `EndOfRun`: called after 100 requests."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)
     _ended: bool = field(default=False, init=False, repr=False)
     _refused: int = field(default=0, init=False, repr=False)
@@ -86,10 +86,10 @@ class RunLimits:
         return self._drawn if self.seed is None else self.seed
 
     def next_seed(self) -> int | str:
-        """Returns the seed of the next top model: the program's own for the first, one made from it for each other.
+        """Returns the seed of the next top model: the program's own for the first, and one derived from it for each other.
 
-        Threads that make models at the same time share out the numbers as they come; only one after the other are they
-        the same each time.
+        If several threads make models at the same time, the assignment of seeds depends on their timing; it is
+        reproducible only if they make models one after the other.
         """
         with _LOCK:
             self._models += 1
@@ -104,7 +104,7 @@ class RunLimits:
         return self._ended
 
     def clip(self) -> int | None:
-        """Returns the last moment of every run [us]; None where nothing ends it.
+        """Returns the end of every run [us]; None if there is no end.
 
         Raises:
             EndOfRun: If a run was cut short before.
@@ -133,16 +133,16 @@ class RunLimits:
         raise EndOfRun
 
     def cut(self, wanted_us: int) -> None:
-        """Notes that a run was cut short that wanted to go on to `wanted_us` [us]: limits before that give no more time."""
+        """Stores that a run was cut short that needed to continue to `wanted_us` [us]: a limit before that gives no more time."""
         if self.until is not None and microseconds(self.until, "until") < wanted_us:
             self._ended = True
         if self._outer is not None:
             self._outer.cut(wanted_us)
 
-    # -- where they are in force
+    # -- entering and leaving the block
 
     def __enter__(self) -> Self:
-        if not self._tokens:  # the same limits may serve one program after another
+        if not self._tokens:  # the same limits may be used for one program after another
             self._drawn = fresh_seed()
             self._models = self._refused = 0
             self._ended = False
@@ -156,7 +156,7 @@ class RunLimits:
         _CURRENT.reset(self._tokens.pop())
 
     def adopt(self, thread: threading.Thread) -> None:
-        """Lets a thread that is about to start keep to these limits."""
+        """Applies these limits to a thread that is about to start."""
         run = thread.run
 
         def run_within() -> None:
@@ -168,9 +168,9 @@ class RunLimits:
         self._threads.add(thread)
 
     def wait_for_threads(self) -> None:
-        """Waits for the threads that were started under these limits, as Python itself does before a program is over.
+        """Waits for the threads that were started under these limits, as Python itself does at the end of a program.
 
-        Daemon threads are not waited for, nor those of a thread pool, which are only over when Python is.
+        Does not wait for daemon threads, nor for those of a thread pool, which end only with Python.
         """
         while waiting := [thread for thread in list(self._threads) if thread.is_alive() and not thread.daemon and not _of_pool(thread)]:
             for thread in waiting:
@@ -178,7 +178,7 @@ class RunLimits:
 
 
 def fresh_seed() -> int:
-    """Draws a seed from the system's own randomness."""
+    """Returns a new seed from the system's random source."""
     return random.SystemRandom().getrandbits(32)
 
 
@@ -189,7 +189,7 @@ _blocks = 0
 
 
 def _start(self: threading.Thread) -> None:
-    """Starts a thread; it keeps to the limits of the thread that starts it (before Python 3.14 none inherits them)."""
+    """Starts a thread with the limits of the thread that starts it (before Python 3.14, threads do not inherit them)."""
     limits = _CURRENT.get()
     if limits is not None:
         limits.adopt(self)
@@ -197,7 +197,7 @@ def _start(self: threading.Thread) -> None:
 
 
 def _follow_threads(more: int) -> None:
-    """Lets `Thread.start` be `_start` while any block is open."""
+    """Replaces `Thread.start` by `_start` while any block is open."""
     global _blocks
     with _LOCK:
         _blocks += more

@@ -1,4 +1,4 @@
-"""The clock and the event queue of a run: makes plain calls and lets generators go on when their time comes."""
+"""The clock and the event queue of a run: makes plain calls and resumes generators at their time."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from actr3d.saying import warn_at_frame, warn_modeller
 from actr3d.trace import Trace
 
 NEVER = 1 << 62
-"""A time that does not come [us]."""
+"""A time that never comes [us]."""
 STANDSTILL = 200_000
-"""So many events without any time passing are an endless loop, not a model."""
+"""The number of events without any time passing that counts as an endless loop."""
 END = -9999999
-"""The priority of a run's end: everything else of that moment comes before it."""
+"""The priority of a run's end: all other events of that moment come first."""
 FAR = 1e12
-"""Delays up to here [s] need no further look."""
+"""Delays up to this one [s] need no further check."""
 NO_PART = 1e-9
-"""A smaller part of a microsecond is how floating point writes a whole number: 0.07 s are 70000.00000000001 us."""
+"""A smaller fraction of a microsecond is a floating-point rounding error: 0.07 s are 70000.00000000001 us."""
 MOST_LEFT = 32
-"""Of so many different delays an event carries what rounding has left over; a model has fewer that come again and again. One sum of
-all that is left over would do for any number, but moves the times of random delays by a microsecond: printed with few digits, some
-then differ from python_actr's."""
+"""The maximum number of different delays whose rounding errors an event carries; a model has fewer delays that recur. A single sum
+of all rounding errors would serve any number of delays, but would shift the times of random delays by a microsecond: printed with
+few digits, some would then differ from python_actr's."""
 
 Ending = Literal["limit", "until", "stop", "done"]
-"""What ended a run: its own limit, the limits of the program, `stop`, or that nothing was left to do."""
+"""What ended a run: its own limit, the limits of the program, `stop`, or that no events were left."""
 
 
 class Scheduler:
@@ -41,40 +41,40 @@ class Scheduler:
 
     Args:
         first_come: Whether simultaneous events of one priority happen in the order they were scheduled. Otherwise they
-            happen in the order that python_actr 1.9.5 has, which depends on all events that are queued; so there must
-            be the same ones, also those that do nothing.
+            happen in the order of python_actr 1.9.5, which depends on all queued events; the same events must then be
+            queued, including those without effect.
     """
 
     def __init__(self, first_come: bool = True) -> None:
         self.queue: EventQueue[Call] = EventQueue(first_come)
         self.now_us = 0
-        """The present, in whole microseconds."""
+        """The current time, in whole microseconds."""
         self.left: Mapping[float, float] = NOTHING_LEFT
-        """What rounding to whole microseconds has left over of the delays that led to the present event, by delay [us]. The next
-        equal delay that follows from it takes that in, so that a series of equal delays does not drift: 60 times 1/60 s is 1 s.
-        The times of retrievals, which come from activations, are rounded each by itself."""
+        """The rounding errors of the delays that led to the current event, by delay [us]. The next equal delay that follows from this event
+        includes the error, so that a series of equal delays does not drift: 60 times 1/60 s is 1 s. The times of retrievals, which
+        depend on activations, are rounded independently."""
         self.ended_by: Ending = "done"
         """What ended the latest run."""
         self.bound: dict[str, Any] | None = None
-        """What the production that fired last had bound; `?name` in a chunk's text means these."""
+        """The bindings of the production that fired last; `?name` in a chunk's text refers to these."""
         self.fired: Any = None
-        """The production that fired last; errors name it."""
+        """The production that fired last, for error messages."""
         self.firing: Any = None
-        """The production whose body is being carried out; errors in what it sets going name it."""
+        """The production whose body is running; errors in the events it starts name it."""
         self.trace: Trace | None = None
         self.seed: int | str | None = None
-        """What the run's random numbers were made from; None where the modeller gave a generator of their own."""
+        """The seed of the run's random numbers; None if the modeller provided a generator."""
         self.stop_flag = False
         self._run_number = 0
         self.step = 0
-        """How many events have happened."""
+        """The number of events so far."""
         self.harvests = False
-        """Whether there is a memory that collects what leaves buffers, as in ACT-R 7."""
+        """Whether a memory collects the chunks that leave buffers, as in ACT-R 7."""
         self.round_ms = False
-        """Whether there are models that go by ACT-R 7's numbers, whose events happen at whole milliseconds."""
+        """Whether some models use ACT-R 7's timing, with events at whole milliseconds."""
         self.limits: RunLimits | None = RunLimits.current()
         self.in_lockstep = False
-        """Whether a simulation lets its time pass, tick by tick, and asks the limits for it."""
+        """Whether a simulation advances the time tick by tick, and checks the limits itself."""
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
         self._ends = Ends()
@@ -84,7 +84,7 @@ class Scheduler:
 
     @property
     def time(self) -> float:
-        """The present [s]."""
+        """The current time [s]."""
         return seconds(self.now_us)
 
     def add(
@@ -99,12 +99,12 @@ class Scheduler:
         """Schedules a call, or starts a generator, `delay` seconds from now.
 
         Args:
-            func: What to call; a generator function is run until it ends, waiting for what it yields.
-            delay: When [s from now].
+            func: The function to call; a generator function runs until it ends, waiting for what it yields.
+            delay: The delay [s].
             args: Its arguments.
             keys: Its keyword arguments.
-            priority: Among simultaneous events the higher comes first.
-            thread_safe: Whether the caller is another thread; the call then waits until the running event is over.
+            priority: Among simultaneous events, a higher priority comes first.
+            thread_safe: Whether the caller is another thread; the call is then scheduled after the running event.
 
         Raises:
             SchedulerError: If the delay is negative or not a number.
@@ -118,7 +118,7 @@ class Scheduler:
         return event
 
     def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
-        """Schedules a plain call of the library's own, which returns None; its delay is rounded by itself."""
+        """Schedules a plain call of the library itself, which returns None; its delay is rounded independently."""
         event = Call(call, args)
         kept, self.left = self.left, NOTHING_LEFT
         self.put(event, delay)
@@ -126,7 +126,7 @@ class Scheduler:
         return event
 
     def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
-        """Schedules such a call at a time [us] that `after` gave."""
+        """Schedules such a call at a time [us] returned by `after`."""
         event = Call(call, args)
         if time == self.now_us:
             event.left = self.left
@@ -134,7 +134,7 @@ class Scheduler:
         return event
 
     def drop(self, events: Collection[Call]) -> None:
-        """Takes events out of the queue that have no effect any more, so that no run waits for them."""
+        """Removes events that no longer have an effect from the queue, so that no run waits for them."""
         heap = self.queue.heap
         left = [entry for entry in heap if not any(entry[3] is event for event in events)]
         if len(left) < len(heap):
@@ -142,16 +142,16 @@ class Scheduler:
             heapify(heap)
 
     def begin(self, generator: Generator[Any, Any, Any], call: Callable[..., Any]) -> Event:
-        """Lets a generator, which `call` has made, run from now on."""
+        """Starts a generator, created by `call`, at the current time."""
         event = Event(call, generator=generator)
         self.put_now(event)
         return event
 
     def put(self, event: Call, delay: float, priority: float = 0) -> None:
-        """Puts an event into the queue, `delay` seconds from now.
+        """Adds an event to the queue, `delay` seconds from now.
 
-        What rounding leaves over of the delay, the next equal delay takes in; see `left`. Models whose events happen at whole
-        milliseconds have them there, and nothing is taken in, as in ACT-R 7.
+        The rounding error of the delay is included in the next equal delay; see `left`. For models with events at whole
+        milliseconds, the time is rounded to a millisecond and no error is carried over, as in ACT-R 7.
 
         Raises:
             SchedulerError: If the delay is negative or not a finite number.
@@ -180,11 +180,11 @@ class Scheduler:
         self.queue.push(time, event, priority, delay)
 
     def forget_left(self) -> None:
-        """Makes the delays that follow from the present event rounded by themselves, whatever was left over before."""
+        """Discards the carried rounding errors, so that delays that follow from the current event are rounded independently."""
         self.left = NOTHING_LEFT
 
     def put_now(self, event: Event) -> None:
-        """Puts an event into the queue at this very moment, with its own priority."""
+        """Adds an event to the queue at the current time, with its own priority."""
         event.left = self.left
         self.queue.push(self.now_us, event, event.priority)
 
@@ -204,11 +204,11 @@ class Scheduler:
         return later
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:
-        """Wakes everything that waits for a trigger or for a name."""
+        """Wakes all events that wait for a trigger or for a name."""
         self.wake(self.named(key) if isinstance(key, str) else key, priority)
 
     def wake(self, trigger: Trigger, priority: float | None) -> None:
-        """Lets what waits for a trigger go on at this moment, with this priority from now on unless it is None."""
+        """Resumes the events that wait for a trigger at the current time, with a new priority unless it is None."""
         waiting, trigger.waiting = trigger.waiting, []
         for event in waiting:
             if priority is not None:
@@ -220,7 +220,7 @@ class Scheduler:
         return self._named.setdefault(name, Trigger(name))
 
     def take_over(self, other: Scheduler) -> None:
-        """Takes everything over from another scheduler: its events, who waits there for a name, what other threads have added."""
+        """Takes over everything from another scheduler: its events, its waiting events by name, and the calls added by other threads."""
         while other.queue.heap:
             time, priority, event = other.queue.take()
             if time < self.now_us:
@@ -235,17 +235,17 @@ class Scheduler:
         self.harvests = self.harvests or other.harvests
 
     def stop(self) -> None:
-        """Ends the run once the present event is over."""
+        """Ends the run after the current event."""
         self.stop_flag = True
 
     def run(self, duration: float | None = None) -> None:
-        """Runs until nothing is left to do, `stop` is called, or `duration` seconds have passed.
+        """Runs until no events are left, `stop` is called, or `duration` seconds have passed.
 
-        Events at exactly the end belong to this run. After a run that was not stopped the clock stands at its end. The
-        limits of the program cut a run that needs more time than they give; they change nothing else.
+        Events at exactly the end belong to this run. After a run that was not stopped, the clock is at its end. The
+        limits of the program cut a run that needs more time than they allow; they have no other effect.
 
         Raises:
-            SchedulerError: If time stands still for 200,000 events, or something cannot be waited for.
+            SchedulerError: If 200,000 events happen without time passing, or a yielded value cannot be waited for.
             EndOfRun: If the limits of the program leave no time, and the run needs some; or if they cut an earlier run.
         """
         end = None if duration is None else self._ends.after(self.now_us, duration)
@@ -264,7 +264,7 @@ class Scheduler:
             limits.cut(wanted)
 
     def _run_until(self, end: int | None, last: int | None, length: float) -> None:
-        """Runs to a time [us], if any, that is `length` [s] from now, but not beyond the last moment [us] that limits allow, if any."""
+        """Runs to a time [us], if any, that is `length` [s] from now, but not beyond the last time [us] that limits allow, if any."""
         total = self.queue.sum + length
         self.stop_flag = False
         heap = self.queue.heap
@@ -292,7 +292,7 @@ class Scheduler:
                 self._advance(until, seconds(until))
 
     def _run_on(self, until: int | None) -> None:
-        """Lets what is queued happen, up to a time [us], if any; warns where a run is under way already."""
+        """Runs the queued events, up to a time [us], if any; warns if a run is already active."""
         if self._running:
             warn_modeller(
                 f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
@@ -305,12 +305,12 @@ class Scheduler:
             self._running = before
 
     def _end(self, run_number: int) -> None:
-        """Ends the run that asked for it; one that was stopped before leaves this without effect."""
+        """Ends the run that requested it; has no effect if that run was stopped before."""
         if run_number == self._run_number:
             self.stop_flag = True
 
     def _run_events(self, until: int | None) -> None:
-        """Lets what is queued happen, until nothing is left up to then, or the run is stopped."""
+        """Runs the queued events until none is left up to the given time, or the run is stopped."""
         queue = self.queue
         heap = queue.heap
         end = NEVER if until is None else until
@@ -339,7 +339,7 @@ class Scheduler:
                 event.call(*event.args)
 
     def _happen(self, event: Event) -> None:
-        """Makes an event's call, or lets its generator go on to what it waits for next."""
+        """Makes an event's call, or resumes its generator until it yields what it waits for next."""
         if event.group:
             if event.cancelled:
                 return
@@ -371,7 +371,7 @@ class Scheduler:
             wait(self, event, result)
 
     def _standstill(self, event: Call) -> SchedulerError:
-        """Makes the error that tells of an endless loop in which no time passes, and what was in it."""
+        """Returns the error for an endless loop in which no time passes, with the events in it."""
         last = self.fired
         whose = getattr(getattr(event.call, "__self__", None), "_path", None)
         return SchedulerError(
@@ -381,20 +381,20 @@ class Scheduler:
         )
 
     def _take_incoming(self) -> None:
-        """Schedules what other threads have asked for."""
+        """Schedules the calls requested by other threads."""
         while self._incoming:
             func, delay, args, keys, priority = self._incoming.popleft()
             self.add(func, delay, args, keys, priority)
 
     def idle_now(self) -> bool:
-        """Returns whether nothing else is to happen before time passes, so that what comes last may come at once."""
+        """Returns whether no other event happens before time passes, so that the last event of the moment may happen at once."""
         heap = self.queue.heap
         if not self.queue.first_come:
             return False
         return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self._incoming
 
     def _advance(self, time: int, total: float) -> None:
-        """Lets time pass without events, until then [us], which is also a sum of delays [s]."""
+        """Advances the time without events, to a time [us], which is also given as a sum of delays [s]."""
         if self.limits is not None and self.limits.passing is not None and not self.in_lockstep and time > self.now_us:
             self.limits.passing(self.now_us, time)
         self.now_us = time
@@ -403,7 +403,7 @@ class Scheduler:
         LOG.time_us = time
 
     def finish(self, event: Event) -> None:
-        """Notes that an event is over, and wakes those that waited for it."""
+        """Marks an event as finished, and wakes the events that wait for it."""
         event.done = event.origin.done = True
         for parent in event.parents:
             self.put_now(parent)
@@ -414,7 +414,7 @@ class Scheduler:
 
 
 def wait(sch: Scheduler, event: Event, result: Any) -> None:
-    """Schedules an event according to what its generator has yielded: a delay, a trigger, another event, or the first of several.
+    """Schedules an event by the value its generator yielded: a delay, a trigger, another event, or a sequence (the first to happen).
 
     Args:
         sch: The scheduler of the event.
@@ -422,7 +422,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
         result: The value that was yielded.
 
     Raises:
-        SchedulerError: If nothing can wait for it: it has another type, is empty, or its delay is not a time.
+        SchedulerError: If an event cannot wait for the value: it has another type, is empty, or its delay is not a time.
     """
     if isinstance(result, (int, float)):
         sch.put(event, result, event.priority)
@@ -445,7 +445,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
             result.parents.append(event)
     elif hasattr(result, "default_trigger"):
         wait(sch, event, result.default_trigger)
-    elif isinstance(result, Real):  # a number of another kind, such as numpy's
+    elif isinstance(result, Real):  # another number type, such as numpy's
         sch.put(event, float(result), event.priority)
     else:
         raise SchedulerError(
@@ -455,7 +455,7 @@ def wait(sch: Scheduler, event: Event, result: Any) -> None:
 
 
 def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> None:
-    """Schedules one alternative of an event for each of several things; the first that happens cancels the others."""
+    """Schedules an alternative of an event for each of several values; the first that happens cancels the others."""
     choices = list(_each(several))
     if any(choice is None for choice in choices):
         warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
@@ -498,7 +498,7 @@ def warn_of_none(event: Event, what: str = "None, which ends it here") -> None:
 
 
 def _each(choices: Sequence[Any]) -> Iterator[Any]:
-    """Yields the alternatives, also those in nested sequences."""
+    """Yields the alternatives, including those in nested sequences."""
     for choice in choices:
         if isinstance(choice, (list, tuple)):
             yield from _each(cast("Sequence[Any]", choice))

@@ -1,4 +1,4 @@
-"""Where two pieces are equally near."""
+"""Computes where two pieces are equally near."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from actr3d.camera.kernel.roots import add_quartic_roots, add_roots
 
 @compiled
 def may_cover(other: Record, winner: Record, low: float, high: float) -> bool:
-    """Tells whether a piece may come to lie in front of another one somewhere between two tangents.
+    """Checks whether a piece may be in front of another one somewhere between two tangents.
 
-    A line above the one and a line below the other are compared at both ends.
+    Compares a line above the first piece with a line below the second at both ends.
     """
     if other.ceiling <= winner.floor:
         return False
@@ -23,7 +23,7 @@ def may_cover(other: Record, winner: Record, low: float, high: float) -> bool:
 
 @compiled
 def _straight(piece: Record, low: float, high: float, touching: bool) -> tuple[float, float]:
-    """Returns the ends of a piece's chord, or of the line that touches it in the middle: near sides bend down, far ones up."""
+    """Returns the ends of a piece's chord, or of its tangent line in the middle: near sides curve down, far sides up."""
     if not touching:
         return nearness(piece, low), nearness(piece, high)
     middle = 0.5 * (low + high)
@@ -35,9 +35,9 @@ def _straight(piece: Record, low: float, high: float, touching: bool) -> tuple[f
 
 @compiled
 def add_crossings(one: Record, other: Record, low: float, high: float, work: Array, cuts: Array, count: int) -> int:
-    """Appends the tangents between `low` and `high` at which two pieces cross, and maybe some at which they do not.
+    """Appends the tangents between `low` and `high` at which two pieces cross, and possibly some at which they do not.
 
-    Returns how many cuts there are now.
+    Returns the new number of cuts.
     """
     start, middle = count, 0.5 * (low + high)
     if one.side == LINE and other.side == LINE:
@@ -62,7 +62,7 @@ def add_crossings(one: Record, other: Record, low: float, high: float, work: Arr
 
 @compiled
 def _line_and_conic(line: Record, conic: Record, middle: float, cuts: Array, count: int) -> int:
-    """Puts the line into the conic's equation, both about the middle, where few digits are lost."""
+    """Inserts the line into the conic's equation, both expanded about the middle, which keeps precision."""
     w, w1 = nearness(line, middle), line.c1
     a, b, b1 = conic.a, conic.b0 + conic.b1 * middle, conic.b1
     c, c1 = conic.c0 + middle * (conic.c1 + middle * conic.c2), conic.c1 + 2.0 * middle * conic.c2
@@ -76,8 +76,8 @@ def _line_and_conic(line: Record, conic: Record, middle: float, cuts: Array, cou
 
 @compiled
 def _two_conics(one: Record, other: Record, middle: float, half: float, work: Array, cuts: Array, count: int) -> int:
-    """Removes w from both equations: where they cross, w = n / m, and a n^2 - 2 b n m + c m^2 = 0, a quartic."""
-    # About the middle, in units of half the stretch, and with w in units of what one has there.
+    """Eliminates w from both equations: where they cross, w = n / m, and a n^2 - 2 b n m + c m^2 = 0, a quartic."""
+    # Expanded about the middle, in units of half the stretch, and with w in units of its value on `one` there.
     unit = nearness(one, middle)
     a, e = one.a * unit * unit, other.a * unit * unit
     b0, b1 = (one.b0 + one.b1 * middle) * unit, one.b1 * half * unit

@@ -1,4 +1,4 @@
-"""What is nearest along a row."""
+"""Computes the upper envelope of a row: which piece is nearest where."""
 
 from __future__ import annotations
 
@@ -15,39 +15,39 @@ from actr3d.camera.kernel.nearest import STRETCHES, forget, note
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 
 MOST_CUTS = 400
-"""How many parts may wait; two pieces cross at most four times, so that only rounding could ever come near."""
+"""The capacity of the stack of stretches; two pieces cross at most four times, so only rounding errors could come near it."""
 
 
 class Row(NamedTuple):
-    """The pieces of a row, and room to find out which is nearest where."""
+    """The pieces of a row, and the work arrays for computing their envelope."""
 
     pieces: Records
     order: Array
     """The pieces' numbers, leftmost first."""
     starts: Array
-    """Where they begin."""
+    """The tangents at which they begin, in that order."""
     active: Array
-    """The numbers of those at hand."""
+    """The numbers of the active pieces."""
     rivals: Array
-    """The numbers of those of them that may be nearest."""
+    """The numbers of the active pieces that may be nearest."""
     cuts: Array
     stack: Array
-    """Stretches still to be looked at, `(low, high)`, the leftmost last."""
+    """Stretches still to be processed, `(low, high)`, the leftmost last."""
     work: Array
     edges: Array
-    """Room for `finish`."""
+    """Work array of `finish`."""
     stretches: Array
-    """Room for `find_nearest`, one record."""
+    """Work record of `find_nearest`, one element."""
     curve: Array
-    """One piece."""
+    """Work array for one piece."""
     places: Array
-    """Where the geoms' centres are, in the eye's frame; last the eye itself, for the end of its range."""
+    """The centres of the geoms in the eye's frame; the last row is the eye itself, for the end of its range."""
     reaches: Array
-    """The radii of balls around these that hold all of the geoms."""
+    """The radii of the bounding balls of the geoms about these centres."""
 
 
 def room_for(pieces: int, places: Array, reaches: Array) -> Row:
-    """Returns room for so many pieces."""
+    """Returns the work arrays for a given number of pieces."""
     return Row(
         pieces=np.zeros(pieces, PIECE),
         order=np.zeros(pieces, NUMBER),
@@ -67,18 +67,18 @@ def room_for(pieces: int, places: Array, reaches: Array) -> Row:
 
 @compiled
 def trace_row(v: float, level: float, optics: Record, row: Row, count: int, extents: Records, first: int) -> int:
-    """Appends the extents of one row; returns how many extents there are now.
+    """Appends the extents of one row; returns the new number of extents.
 
-    Between two neighbouring ends of pieces the same pieces lie behind one another, and one of them wins unless some cross.
+    Between two neighbouring ends of pieces the depth order is constant, and one piece is nearest unless some cross.
 
     Args:
         v: The row's tangent upwards.
-        level: The square of how far what is straight ahead on it is away on the ground, in parts of its depth.
-        optics: The eye's.
-        row: What lies on the row.
-        count: How many pieces there are.
-        extents: Where they are written, as far as there is room; `label` holds the object.
-        first: How many there are already.
+        level: The square of the ground distance of the point straight ahead on the row, relative to its depth.
+        optics: The constants of the eye.
+        row: The pieces of the row.
+        count: The number of pieces.
+        extents: The output array, filled as far as there is room; `label` holds the object.
+        first: The number of extents already written.
     """
     done, waiting, present, start, floor = first, zero(), zero(), -optics.right, -math.inf
     sort_by_start(row.order, row.starts, row.pieces, count)
@@ -107,17 +107,17 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
 
 @compiled
 def _bring_in(start: float, row: Row, count: int, waiting: int, present: int, floor: float) -> tuple[int, int]:
-    """Takes up the pieces that begin at a tangent, and passes over those that are hidden wholly by one at hand.
+    """Activates the pieces that begin at a tangent, and skips those that one active piece hides completely.
 
-    Returns how many of all pieces were taken up or passed over, and how many are at hand.
+    Returns the number of pieces processed so far (activated or skipped), and the number of active pieces.
 
     Args:
         start: The tangent.
         row: The row.
-        count: How many pieces there are.
-        waiting: How many of these were taken up or passed over.
-        present: How many are at hand.
-        floor: The greatest floor of these, or more.
+        count: The number of pieces.
+        waiting: The number of pieces processed so far.
+        present: The number of active pieces.
+        floor: The greatest floor of the active pieces, or more.
     """
     while waiting < count:
         number = row.order[waiting]
@@ -134,7 +134,7 @@ def _bring_in(start: float, row: Row, count: int, waiting: int, present: int, fl
 
 @compiled
 def _hidden(piece: Record, row: Row, present: int) -> bool:
-    """Tells whether one of the pieces at hand is in front of all of a piece that begins now or later."""
+    """Checks whether an active piece is in front of all of a piece that begins now or later."""
     high, ceiling = piece.high, piece.ceiling
     for i in range(present):
         other = row.pieces[row.active[i]]
@@ -145,9 +145,9 @@ def _hidden(piece: Record, row: Row, present: int) -> bool:
 
 @compiled
 def _front(row: Row, present: int) -> tuple[int, int, float]:
-    """Finds the piece whose farthest point is nearest, and its rivals: all, itself too, that are not wholly behind it.
+    """Finds the piece whose farthest point is nearest, and its rivals: all pieces (itself included) not completely behind it.
 
-    Returns the piece's number, how many rivals there are, and where the first of them ends.
+    Returns the piece's number, the number of rivals, and the tangent at which the first rival ends.
     """
     front, rivals, end = row.active[0], zero(), math.inf
     floor = row.pieces[front].floor
@@ -166,10 +166,10 @@ def _front(row: Row, present: int) -> tuple[int, int, float]:
 
 @compiled
 def _pass_by(end: float, row: Row, count: int, waiting: int, present: int, front: int) -> tuple[int, int, float]:
-    """Takes up the pieces that begin before a tangent wholly behind the front one, as far as they outlast it.
+    """Activates the pieces that begin before a tangent completely behind the front piece, if they end after it.
 
-    Returns how many of all pieces were taken up or passed over, how many are at hand, and where the next one begins, or the
-    tangent.
+    Returns the number of pieces processed so far, the number of active pieces, and the tangent at which the next piece begins, or
+    the given tangent.
     """
     floor, high = row.pieces[front].floor, row.pieces[front].high
     while waiting < count and row.starts[waiting] < end:
@@ -187,10 +187,10 @@ def _pass_by(end: float, row: Row, count: int, waiting: int, present: int, front
 def _trace_stretch(
     low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
 ) -> int:
-    """Appends the extents of a stretch in which no rival begins or ends; divides it wherever the winner may change."""
+    """Appends the extents of a stretch in which no rival begins or ends; splits it where the nearest piece may change."""
     row.stack[0, 0], row.stack[0, 1] = low, high
     waiting = 1
-    divisions = MOST_CUTS if rivals > 2 else 1  # with two, the first cuts are all
+    divisions = MOST_CUTS if rivals > 2 else 1  # with two rivals, the first cuts are all
     while waiting > 0:
         waiting -= 1
         low, high = row.stack[waiting, 0], row.stack[waiting, 1]
@@ -214,7 +214,7 @@ def _trace_stretch(
 def _tell(
     winner: int, low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
 ) -> int:
-    """Appends a stretch in which one piece is nearest, if its object is to be told, or lengthens the last extent by it."""
+    """Appends a stretch in which one piece is nearest, or extends the last extent by it; does nothing for the background."""
     object = row.pieces[winner].object
     if object == BACKGROUND:
         return done
@@ -236,7 +236,7 @@ def _tell(
 
 @compiled
 def _winner(u: float, row: Row, rivals: int) -> int:
-    """Returns the number of the rival that is nearest at a tangent; of equals, it is that of the nearest geom."""
+    """Returns the number of the rival nearest at a tangent; if several are equally near, the one of the nearest geom."""
     winner = row.rivals[0]
     best = nearness(row.pieces[winner], u)
     for i in range(1, rivals):
@@ -252,10 +252,10 @@ def _winner(u: float, row: Row, rivals: int) -> int:
 
 @compiled
 def _goes_first(places: Array, one: int, other: int) -> bool:
-    """Tells whether a geom's centre is nearer than another's, or else further to the left or down.
+    """Checks whether a geom's centre is nearer than another's, or if equal, further to the left or down.
 
-    Only of two at one place does the number decide: which of two things that look alike is seen cannot be told from a view,
-    but that it is the same one everywhere can.
+    The geom number decides only between two geoms at one place: a view cannot show which of two identical objects is seen, but it
+    can show that it is the same one everywhere.
     """
     a, b = places[one], places[other]
     near, far = a[0] * a[0] + a[1] * a[1] + a[2] * a[2], b[0] * b[0] + b[1] * b[1] + b[2] * b[2]
@@ -268,7 +268,7 @@ def _goes_first(places: Array, one: int, other: int) -> bool:
 
 @compiled
 def _cuts(winner: int, low: float, high: float, row: Row, rivals: int) -> int:
-    """Finds where between two tangents others may come to lie in front of the winner; returns how many cuts there are."""
+    """Finds where rivals may come in front of the winner between two tangents; returns the number of cuts."""
     best, number = row.pieces[winner], zero()
     for i in range(rivals):
         other = row.pieces[row.rivals[i]]
@@ -281,7 +281,7 @@ def _cuts(winner: int, low: float, high: float, row: Row, rivals: int) -> int:
 
 @compiled
 def _may_meet(row: Row, one: int, other: int) -> bool:
-    """Tells whether the balls around two geoms meet: things that are apart never cross."""
+    """Checks whether the bounding balls of two geoms intersect: pieces of separate geoms never cross."""
     a, b, reach = row.places[one], row.places[other], row.reaches[one] + row.reaches[other]
     x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
     return x * x + y * y + z * z <= reach * reach * (1.0 + SAME_DEPTH)
@@ -289,7 +289,7 @@ def _may_meet(row: Row, one: int, other: int) -> bool:
 
 @compiled
 def _nearest_of(winner: int, u: float, row: Row, rivals: int) -> int:
-    """Returns the number of the piece that is nearest at a tangent, of those of the winner's object."""
+    """Returns the number of the piece nearest at a tangent, among those of the winner's object."""
     best, object = nearness(row.pieces[winner], u), row.pieces[winner].object
     for i in range(rivals):
         number = row.rivals[i]

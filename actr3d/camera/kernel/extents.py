@@ -1,4 +1,4 @@
-"""Joins stretches to extents, and says where they are on the screen."""
+"""Joins stretches to extents, and computes their position on the screen."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from actr3d.camera.kernel.screen import screen_part
 EDGES_AT_ONCE = 128
 
 SURELY_WIDE = 1e-4
-"""No extent wider than this comes from rounding, on the widest of screens [tangent]."""
+"""Extents wider than this are never rounding errors, even on the widest screen [tangent]."""
 
 
 @compiled
 def goes_on(object: int, low: float, optics: Record, extents: Records, first: int, done: int) -> bool:
-    """Tells whether the last extent of a row is one of the given object and reaches to a tangent, or nearly so.
+    """Checks whether the last extent of a row belongs to the given object and reaches to a tangent, or nearly so.
 
-    Until the row ends, the `x` of extents are tangents, and their `a` the numbers of the pieces that are seen there.
+    Until the row ends, the `x` of extents are tangents, and their `a` the numbers of the pieces seen there.
     """
     if done == first or extents[done - 1].label != object:
         return False
@@ -29,7 +29,7 @@ def goes_on(object: int, low: float, optics: Record, extents: Records, first: in
 
 @compiled
 def without_sliver(optics: Record, extents: Records, first: int, done: int) -> int:
-    """Returns how many extents there are without the last one if it comes from rounding only."""
+    """Returns the number of extents, without the last one if it is only a rounding error."""
     if done > first:
         last = extents[done - 1]
         if last.x2 - last.x1 < SURELY_WIDE and _gap(last.x1, last.x2, optics) < SLIVER:
@@ -39,7 +39,7 @@ def without_sliver(optics: Record, extents: Records, first: int, done: int) -> i
 
 @compiled
 def end_row(v: float, optics: Record, pieces: Records, extents: Records, first: int, done: int) -> int:
-    """Writes down what `finish` needs: the row's tangent as `y`, nearness as distances; returns how many extents there are."""
+    """Stores what `finish` needs: the row's tangent as `y`, nearness as distances; returns the number of extents."""
     done = without_sliver(optics, extents, first, done)
     for i in range(first, done):
         extent = extents[i]
@@ -50,7 +50,7 @@ def end_row(v: float, optics: Record, pieces: Records, extents: Records, first: 
 
 @compiled
 def finish(optics: Record, extents: Records, count: int, edges: Array) -> None:
-    """Turns tangents into screen coordinates and angles, and nearness into distances: of many edges at once, which is faster."""
+    """Converts tangents to screen coordinates and angles, and nearness to distances: for many edges at once, which is faster."""
     for start in range(0, count, EDGES_AT_ONCE // 2):
         number = min(count - start, EDGES_AT_ONCE // 2)
         for i in range(number):
@@ -71,7 +71,7 @@ def finish(optics: Record, extents: Records, count: int, edges: Array) -> None:
 
 @compiled
 def _measure(across: Array, upwards: Array, near: Array, count: int) -> None:
-    """Puts angles [degrees] in place of tangents upwards, and distances [m] in place of nearness."""
+    """Replaces upward tangents by angles [degrees], and nearness by distances [m]."""
     for i in range(count):
         square = across[i] * across[i] + upwards[i] * upwards[i]
         whole = math.sqrt(1.0 + square)
@@ -84,12 +84,12 @@ def _measure(across: Array, upwards: Array, near: Array, count: int) -> None:
 
 @compiled
 def _arc_tangent_part(s: float) -> float:
-    """Returns `atan(x) / x` for `s = x^2`, to all digits for angles up to 11.25 degrees: its series, without a loop."""
+    """Returns `atan(x) / x` for `s = x^2` at full precision for angles up to 11.25 degrees: an unrolled series."""
     part = 1 / 13 - s * (1 / 15 - s * (1 / 17 - s * (1 / 19 - s / 21)))
     return 1.0 - s * (1 / 3 - s * (1 / 5 - s * (1 / 7 - s * (1 / 9 - s * (1 / 11 - s * part)))))
 
 
 @compiled
 def _gap(low: float, high: float, optics: Record) -> float:
-    """Returns how far apart two tangents are on the screen."""
+    """Returns the distance of two tangents on the screen."""
     return 0.5 * (screen_part(high, optics.right, optics.e2) - screen_part(low, optics.right, optics.e2))

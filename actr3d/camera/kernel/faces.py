@@ -11,13 +11,13 @@ from actr3d.camera.kernel.screen import first_row, last_row
 
 @compiled
 def face_rows(face: Array, corners: Array, one_sided: bool, optics: Record) -> tuple[int, int]:
-    """Returns the first and last row that may meet a polygon; none if the last comes before the first.
+    """Returns the first and last row that may meet a polygon; if there is none, the last is before the first.
 
     Args:
         face: The numbers of its corners; the fourth is negative for a triangle.
         corners: All corners in the eye's frame [m].
-        one_sided: Whether it cannot be seen from behind; its corners then go round anticlockwise seen from the front.
-        optics: The eye's.
+        one_sided: Whether it cannot be seen from behind; its corners are then anticlockwise seen from the front.
+        optics: The constants of the eye.
     """
     sides = 3 if face[3] < 0 else 4
     nearest, farthest, leftmost, rightmost = math.inf, -math.inf, math.inf, math.inf
@@ -41,7 +41,7 @@ def face_rows(face: Array, corners: Array, one_sided: bool, optics: Record) -> t
 
 @compiled
 def _turned_away(face: Array, corners: Array) -> bool:
-    """Tells whether a polygon is seen from behind; right, up, forward is a left-handed frame, hence the sign."""
+    """Checks whether a polygon is seen from behind; right, up, forward is a left-handed frame, hence the sign."""
     a, b, c = corners[face[0]], corners[face[1]], corners[face[2]]
     x1, y1, z1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     x2, y2, z2 = c[0] - a[0], c[1] - a[1], c[2] - a[2]
@@ -50,9 +50,9 @@ def _turned_away(face: Array, corners: Array) -> bool:
 
 @compiled
 def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Records, count: int) -> int:
-    """Appends the piece that the row at the tangent v cuts from a polygon, if any; returns how many there are now.
+    """Appends the piece that the row at the tangent v cuts from a polygon, if any; returns the new number of pieces.
 
-    An edge that two polygons share is cut at the very same point for both, so that no crack opens between them.
+    An edge shared by two polygons is cut at exactly the same point for both, so that no gap opens between them.
     """
     sides = 3 if face[3] < 0 else 4
     found, x1, z1, x2, z2 = 0, 0.0, 0.0, 0.0, 0.0
@@ -76,7 +76,7 @@ def add_face(face: Array, corners: Array, v: float, optics: Record, pieces: Reco
 
 @compiled
 def _add_segment(x1: float, z1: float, x2: float, z2: float, optics: Record, pieces: Records, count: int) -> int:
-    """Appends what of a segment in the row's plane is in the field of view and beyond the near limit."""
+    """Appends the part of a segment in the row's plane that is in the field of view and beyond the near limit."""
     start, end = 0.0, 1.0
     for i in range(3):  # the left edge, the right edge, the near limit: inside where above 0
         if i == 2:

@@ -1,4 +1,4 @@
-"""Numba's compiler, with types; the functions of this package are ordinary ones to the type checker."""
+"""Wrappers of numba's compiler with type annotations; type checkers see this package's functions as plain Python."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ _njit = cast("Any", numba).njit
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Returns the function compiled, to be called by other compiled ones only."""
+    """Returns the function compiled, callable only by other compiled functions."""
     return _njit(no_cpython_wrapper=True, forceinline=True, **OPTIONS)(function)
 
 
 def kept(function: Callable[P, R]) -> Callable[P, R]:
-    """Returns the function compiled, and kept on disk for the next process where any folder can be written."""
+    """Returns the function compiled, and cached on disk for the next process if a cache folder is writable."""
     try:
         return _njit(cache=True, **OPTIONS)(function)
-    except RuntimeError:  # no folder to keep it in
+    except RuntimeError:  # no writable cache folder
         return _njit(**OPTIONS)(function)
 
 
 def sources_digest(*folders: Path) -> int:
     """Returns a digest of all files of this package, and of other folders whose functions use it.
 
-    Numba looks only at the file of the kept function itself, and would go on using old code of the others.
+    Numba's cache checks only the file of the cached function itself, and would keep using outdated code of the other files.
     """
     digest = sha256()
     for folder in (Path(__file__).parent, *folders):
@@ -45,5 +45,5 @@ def sources_digest(*folders: Path) -> int:
 
 @compiled
 def zero() -> int:
-    """Returns 0 as a variable: handed a constant, every function it comes to would be compiled once more for that."""
+    """Returns 0 as a variable: a constant argument would make numba compile every called function once more."""
     return int(0.0)

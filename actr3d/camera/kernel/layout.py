@@ -1,4 +1,4 @@
-"""The records that the compiled functions hand to each other."""
+"""The record types that the compiled functions pass to each other."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[Any]
 Record: TypeAlias = Any
-"""One element of an array of records; its fields are those of the type it is made of."""
+"""One element of an array of records; its fields are those of the array's dtype."""
 Records: TypeAlias = Any
 """An array of records."""
 
@@ -21,19 +21,19 @@ PLANE, HFIELD, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH, SDF = range(9)
 """The types of geoms. Source: MuJoCo 4.0, `mjtGeom`."""
 
 UNSEEN: Final = -1
-"""The object of geoms that the eye looks through."""
+"""The object number of geoms that the eye looks through."""
 BACKGROUND: Final = 0
-"""The object of geoms that hide others and are not told."""
+"""The object number of geoms that hide others but are not reported."""
 
 NUMBER: Final = np.uint32
-"""What numbers pieces and the like: without a sign, so that no index has to be looked at whether it counts from the end."""
+"""The type of piece numbers and other indices: unsigned, so that compiled code need not check for negative indices."""
 
 NEGLIGIBLE: Final = 1e-11
 """Pieces and stretches whose tangents differ by less than this are left out."""
 SAME_DEPTH: Final = 1e-9
-"""Surfaces whose depths differ by less than this part lie in one another, and neither cuts the other."""
+"""Surfaces whose depths differ by less than this fraction count as coincident, and neither cuts the other."""
 SLIVER: Final = 1e-7
-"""Extents narrower than this part of the screen come from rounding."""
+"""Extents narrower than this part of the screen are rounding errors."""
 
 PIECE = np.dtype(
     [
@@ -79,7 +79,7 @@ PATCH = np.dtype(
     ],
     align=True,
 )
-"""A surface that is not a polygon, in the eye's frame (right, up, forward): its equation, and what bounds it."""
+"""A surface that is not a polygon, in the eye's frame (right, up, forward): its equation and its bounds."""
 
 OCCLUDER = np.dtype(
     [
@@ -92,12 +92,12 @@ OCCLUDER = np.dtype(
 
 
 class ExtentField(NamedTuple):
-    """What one field of an extent is."""
+    """The description of one field of an extent."""
 
     name: str
     type: str
     title: str
-    """What people call it, in a few words."""
+    """The usual name, in a few words."""
     unit: str
     """Its unit; empty for a plain number."""
     about: str
@@ -134,4 +134,4 @@ OPTICS = np.dtype(
     ],
     align=True,
 )
-"""What is constant of an eye."""
+"""The constants of an eye."""

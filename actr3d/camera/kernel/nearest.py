@@ -1,6 +1,6 @@
-"""Where on the ground each extent is nearest to the eye: of many stretches at once, which is faster than one by one.
+"""Finds the point of each extent that is nearest to the eye on the ground: for many stretches at once, which is faster.
 
-Heights are left out: on a row, the square of the distance on the ground is `(u^2 + level) / w^2`.
+Heights are ignored: on a row, the square of the distance on the ground is `(u^2 + level) / w^2`.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from actr3d.camera.kernel.layout import LINE, Record, Records
 from actr3d.camera.kernel.pieces import nearness, root_of
 
 HALVINGS = 5
-"""How often the stretch is halved in which something round is nearest."""
+"""The number of halvings in the search for the nearest point of a round piece."""
 FLAT = 0.03
-"""Where the distance changes by less than this part of itself for a tangent of 1, it is taken to be least."""
+"""A point counts as nearest if the relative change of distance per unit of tangent is less than this."""
 
 AT_ONCE: Final = 100
 MANY: Final = (AT_ONCE,)
@@ -48,13 +48,13 @@ STRETCHES = np.dtype(
     ],
     align=True,
 )
-"""Stretches of extents whose nearest points are still to be found. All in one record: the compiler then knows that its
-arrays do not overlap, and makes instructions that compute with four numbers at once."""
+"""Stretches of extents whose nearest points are still to be found. They are all in one record: the compiler then knows that the
+arrays do not overlap, and can emit SIMD instructions that process four numbers at once."""
 
 
 @compiled
 def note(stretches: Record, owner: int, piece: Record, low: float, high: float, level: float, extents: Records) -> None:
-    """Notes that a piece is seen in an extent between two tangents."""
+    """Stores that a piece is seen in an extent between two tangents."""
     if stretches.count == AT_ONCE:
         find_nearest(stretches, extents)
     number = stretches.count
@@ -69,7 +69,7 @@ def note(stretches: Record, owner: int, piece: Record, low: float, high: float, 
         return
     i = stretches.open
     stretches.open = i + 1
-    # A ball or an upright pole is nearest where its middle is; other round things nearer on one side of that.
+    # A ball or an upright pole is nearest at its middle; other round pieces are nearest on one side of it.
     x, z = piece.b1 * piece.c0 - 0.5 * piece.c1 * piece.b0, piece.b0 * piece.c2 - 0.5 * piece.c1 * piece.b1
     stretches.guess[i] = min(high, max(low, x / z)) if z != 0.0 else 0.5 * (low + high)
     stretches.number[i], stretches.low[i], stretches.high[i], stretches.ground[i] = number, low, high, level
@@ -79,7 +79,7 @@ def note(stretches: Record, owner: int, piece: Record, low: float, high: float, 
 
 @compiled
 def forget(stretches: Record, extents: int) -> None:
-    """Forgets the stretches of extents that were left out after all: all but so many."""
+    """Removes the stretches of extents that were dropped: keeps those of the first `extents` extents."""
     while stretches.count > 0 and stretches.owner[stretches.count - 1] >= extents:
         stretches.count -= 1
     while stretches.open > 0 and stretches.number[stretches.open - 1] >= stretches.count:
@@ -88,7 +88,7 @@ def forget(stretches: Record, extents: int) -> None:
 
 @compiled
 def find_nearest(stretches: Record, extents: Records) -> None:
-    """Sets `xn` and `dn` of extents, until the end a tangent and a nearness, from all stretches noted, and forgets these."""
+    """Sets `xn` and `dn` of the extents (still a tangent and a nearness) from all stored stretches, and removes these."""
     for _ in range(HALVINGS):
         _try_guesses(stretches, stretches.open)
         stretches.open = _keep_open(stretches)
@@ -111,7 +111,7 @@ def find_nearest(stretches: Record, extents: Records) -> None:
 
 @compiled
 def _try_guesses(stretches: Record, count: int) -> None:
-    """Computes the nearness of each guess, whether that is good enough, and in which half the nearest point is if not."""
+    """Computes the nearness of each guess, whether the guess is good enough, and otherwise which half has the nearest point."""
     for i in range(count):
         u, b1, c1, c2 = stretches.guess[i], stretches.b1[i], stretches.c1[i], stretches.c2[i]
         b, c = stretches.b0[i] + b1 * u, stretches.c0[i] + u * (c1 + u * c2)
@@ -126,7 +126,7 @@ def _try_guesses(stretches: Record, count: int) -> None:
 
 @compiled
 def _keep_open(stretches: Record) -> int:
-    """Writes down what is found, and the next guess for the others, which move to the front; returns how many these are."""
+    """Stores the results found, moves the other stretches to the front with a new guess, and returns their number."""
     kept = 0
     for i in range(stretches.open):
         if stretches.found[i] > 0.0:

@@ -1,4 +1,4 @@
-"""Large flat faces that hide whole things: what is behind a wall need not be drawn row by row."""
+"""Large flat faces that hide whole objects: what is behind a wall need not be drawn row by row."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from actr3d.camera.kernel.layout import Array, Record, Records
 
 MOST_OCCLUDERS = 8
 LARGE = 0.02
-"""How large a face must be to be tried [part of the screen]."""
+"""The minimum size of a face used as an occluder [part of the screen]."""
 
 
 @compiled
 def offer(face: Array, corners: Array, optics: Record, occluders: Records, count: int) -> int:
-    """Takes up a face with four corners that is wholly in front of the eye, if it is large; returns how many there are now."""
+    """Adds a face with four corners to the occluders if it is large and completely in front of the eye; returns their new number."""
     if count == MOST_OCCLUDERS:
         return count
     twice = 0.0
@@ -44,7 +44,7 @@ def offer(face: Array, corners: Array, optics: Record, occluders: Records, count
 
 @compiled
 def hidden(place: Array, reach: float, occluders: Records, count: int) -> bool:
-    """Tells whether a ball is wholly behind one of the faces; the place is in the eye's frame."""
+    """Checks whether a ball, given in the eye's frame, is completely behind one of the faces."""
     for i in range(count):
         inside = True
         for j in range(5):
@@ -60,7 +60,7 @@ def hidden(place: Array, reach: float, occluders: Records, count: int) -> bool:
 
 @compiled
 def _set_plane(plane: Array, x1: float, y1: float, z1: float, x2: float, y2: float, z2: float, sign: float) -> bool:
-    """Sets the unit normal of the plane that two directions span; tells whether they do."""
+    """Sets the unit normal of the plane spanned by two directions; returns False if they span none."""
     plane[0], plane[1], plane[2] = sign * (y1 * z2 - z1 * y2), sign * (z1 * x2 - x1 * z2), sign * (x1 * y2 - y1 * x2)
     length = math.sqrt(plane[0] * plane[0] + plane[1] * plane[1] + plane[2] * plane[2])
     if not length > 0.0:

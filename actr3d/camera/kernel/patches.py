@@ -1,4 +1,4 @@
-"""From a patch, a plane or something round, to its pieces on one row."""
+"""Computes the pieces of a patch (a plane or a round surface) on one row."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from actr3d.camera.kernel.pieces import bound, nearness, sort_values, summit
 from actr3d.camera.kernel.roots import add_roots
 
 SEEN, PASSED_BY, IN_PARTS = 1, 0, -1
-"""Of a patch on a row: it is one piece, or none, or has to be cut."""
+"""The states of a patch on a row: one whole piece, no piece, or to be cut."""
 
 
 @compiled
 def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Records, count: int, cuts: Array) -> int:
-    """Appends the pieces of a patch on the row at the tangent v; returns how many pieces there are now.
+    """Appends the pieces of a patch on the row at the tangent v; returns the new number of pieces.
 
-    The whole curve is cut wherever anything about it may change; what lies between two cuts is seen or not as a whole.
+    The whole curve is cut wherever its visibility may change; each part between two cuts is either seen or not.
     """
     curve = pieces[count]
     curve.object, curve.geom = patch.object, patch.geom
@@ -41,7 +41,7 @@ def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Re
 
 @compiled
 def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array) -> int:
-    """Tells whether all of a line or disc is seen, without a cut but for the ends of a disc and of the field of view."""
+    """Checks whether a whole line or disc is seen, cut only by the ends of a disc and of the field of view."""
     low, high = -optics.right, optics.right
     if patch.slabs > 0 or (patch.radius > 0.0 and patch.ceiling > optics.nearest):
         return IN_PARTS
@@ -54,7 +54,7 @@ def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Arr
 
 @compiled
 def _seen_between(low: float, high: float, optics: Record, line: Record) -> int:
-    """Tells whether a line is seen between two tangents, and sets its ends and bounds."""
+    """Checks whether a line is seen between two tangents, and sets its ends and bounds."""
     if not high - low > NEGLIGIBLE:
         return PASSED_BY
     first, last = nearness(line, low), nearness(line, high)
@@ -69,10 +69,10 @@ def _seen_between(low: float, high: float, optics: Record, line: Record) -> int:
 
 @compiled
 def _whole_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
-    """Tells whether all of the near side of something round is seen, where that needs no cut, and sets its ends and bounds.
+    """Checks whether the whole near side of a round surface is seen without a cut, and sets its ends and bounds.
 
-    So it is with nearly all that is wholly in front of the eye; only where an end of a tube lies within its silhouette
-    must the curve be cut.
+    This holds for nearly everything completely in front of the eye; the curve must be cut only where an end of a tube lies within
+    its silhouette.
     """
     if patch.both or patch.ceiling > optics.nearest or not conic.a > 0.0 or not conic.b1 * conic.b1 < conic.a * conic.c2:
         return IN_PARTS
@@ -91,7 +91,7 @@ def _whole_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: A
 
 @compiled
 def _within_slabs(patch: Record, v: float, conic: Record) -> int:
-    """Tells whether all of a piece lies within the slabs of its patch, by its bounds."""
+    """Checks from its bounds whether a whole piece lies within the slabs of its patch."""
     whole = SEEN
     for i in range(patch.slabs):
         axis, low, high = patch.axes[i], patch.lows[i], patch.highs[i]
@@ -107,13 +107,13 @@ def _within_slabs(patch: Record, v: float, conic: Record) -> int:
 
 @compiled
 def _add_parts(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array) -> int:
-    """Appends what is seen of a curve between cuts; returns how many pieces there are now."""
+    """Appends the visible parts of a curve between cuts; returns the new number of pieces."""
     if curve.side == LINE:
         number = _cut_line(patch, v, optics, curve, cuts)
     else:
         number = _cut_conic(patch, v, optics, curve, cuts)
         if number == 0 and curve.b1 * curve.b1 < curve.a * curve.c2:
-            return count  # the row passes it by
+            return count  # the row misses it
     cuts[number], cuts[number + 1] = -optics.right, optics.right
     sort_values(cuts, number + 2)
     count = _add_side(patch, v, optics, curve, pieces, count, cuts, number + 2)
@@ -125,7 +125,7 @@ def _add_parts(patch: Record, v: float, optics: Record, curve: Record, pieces: R
 
 @compiled
 def _cut_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array) -> int:
-    """Finds where a line crosses the horizon, the near limit, its slabs and its ball; returns how many cuts there are."""
+    """Finds where a line crosses the horizon, the near limit, its slabs and its ball; returns the number of cuts."""
     c0, c1 = line.c0, line.c1
     number = add_roots(0.0, 0.5 * c1, c0, cuts, zero())
     number = add_roots(0.0, 0.5 * c1, c0 - optics.nearest, cuts, number)
@@ -140,7 +140,7 @@ def _cut_line(patch: Record, v: float, optics: Record, line: Record, cuts: Array
 
 @compiled
 def _cut_disc(patch: Record, v: float, line: Record, cuts: Array, number: int) -> int:
-    """Finds where a line enters and leaves the ball of its patch; returns how many cuts there are now."""
+    """Finds where a line enters and leaves the ball of its patch; returns the new number of cuts."""
     x, y, z, c0, c1 = patch.centre[0], patch.centre[1], patch.centre[2], line.c0, line.c1
     square = patch.radius * patch.radius
     x0, y0, z0 = -x * c0, v - y * c0, 1.0 - z * c0
@@ -152,14 +152,14 @@ def _cut_disc(patch: Record, v: float, line: Record, cuts: Array, number: int) -
 
 @compiled
 def _cut_silhouette(conic: Record, cuts: Array, number: int) -> int:
-    """Finds where a conic turns back; returns how many cuts there are now."""
+    """Finds the silhouette points of a conic, where near and far side meet; returns the new number of cuts."""
     a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
     return add_roots(b1 * b1 - a * c2, b0 * b1 - 0.5 * a * c1, b0 * b0 - a * c0, cuts, number)
 
 
 @compiled
 def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Array) -> int:
-    """Finds where a conic turns back, and where it crosses the near limit and its slab; returns how many cuts there are."""
+    """Finds the silhouette points of a conic, and where it crosses the near limit and its slab; returns the number of cuts."""
     a, b0, b1, c0, c1, c2 = conic.a, conic.b0, conic.b1, conic.c0, conic.c1, conic.c2
     number = _cut_silhouette(conic, cuts, zero())
     if number == 0 and b1 * b1 < a * c2:
@@ -180,7 +180,7 @@ def _cut_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: Arr
 
 @compiled
 def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Records, count: int, cuts: Array, number: int) -> int:
-    """Appends what of one side of a curve lies between its cuts; returns how many pieces there are now."""
+    """Appends the visible parts of one side of a curve between its cuts; returns the new number of pieces."""
     going_on = False
     for i in range(number - 1):
         low, high = cuts[i], cuts[i + 1]
@@ -201,7 +201,7 @@ def _add_side(patch: Record, v: float, optics: Record, curve: Record, pieces: Re
 
 @compiled
 def _there(patch: Record, v: float, optics: Record, curve: Record, u: float) -> bool:
-    """Tells whether the curve's point at u is on the patch, and in front of the eye."""
+    """Checks whether the curve's point at u is on the patch and in front of the eye."""
     if curve.side != LINE:
         b = curve.b0 + curve.b1 * u
         if b * b < curve.a * (curve.c0 + u * (curve.c1 + u * curve.c2)):

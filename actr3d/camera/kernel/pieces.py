@@ -10,7 +10,7 @@ from actr3d.camera.kernel.layout import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Reco
 
 @compiled
 def root_of(a: float, b: float, c: float, side: float) -> float:
-    """Returns a root of `a w^2 - 2 b w + c`: the nearness of the near (1) or far (-1) side, without loss of digits."""
+    """Returns a root of `a w^2 - 2 b w + c`: the nearness of the near (1) or far (-1) side, without loss of precision."""
     root = math.sqrt(max(b * b - a * c, 0.0))
     straight = side * b >= 0.0
     return (b + side * root if straight else c) / (a if straight else b - side * root)
@@ -26,7 +26,7 @@ def nearness(piece: Record, u: float) -> float:
 
 @compiled
 def bound(piece: Record, floor: float, ceiling: float) -> None:
-    """Sets the bounds of a piece's nearness: from its ends where they tell, else from what is known of the whole."""
+    """Sets the bounds of a piece's nearness: from its ends where these determine them, otherwise from bounds of the whole surface."""
     first, last = nearness(piece, piece.low), nearness(piece, piece.high)
     piece.floor, piece.ceiling = min(first, last), max(first, last)
     if piece.side == NEAR_SIDE:
@@ -48,7 +48,7 @@ def summit(piece: Record) -> float:
 
 @compiled
 def sort_values(values: Array, count: int) -> None:
-    """Sorts the first `count` values; for the few dozens there are, simple is fast."""
+    """Sorts the first `count` values by insertion, which is fast for a few dozen values."""
     gap = 1
     while gap < count // 3:
         gap = 3 * gap + 1
@@ -64,9 +64,9 @@ def sort_values(values: Array, count: int) -> None:
 
 @compiled
 def sort_by_start(order: Array, starts: Array, pieces: Records, count: int) -> None:
-    """Fills `order` with the numbers of the first `count` pieces, leftmost first, and `starts` with where they begin.
+    """Fills `order` with the numbers of the first `count` pieces, leftmost first, and `starts` with their first tangents.
 
-    Most are in order already, from the row above; where they are not, wide gaps come first.
+    Most pieces are already in order, from the row above; otherwise the sort begins with wide gaps.
     """
     descents = 0
     for i in range(count):

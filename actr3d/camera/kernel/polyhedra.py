@@ -1,4 +1,4 @@
-"""The corners of boxes, meshes and height fields, in the eye's frame."""
+"""Computes the corners of boxes, meshes and height fields in the eye's frame."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.layout import Array
 
 HFIELD_EXTRA_CORNERS = 4
-"""Behind the corners of its surface, and as many at height 0, a height field has those of its base."""
+"""The number of corners of a height field's base, stored after those of its surface and their projections at height 0."""
 
 
 @compiled
 def set_box(size: Array, local: Array) -> None:
-    """Writes the 8 corners of a box: bit 0 of the number tells right from left in x, bit 1 in y, bit 2 in z."""
+    """Writes the 8 corners of a box: bit 0 of a corner's number is the sign of x, bit 1 of y, bit 2 of z."""
     for i in range(8):
         local[i, 0] = size[0] if i & 1 else -size[0]
         local[i, 1] = size[1] if i & 2 else -size[1]
@@ -22,14 +22,14 @@ def set_box(size: Array, local: Array) -> None:
 
 @compiled
 def set_hfield(size: Array, heights: Array, rows: int, columns: int, local: Array) -> None:
-    """Writes the corners of a height field: of its surface row by row, the same at height 0, and those of its base.
+    """Writes the corners of a height field: those of its surface row by row, the same at height 0, and those of its base.
 
     Args:
         size: Half its length in x and y, its height, the depth of its base [m].
         heights: From 0 to 1, row by row.
-        rows: How many rows (along y).
-        columns: How many columns (along x).
-        local: Where they are written.
+        rows: The number of rows (along y).
+        columns: The number of columns (along x).
+        local: The output array.
     """
     cells = rows * columns
     for i in range(cells):
@@ -47,13 +47,13 @@ def set_hfield(size: Array, heights: Array, rows: int, columns: int, local: Arra
 
 @compiled
 def hfield_reach(size: Array) -> float:
-    """Returns the radius of a ball around a height field's centre that holds all of it [m]."""
+    """Returns the radius of the bounding ball of a height field about its centre [m]."""
     return math.hypot(math.hypot(size[0], size[1]), max(size[2], size[3]))
 
 
 @compiled
 def box_distance(size: Array, place: Array, turn: Array) -> float:
-    """Returns how far the eye is from a box [m], 0 inside it."""
+    """Returns the distance from the eye to a box [m], 0 inside it."""
     square = 0.0
     for i in range(3):
         along = turn[0, i] * place[0] + turn[1, i] * place[1] + turn[2, i] * place[2]
@@ -64,7 +64,7 @@ def box_distance(size: Array, place: Array, turn: Array) -> float:
 
 @compiled
 def place_corners(local: Array, place: Array, turn: Array, corners: Array) -> None:
-    """Turns points of a geom's frame into the eye's [m]; as many as there is room for."""
+    """Transforms points from a geom's frame to the eye's frame [m]; as many as fit into the output."""
     for i in range(len(corners)):
         x, y, z = local[i, 0], local[i, 1], local[i, 2]
         for j in range(3):

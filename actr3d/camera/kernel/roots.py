@@ -1,4 +1,4 @@
-"""Real roots of polynomials of degree up to four, found without sampling."""
+"""Finds real roots of polynomials of degree up to four, without sampling."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from actr3d.camera.kernel.layout import Array
 
 @compiled
 def add_roots(a: float, b: float, c: float, roots: Array, count: int) -> int:
-    """Appends the real roots of `a x^2 + 2 b x + c`; returns how many there are now."""
+    """Appends the real roots of `a x^2 + 2 b x + c`; returns the new number of roots."""
     discriminant = b * b - a * c
     if a == 0.0:
         if b != 0.0:
@@ -35,7 +35,7 @@ def _value(coefficients: Array, degree: int, x: float) -> float:
 
 @compiled
 def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, high: float, rising: bool) -> float:
-    """Returns the one root of a polynomial between two places where its signs differ: Newton's steps, halving where they leave."""
+    """Returns the single root of a polynomial in an interval with a sign change: Newton steps, and bisection if one leaves it."""
     x = 0.5 * (low + high)
     for _ in range(60):
         value = _value(coefficients, degree, x)
@@ -53,16 +53,16 @@ def _root_between(coefficients: Array, slopes: Array, degree: int, low: float, h
 
 @compiled
 def add_quartic_roots(quartic: Array, work: Array, roots: Array, count: int) -> int:
-    """Appends the roots in -1 ... 1 of a polynomial, and of its derivative; returns how many there are now.
+    """Appends the roots in -1 ... 1 of a polynomial and of its derivative; returns the new number of roots.
 
-    Between two roots of its derivative a polynomial is monotone, so that no root is missed; double roots, which rounding
-    may hide, are among the derivative's.
+    Between two roots of its derivative a polynomial is monotone, so no root is missed; double roots, which rounding
+    may hide, are among the derivative's roots.
 
     Args:
         quartic: The five coefficients, constant first.
-        work: An array (5, 5) to work in.
-        roots: Where the roots are written.
-        count: How many are there already.
+        work: A work array (5, 5).
+        roots: The output array.
+        count: The number of roots already written.
     """
     for i in range(5):
         work[0, i] = quartic[i]

@@ -1,4 +1,4 @@
-"""The one compiled function that is called from outside: everything that an eye sees at one moment."""
+"""The only compiled function called from Python: computes everything that an eye sees at one moment."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from actr3d.camera.kernel.screen import row_tangent
 from actr3d.camera.kernel.waiting import bring_up
 
 MOST_PIECES_OF_A_PATCH = 10
-"""Eight cuts leave at most five pieces of each side."""
+"""Eight cuts leave at most five pieces on each side."""
 
 Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, Scene, Row, Array, Array], int]
 
 
 @cache
 def scan() -> Scan:
-    """Returns the function; the first call of it in a new installation takes seconds.
+    """Returns the compiled function; its first call in a new installation takes seconds.
 
-    It takes: the eye's axes and place, the geoms' places and rotations, an array of one optics, the geoms, the topology,
-    room for the scene and for a row, the labels of objects, and the extents to be written. It returns how many extents
-    there are, or below 0, less one, the number of a geom whose pose is no number.
+    Its arguments are: the eye's axes and position, the geoms' positions and rotations, an array of one optics, the geoms, the
+    topology, work arrays for the scene and for a row, the labels of objects, and the output array of extents. It returns the number
+    of extents, or `-1 - geom` if the pose of a geom is not finite.
     """
     return _scan_of(sources_digest())
 
 
 def _scan_of(digest: int) -> Scan:
-    # Numba keeps the compiled function under the values it encloses, so that a change in any file is seen.
+    # Numba caches the compiled function under the values of its closure, so that a change in any file is detected.
     @kept
     def look(
         eye: Array,
@@ -93,7 +93,7 @@ def _look(
 
 @compiled
 def _add_pieces(v: float, optics: Record, topology: Topology, scene: Scene, present: int, row: Row) -> tuple[int, int]:
-    """Writes the pieces of all surfaces on a row; returns how many pieces there are, and how many surfaces gave none."""
+    """Writes the pieces of all surfaces on a row; returns the number of pieces, and the number of surfaces without any."""
     count, aside = zero(), zero()
     for i in range(present):
         surface, before = scene.surfaces.present[i], count
@@ -115,7 +115,7 @@ def _add_pieces(v: float, optics: Record, topology: Topology, scene: Scene, pres
 
 @compiled
 def _order_surfaces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
-    """Puts the surfaces in the order of their first pieces: on the next row, the sorting finds nearly everything in order."""
+    """Sorts the surfaces by their first pieces: on the next row, nearly everything is then already in order."""
     count = zero()
     for i in range(pieces):
         surface = row.pieces[row.order[i]].surface
@@ -129,7 +129,7 @@ def _order_surfaces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
 
 @compiled
 def _add_range(v: float, optics: Record, row: Row, count: int) -> int:
-    """Appends the end of what the eye reaches, a ball seen from inside; returns how many pieces there are now."""
+    """Appends the end of the eye's range, a ball seen from inside; returns the new number of pieces."""
     if not math.isfinite(optics.range):
         return count
     piece = row.pieces[count]

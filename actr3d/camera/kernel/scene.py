@@ -1,4 +1,4 @@
-"""From geoms to what may be in view: patches, and polygons by the row they begin on."""
+"""Converts geoms to what may be in view: patches and polygons, by the row they begin on."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from actr3d.camera.kernel.waiting import Waiting, enter, room_for_waiting, send_
 
 
 class Geoms(NamedTuple):
-    """What a model says of its geoms: MuJoCo's own memory, so that changes are seen at once."""
+    """A model's description of its geoms: views of MuJoCo's own memory, so that changes take effect at once."""
 
     size: Array
     group: Array
@@ -32,20 +32,20 @@ class Geoms(NamedTuple):
 
 
 class Topology(NamedTuple):
-    """What never changes: which geom belongs to which object, and which corners make a face."""
+    """The constant part of a model: which geom belongs to which object, and which corners make a face."""
 
     kind: Array
     """The type of each geom, `(n,)`."""
     objects: Array
     """The object of each geom, `(n,)`."""
     groups: Array
-    """Which groups of geoms are seen, `(6,)`."""
+    """Whether each group of geoms is seen, `(6,)`."""
     source: Array
-    """Where a mesh's or height field's data begin, the height field's number, rows and columns, `(n, 4)`."""
+    """The address of a mesh's or height field's data, and the height field's id, rows and columns, `(n, 4)`."""
     corners: Array
-    """The first corner of each geom, and at last how many there are, `(n + 1,)`."""
+    """The first corner of each geom, and at the end the total number of corners, `(n + 1,)`."""
     faces: Array
-    """The first face of each geom, and at last how many there are, `(n + 1,)`."""
+    """The first face of each geom, and at the end the total number of faces, `(n + 1,)`."""
     face_corners: Array
     """The corners of each face, `(m, 4)`; -1 after those of a triangle."""
     face_geom: Array
@@ -53,14 +53,14 @@ class Topology(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """Room for what is in view at one moment."""
+    """Work arrays for what is in view at one moment."""
 
     places: Array
     """The geoms' centres in the eye's frame, and the eye itself, `(n + 1, 3)` [m]."""
     reaches: Array
-    """The radii of balls around these that hold all of the geoms, `(n + 1,)` [m]."""
+    """The radii of the bounding balls of the geoms about these centres, `(n + 1,)` [m]."""
     turn: Array
-    """The axes of the geom at hand, as columns."""
+    """The axes of the current geom, as columns."""
     occluders: Records
     patches: Records
     local: Array
@@ -68,16 +68,16 @@ class Scene(NamedTuple):
     corners: Array
     """All corners in the eye's frame [m]."""
     surfaces: Waiting
-    """The patches, and then the faces, by their rows; those present are in the order from left to right of the row above.
+    """The patches, then the faces, by their rows; the active ones are ordered from left to right as on the row above.
 
-    The number of a face is here its own and the length of `patches`.
+    A face's number here is its own number plus the length of `patches`.
     """
     aside: Array
-    """Surfaces present that no piece was cut from."""
+    """Active surfaces that have no piece on the row."""
 
 
 def room_for_scene(topology: Topology, rows: int) -> Scene:
-    """Returns room for all that a model's geoms may be."""
+    """Returns work arrays large enough for all geoms of a model."""
     geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
     patches = 3 * geoms + 1  # a cylinder or capsule has three
     return Scene(
@@ -95,16 +95,16 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
 
 @compiled
 def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> int:
-    """Finds what may be in view; returns 0, or below 0, less one, the number of a geom whose pose is no number.
+    """Finds what may be in view; returns 0, or `-1 - geom` if the pose of a geom is not finite.
 
     Args:
-        eye: The eye's axes right, up and forward, and its place, as rows in the world's frame.
-        place: The geoms' places in the world.
-        turn: Their rotations, `(n, 9)`.
-        geoms: The model's.
-        topology: Likewise.
-        optics: The eye's.
-        scene: Where it is written.
+        eye: The eye's right, up and forward axes, and its position, as rows in the world frame.
+        place: The geoms' positions in the world frame.
+        turn: The geoms' rotations, `(n, 9)`.
+        geoms: The geoms of the model.
+        topology: The topology of the model.
+        optics: The constants of the eye.
+        scene: The work arrays to fill.
     """
     count, occluders = zero(), zero()
     send_away(scene.surfaces)
@@ -128,14 +128,14 @@ def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Top
 
 @compiled
 def _is_large(size: Array, place: Array, eye: Array) -> bool:
-    """Tells whether a box looks large from the eye."""
+    """Checks whether a box looks large from the eye."""
     x, y, z = place[0] - eye[3, 0], place[1] - eye[3, 1], place[2] - eye[3, 2]
     return _square(size) > LARGE * (x * x + y * y + z * z)
 
 
 @compiled
 def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
-    """Returns the radius of a ball around the centre that holds all of a geom [m]."""
+    """Returns the radius of the bounding ball of a geom about its centre [m]."""
     kind, size = topology.kind[geom], geoms.size[geom]
     if kind == BOX:
         return math.sqrt(_square(size))
@@ -148,7 +148,7 @@ def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
 
 @compiled
 def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, count: int) -> int:
-    """Appends the patches of a geom that is round or a plane; returns how many there are now."""
+    """Appends the patches of a geom that is round or a plane; returns the new number of patches."""
     kind, place, before = topology.kind[geom], scene.places[geom], count
     both = kind != PLANE and math.sqrt(_square(place)) - reach <= optics.corner
     count = add_patches(kind, geoms.size[geom], place, scene.turn, both, optics, scene.patches, count)
@@ -161,7 +161,7 @@ def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics
 
 @compiled
 def _visible(geom: int, geoms: Geoms, topology: Topology) -> bool:
-    """Tells whether a geom can be seen at all: as with MuJoCo's rays, those whose colour is fully transparent cannot."""
+    """Checks whether a geom can be seen at all: as with MuJoCo's rays, fully transparent geoms cannot."""
     if topology.objects[geom] == UNSEEN or not topology.groups[min(max(geoms.group[geom], 0), 5)]:
         return False
     material = geoms.matid[geom]
@@ -171,7 +171,7 @@ def _visible(geom: int, geoms: Geoms, topology: Topology) -> bool:
 
 @compiled
 def _set_pose(eye: Array, place: Array, turn: Array, its_place: Array, its_turn: Array) -> bool:
-    """Turns a pose into the eye's frame; tells whether it is one of numbers."""
+    """Transforms a pose to the eye's frame; returns whether it is finite."""
     total = 0.0
     for i in range(3):
         its_place[i] = 0.0
@@ -190,7 +190,7 @@ def _square(vector: Array) -> float:
 
 @compiled
 def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, occluders: int) -> int:
-    """Places the corners of a geom, and enters its faces at the rows that they begin on; returns how many occluders there are now."""
+    """Transforms the corners of a geom, and adds its faces at the rows they begin on; returns the new number of occluders."""
     kind, source, size = topology.kind[geom], topology.source[geom], geoms.size[geom]
     place, turn = scene.places[geom], scene.turn
     corners = scene.corners[topology.corners[geom] : topology.corners[geom + 1]]

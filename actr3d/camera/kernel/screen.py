@@ -1,4 +1,4 @@
-"""Between tangents in the eye's frame and the screen, and what of the screen a ball may touch."""
+"""Converts between tangents in the eye's frame and the screen, and computes which part of the screen a ball may touch."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def screen_part(tangent: float, most: float, e2: float) -> float:
 
 @compiled
 def tangent_at(part: float, most: float, e2: float) -> float:
-    """Returns the tangent at a part of half the screen; what `screen_part` makes undone."""
+    """Returns the tangent at a part of half the screen; the inverse of `screen_part`."""
     if e2 == 0.0:
         return part * most
     span = math.log1p(math.atan(most) / e2)
@@ -30,13 +30,13 @@ def tangent_at(part: float, most: float, e2: float) -> float:
 
 @compiled
 def row_tangent(row: float, optics: Record) -> float:
-    """Returns the tangent upwards of the middle of a scan line."""
+    """Returns the upward tangent of the middle of a scan line."""
     return tangent_at(1.0 - (2.0 * row + 1.0) / optics.rows, optics.top, optics.e2)
 
 
 @compiled
 def row_before(v: float, optics: Record) -> float:
-    """Returns the place among the scan lines of a tangent upwards: 0 at the middle of the topmost."""
+    """Returns the row coordinate of an upward tangent: 0 at the middle of the topmost scan line."""
     return 0.5 * (optics.rows * (1.0 - screen_part(v, optics.top, optics.e2)) - 1.0)
 
 
@@ -54,7 +54,7 @@ def last_row(v: float, optics: Record) -> int:
 
 @compiled
 def in_view(place: Array, reach: float, optics: Record) -> bool:
-    """Tells whether a ball may be in the field of view and in range; the place is in the eye's frame."""
+    """Checks whether a ball, given in the eye's frame, may be in the field of view and in range."""
     x, y, z = abs(place[0]), abs(place[1]), place[2]
     if z + reach <= 0.0 or math.sqrt(x * x + y * y + z * z) - reach > optics.range:
         return False
@@ -64,18 +64,18 @@ def in_view(place: Array, reach: float, optics: Record) -> bool:
 
 @compiled
 def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optics: Record, joined: bool) -> None:
-    """Sets the rows on which an ellipsoid is seen, and bounds of its nearness; exactly, if it is wholly in front of the eye.
+    """Sets the rows on which an ellipsoid is seen, and bounds of its nearness; exact if it is completely in front of the eye.
 
     A row meets it where a plane through the eye does: (y - v z)^2 <= yy - 2 v yz + v^2 zz.
 
     Args:
-        patch: Where they are set.
+        patch: The patch whose rows and bounds are set.
         place: The centre in the eye's frame [m].
-        yy: With yz and zz, the squares of its half axes, turned into the eye's frame; a flat one will do [m^2].
+        yy: With yz and zz, the squares of its half axes, rotated into the eye's frame; may be flat [m^2].
         yz: As above.
         zz: As above.
-        optics: The eye's.
-        joined: Whether what is set already is to be widened, to what lies between this and another ellipsoid.
+        optics: The constants of the eye.
+        joined: Whether to extend the rows and bounds already set, to cover the space between this and another ellipsoid.
     """
     y, z, deep = place[1], place[2], math.sqrt(zz)
     first, last = 0, optics.rows - 1

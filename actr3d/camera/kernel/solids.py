@@ -1,4 +1,4 @@
-"""From geoms that are round or planes to patches in the eye's frame."""
+"""Converts planes and round geoms to patches in the eye's frame."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from actr3d.camera.kernel.screen import set_rows
 
 @compiled
 def reach_of(kind: int, size: Array) -> float:
-    """Returns the radius of a ball around the centre that holds all of a geom [m], infinite for endless planes.
+    """Returns the radius of the bounding ball of a geom about its centre [m], infinite for endless planes.
 
     Args:
         kind: The geom's type: not a mesh, nor a height field.
@@ -30,7 +30,7 @@ def reach_of(kind: int, size: Array) -> float:
 
 @compiled
 def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Records, count: int) -> int:
-    """Appends the patches of one geom; returns how many there are now.
+    """Appends the patches of one geom; returns the new number of patches.
 
     Args:
         kind: The geom's type.
@@ -38,9 +38,9 @@ def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, o
         place: Its centre in the eye's frame [m].
         turn: Its axes in the eye's frame, as columns.
         both: Whether its far sides can be seen.
-        optics: The eye's.
-        patches: Where they are written; `object` and `geom` are left to the caller.
-        count: How many there are already.
+        optics: The constants of the eye.
+        patches: The output array; the caller sets `object` and `geom`.
+        count: The number of patches already written.
     """
     start = count
     if kind == PLANE:
@@ -65,13 +65,13 @@ def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, o
 
 @compiled
 def _along(turn: Array, place: Array) -> float:
-    """Returns how far a place lies along a geom's third axis [m]."""
+    """Returns the coordinate of a position along a geom's third axis [m]."""
     return turn[0, 2] * place[0] + turn[1, 2] * place[1] + turn[2, 2] * place[2]
 
 
 @compiled
 def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z: float) -> None:
-    """Makes a patch an ellipsoid's of the given half axes, infinite for a tube: (p - c) Q (p - c) = 1, c its place."""
+    """Sets a patch to an ellipsoid with the given half axes (infinite for a tube): (p - c) Q (p - c) = 1, where c is its centre."""
     patch.even, patch.slabs, patch.radius = 0, 0, 0.0
     a = -1.0
     for i in range(3):
@@ -89,7 +89,7 @@ def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z
 
 @compiled
 def _set_flat(patch: Record, place: Array, turn: Array) -> None:
-    """Makes a patch a plane through a place, across a geom's third axis."""
+    """Sets a patch to a plane through a position, normal to a geom's third axis."""
     patch.even, patch.slabs, patch.radius = 1, 0, 0.0
     for i in range(3):
         patch.q[i] = turn[i, 2]
@@ -98,7 +98,7 @@ def _set_flat(patch: Record, place: Array, turn: Array) -> None:
 
 @compiled
 def _add_slab(patch: Record, turn: Array, axis: int, low: float, high: float) -> None:
-    """Bounds a patch between two planes across an axis of its geom."""
+    """Bounds a patch by two planes normal to an axis of its geom."""
     number = patch.slabs
     for i in range(3):
         patch.axes[number, i] = turn[i, axis]
@@ -124,7 +124,7 @@ def _add_plane(size: Array, place: Array, turn: Array, optics: Record, patches: 
 
 @compiled
 def _add_tube(kind: int, size: Array, place: Array, turn: Array, both: bool, optics: Record, patches: Records, count: int) -> int:
-    """Appends the side of a cylinder or capsule, and its two ends: discs, if they can be seen, or half balls."""
+    """Appends the side of a cylinder or capsule, and its two ends: discs, if they can be seen, or hemispheres."""
     middle, side, radius = _along(turn, place), patches[count], size[0]
     _set_quadric(side, place, turn, radius, radius, math.inf)
     _add_slab(side, turn, 2, middle - size[1], middle + size[1])

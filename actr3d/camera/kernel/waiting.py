@@ -1,4 +1,4 @@
-"""Things that wait for the row they begin on, and stay until the row they end on."""
+"""Keeps track of which items are active on each row: every item has a first and a last row."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from actr3d.camera.kernel.layout import NUMBER, Array
 
 
 class Waiting(NamedTuple):
-    """Numbered things by their rows; those on a row are found without a look at all others."""
+    """Numbered items, indexed by the row they begin on; finds the items of a row without checking all others."""
 
     starting: Array
-    """The first of the things that begin on a row, or -1."""
+    """The first of the items that begin on each row, or -1."""
     following: Array
-    """The next of the things that begin on the same row as a thing, or -1."""
+    """For each item, the next item that begins on the same row, or -1."""
     ending: Array
-    """The last row of a thing."""
+    """The last row of each item."""
     present: Array
-    """The things on the row at hand."""
+    """The items on the current row."""
 
 
 def room_for_waiting(things: int, rows: int) -> Waiting:
-    """Returns room for so many things and rows."""
+    """Returns the arrays for a given number of items and rows."""
     return Waiting(
         starting=np.zeros(rows, np.int64),
         following=np.zeros(things, np.int64),
@@ -35,14 +35,14 @@ def room_for_waiting(things: int, rows: int) -> Waiting:
 
 @compiled
 def send_away(waiting: Waiting) -> None:
-    """Forgets all things."""
+    """Removes all items."""
     for row in range(len(waiting.starting)):
         waiting.starting[row] = -1
 
 
 @compiled
 def enter(waiting: Waiting, thing: int, first: int, last: int) -> None:
-    """Enters a thing from its first to its last row; not at all if there is none."""
+    """Adds an item from its first to its last row; does nothing if there are no rows."""
     if first <= last:
         waiting.following[thing] = waiting.starting[first]
         waiting.starting[first] = thing
@@ -51,7 +51,7 @@ def enter(waiting: Waiting, thing: int, first: int, last: int) -> None:
 
 @compiled
 def bring_up(waiting: Waiting, row: int, present: int) -> int:
-    """Brings the things at hand up to date from the row above; returns how many there are."""
+    """Updates the active items from the row above to this row; returns their number."""
     kept = 0
     for i in range(present):
         if waiting.ending[waiting.present[i]] >= row:
