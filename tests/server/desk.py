@@ -21,7 +21,7 @@ from workbench.summaries import Summary
 from workbench.worker.workers import Workers
 
 T = TypeVar("T")
-PATIENCE = 60.0
+PATIENCE = 180.0
 """So long a test waits for what must come [s]; machines are slow at times."""
 
 

@@ -31,13 +31,13 @@ class Served:
         self.headers = {"authorization": f"Bearer {self.token}", "x-workbench": "1", "content-type": "application/json"}
 
     def get(self, path: str, **more: Any) -> httpx.Response:
-        return httpx.get(self.url + path, headers=self.headers, timeout=60, **more)
+        return httpx.get(self.url + path, headers=self.headers, timeout=180, **more)
 
     def put(self, path: str, body: Any) -> httpx.Response:
-        return httpx.put(self.url + path, headers=self.headers, json=body, timeout=60)
+        return httpx.put(self.url + path, headers=self.headers, json=body, timeout=180)
 
     def post(self, path: str, body: Any = None) -> httpx.Response:
-        return httpx.post(self.url + path, headers=self.headers, json={} if body is None else body, timeout=60)
+        return httpx.post(self.url + path, headers=self.headers, json={} if body is None else body, timeout=180)
 
 
 @contextmanager
