@@ -12,6 +12,7 @@ import json
 import random
 import shutil
 import sqlite3
+import time
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -43,6 +44,8 @@ def whole(server: Served) -> Path:
     """A recording of 0.5 s of the doorway, from which all others are copied."""
     session = server.post("/api/sessions", {"model": "doorway.py", "seed": 1}).json()["id"]
     server.post(f"/api/sessions/{session}/say", {"say": {"type": "step", "ticks": 50}})
+    while (server.get(f"/api/sessions/{session}").json()["state"] or {"tick": 0})["tick"] < 50:
+        time.sleep(0.05)
     name = server.get(f"/api/sessions/{session}").json()["session"]["recording"]
     server.post(f"/api/sessions/{session}/close")
     folder = server.folder / ".workbench" / "recordings"
