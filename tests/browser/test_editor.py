@@ -49,6 +49,7 @@ def write(page: Page, text: str, *, where: str = "Control+End") -> None:
     page.locator(CODE).focus()
     page.keyboard.press(where)
     page.keyboard.insert_text(text)
+    drawn(page)  # a text that is replaced before it has scrolled to its end makes CodeMirror ask for a place beyond the new one
 
 
 def ends(page: Page, text: str) -> None:
