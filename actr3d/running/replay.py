@@ -176,7 +176,7 @@ def _ending(recorded: Recorded, simulation: Simulation) -> str:
     then: dict[str, Any] = recorded.facts.get("ended") or {}
     if then.get("by") in ("seconds", "until") and not recorded.facts.get("built"):
         return str(then["by"])  # it was not run to its end by this library, but by a program that says so
-    return "stop" if simulation.timeline.lockstep.agents.stopped else "done" if simulation.done else "limits"
+    return simulation.over or "limits"
 
 
 def _end(recorded: Recorded, simulation: Simulation, ended: str) -> None:

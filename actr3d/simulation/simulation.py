@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 from zlib import crc32
 
 from actr3d.actr.kernel.run_limits import RunLimits, fresh_seed
@@ -128,6 +128,11 @@ class Simulation:
     def done(self) -> bool:
         """Whether no agent has anything left to do, now or ever, and no command of a user waits."""
         return self.timeline.lockstep.agents.done and not self._submitted and self.ticks >= self.timeline.furthest
+
+    @property
+    def over(self) -> Literal["stop", "done"] | None:
+        """Why the run can end here: an agent called `stop`, or nothing is left to do (`done`); None if neither."""
+        return "stop" if self.timeline.lockstep.agents.stopped else "done" if self.done else None
 
     @property
     def trace(self) -> Trace | None:

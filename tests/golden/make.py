@@ -23,9 +23,6 @@ VARIANTS = {"aperture_passage": ("replication",)}
 EMBODIED = {"aperture_passage", "aperture_passage@replication", "doorway"}
 """Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
 
-OURS = {"tutorial/sgoms"}
-"""Models that use what python_actr does not have."""
-
 
 def model_names() -> list[str]:
     """Returns the path of every model below `models`, without its ending, and once more with each other variant that it has."""

@@ -131,7 +131,7 @@ class BuiltRun:
         try:
             while over is None and simulation.ticks < last:  # it ends at the same tick however many are done at once
                 simulation.step()
-                over = "stop" if simulation.timeline.lockstep.agents.stopped else "done" if simulation.done else None
+                over = simulation.over
             if over is not None:
                 self._conclude()
         except UNFORESEEN as error:
