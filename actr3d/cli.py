@@ -28,6 +28,14 @@ from actr3d.running.run import run_model
 from actr3d.trace import LEVELS, Trace, TraceEvent
 from actr3d.values import to_json
 
+BENCHMARKS = {
+    "core": "actr3d.bench.core",
+    "camera": "actr3d.bench.camera",
+    "lockstep": "actr3d.bench.lockstep",
+    "aperture": "actr3d.experiment.aperture.benchmark",
+}
+"""By name, the module whose `main` runs a benchmark; it is imported when it is needed, because most are slow to import."""
+
 
 def event_line(event: TraceEvent) -> str:
     """Returns an event as a human-readable line."""
@@ -205,21 +213,27 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core", "camera", "lockstep", "aperture"], help="what to measure")
-    bench.add_argument("--trials", type=_count, metavar="N", help="of the aperture: how many trials a cell (30)")
+    bench.add_argument("name", choices=BENCHMARKS, help="what to measure")
+    bench.add_argument("--trials", type=_count, metavar="N", help="aperture only: number of trials per cell (30)")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
-    soak.set_defaults(function=_bench, name="soak")
+    soak.set_defaults(function=_soak)
     return parser
 
 
 def _bench(options: argparse.Namespace) -> int:
-    bench: Any = importlib.import_module(f"actr3d.bench.{options.name}")
-    if options.name == "aperture":
+    bench: Any = importlib.import_module(BENCHMARKS[options.name])
+    if options.trials is not None and options.name == "aperture":
         return bench.main(json_output=options.json, trials=options.trials)
     return bench.main(json_output=options.json)
+
+
+def _soak(options: argparse.Namespace) -> int:
+    from actr3d.bench import soak
+
+    return soak.main(json_output=options.json)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

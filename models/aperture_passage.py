@@ -54,9 +54,10 @@ from annotated_types import Ge, Gt, Le
 
 from actr3d.actr import *
 from actr3d.configuration import Configuration, Live
+from actr3d.experiment.aperture import Passage
 from actr3d.motor import Motor
 from actr3d.sgoms import SGOMS, Ordered, Situated
-from actr3d.simulation import Passage, Simulation
+from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 

@@ -10,8 +10,8 @@ from dataclasses import asdict, replace
 from statistics import mean
 from typing import Any
 
-from actr3d.bench.constraints import Constraint, Findings, turning_point
-from actr3d.bench.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
+from actr3d.experiment.aperture.constraints import Constraint, Findings, turning_point
+from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
 
 TRIALS = 30
 """The default number of trials per cell. Source: as many as each of the original's agents (human-data)."""
@@ -102,9 +102,9 @@ def _table(title: str, rows: list[dict[str, Any]], beside: str, scale: float = 1
     return lines
 
 
-def main(*, json_output: bool, trials: int | None = None) -> int:
+def main(*, json_output: bool, trials: int = TRIALS) -> int:
     """Measures and prints; returns the exit code: 0 if the bar and all constraints are met, and all agents reach the wall."""
-    measured = measure(trials or TRIALS)
+    measured = measure(trials)
     constraints = [Constraint(**constraint) for constraint in measured["constraints"]]
     good = measured["rmse"] <= BAR and not measured["unfinished"] and all(constraint.met for constraint in constraints)
     if json_output:

@@ -17,7 +17,7 @@ import numpy as np
 from scipy import optimize
 from scipy.special import stdtr
 
-from actr3d.bench.trials import CONDITIONS, GROUPS, Outcome, Trial
+from actr3d.experiment.aperture.trials import CONDITIONS, GROUPS, Outcome, Trial
 
 TURNED = 5.0
 """An agent has turned if its angle is above this [degrees]: people sway by a few degrees (human-data). No source: our choice."""
