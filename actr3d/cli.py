@@ -89,7 +89,7 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
 
 def _settings(options: argparse.Namespace, fields: Sequence[Field]) -> dict[str, Any]:
     """Returns the parameter values given on the command line."""
-    return {**read_settings(options.set, fields), **read_options(options.words, fields, options.parser._option_string_actions)}
+    return {**read_settings(options.set, fields), **read_options(options.words, fields, options.general)}
 
 
 def _help(run: argparse.ArgumentParser, file: str | None) -> int:
@@ -184,21 +184,24 @@ def _parser() -> argparse.ArgumentParser:
     run = commands.add_parser(
         "run",
         help="run a model file",
-        description="Runs a Python ACT-R model file, unchanged, or what a model file builds; run FILE --help tells of its own options.",
+        description="Runs a Python ACT-R model file, unchanged, or what a model file builds. "
+        "`run FILE --help` also lists the options of the file.",
         epilog="Exit codes: 0 the model ran, whatever came of it; 1 it failed, or the output could not be written; 2 wrong options; "
         "130 it was interrupted.",
         add_help=False,
         allow_abbrev=False,
     )
     run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
-    run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file")
-    run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)")
-    run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest")
-    run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)")
-    run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
-    run.add_argument("--record", metavar="RECORDING", help="record everything to this new file")
-    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds")
-    run.set_defaults(function=run_command, parser=run)
+    general = [
+        run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file"),
+        run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)"),
+        run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest"),
+        run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)"),
+        run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too"),
+        run.add_argument("--record", metavar="RECORDING", help="record everything to this new file"),
+        run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds"),
+    ]
+    run.set_defaults(function=run_command, parser=run, general=[name for option in general for name in option.option_strings])
     again = commands.add_parser(
         "replay",
         help="run a recording again",

@@ -178,7 +178,7 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
     assert told.count("\nmet ") == 8
     turned = {(trial.group, trial.condition, trial.aperture) for trial in experiment("human", 5) if (good(trial).wall_angle_deg or 0) > 5}
     assert told.split("human: angle")[1].count(" (7.0)") == len(turned)
-    assert "mean margin of who turned 7.0 cm at 40, 7.0 cm at 45, 7.0 cm at 50, 7.0 cm at 55, 7.0 cm at 60" in told
+    assert "mean margin of agents that turned 7.0 cm at 40, 7.0 cm at 45, 7.0 cm at 50, 7.0 cm at 55, 7.0 cm at 60" in told
     assert "5 trials a cell; a trial takes 300 ms of one processor for 11.0 s simulated" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == code
     measured = json.loads(capsys.readouterr().out)
