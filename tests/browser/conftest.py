@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, Route
 
 from tests.browser.looking import PATIENCE, chromium
 from tests.server.serving import Served, served
@@ -55,6 +55,9 @@ def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -
     def fault(error: Any) -> None:
         complaints.append(str(error))
 
+    def leave_scene_out(route: Route) -> None:
+        route.fulfill(body=NO_SCENE, content_type="text/html")
+
     contexts: list[Any] = []
 
     def opened(
@@ -70,7 +73,7 @@ def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -
         if tab is not None:
             contexts[-1].add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
         if request.node.get_closest_marker("scene") is None:
-            contexts[-1].route("**/viser/**", lambda route: route.fulfill(body=NO_SCENE, content_type="text/html"))
+            contexts[-1].route("**/viser/**", leave_scene_out)
         page = contexts[-1].new_page()
         page.set_default_timeout(PATIENCE)
         page.on("console", note_unless_refused if refusals else note)

@@ -22,8 +22,8 @@ from workbench import protocol as say
 from workbench.compiled import loaded, saved
 from workbench.curves import Curves, stretch
 from workbench.loader import Parameter
+from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.answers import answer
-from workbench.worker.drawings import Drawings
 from workbench.worker.past import Past
 from workbench.worker.surroundings import surroundings
 from workbench.worker.tops import Top
@@ -74,7 +74,7 @@ class Shown:
         self.surroundings = surroundings(simulation.world)
         self._openings = self.scene()[1]
         """The widths of apertures at the start [m]."""
-        self._drawings = Drawings(simulation, self.eyesight, self.kept.walked)
+        self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
     def world(self, parameters: Iterable[Parameter] | None = None) -> dict[str, Any]:
         """Returns the description of the world for pages, as plain values.
@@ -97,7 +97,7 @@ class Shown:
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
         """Returns the current data of overlays by kind; empty if it cannot be computed, for example after the physics has diverged."""
         with suppress(Actr3dError):
-            return self._drawings.told(kinds)
+            return {kind: OVERLAYS[kind].data(self._observed) for kind in kinds}
         return {}
 
     def result(self) -> dict[str, Any] | None:
