@@ -396,7 +396,7 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("def build(a, b) -> Simulation: pass", r":2: build\(a, b\) takes 2 arguments; it must be `def build\(parameters: Parameters\)"),
+        ("def build(a, b) -> Simulation: pass", r":2: build\(a, b\) takes 2 arguments; write `def build\(parameters: Parameters\)"),
         ("def build(a: int, b: int = 3) -> Simulation: pass", r":2: build\(a: int, b: int=3\) takes 2 arguments"),
         ("def build(*, a: int) -> Simulation: pass", r":2: build\(\*, a: int\) takes arguments by name only"),
         ("def build(*a) -> Simulation: pass", "any number of them"),
@@ -407,9 +407,14 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
             "from enum import Enum\nclass P(Enum): pass\ndef build(a: P) -> Simulation: pass",
             r":4: build\(a: P\) takes what is no dataclass",
         ),
-        ("def build(): return 3", r":2: build\(\) does not say what it returns, not a Simulation; it must be .* \(or have another name\)"),
-        ("def build(a, b): return 3", r":2: build\(a, b\) does not say what it returns"),
-        ("def build() -> int: return 3", r"says that it returns int, not a Simulation"),
+        (
+            "def build(): return 3",
+            r":2: build must be declared to return a Simulation \(got `def build\(\)`, without a return type\); write "
+            r"`def build\(parameters: Parameters\) -> Simulation`, .*, or "
+            r"`def build\(\) -> Simulation`; rename it if it is not to build the model",
+        ),
+        ("def build(a, b): return 3", r":2: build must be declared to return a Simulation \(got `def build\(a, b\)`, without"),
+        ("def build() -> int: return 3", r":2: build must be declared to return a Simulation \(got `def build\(\) -> int`\); write"),
         ("async def build() -> Simulation: pass", ":2: build is an async function"),
         ("class build: pass", ":2: build is a class"),
         ("build = lambda p: Simulation(p)", ":2: build is a value"),
