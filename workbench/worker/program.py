@@ -18,6 +18,7 @@ from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.running.complaint import failure
+from actr3d.running.facts import program_facts
 from actr3d.running.printed import ProgramOutput
 from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
@@ -98,8 +99,7 @@ class ProgramRun:
             self._introduce()
         try:
             if start.record is not None:
-                told = {"kind": "program", "file": start.path, "sources": {start.path: self._source}}
-                self._recording = Recording(start.record, {**told, "seed": self._seed, "until": None})
+                self._recording = Recording(start.record, program_facts(start.path, self._source, self._seed, None))
             while not conductor.leaving:
                 self._run_once()
                 with suppress(_Again):
