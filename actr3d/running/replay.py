@@ -19,7 +19,7 @@ from actr3d.recording import Recorded
 from actr3d.running.comparison import Beside, Comparison, Differs
 from actr3d.running.complaint import failure
 from actr3d.running.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
-from actr3d.running.printed import BuiltOutput
+from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.running.replayable import check_replayable
 from actr3d.running.run import play_program, recorded_failure
 from actr3d.trace import Trace
@@ -115,9 +115,11 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     trace = Trace("all", keep=False)
     count = max(1, recorded.event_count)
     trace.listen(lambda _: progress(min(1.0, beside.events / count)))
+    limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
     trouble = ""
     try:
-        left = play_program(file, source, RunLimits(seed=facts["seed"], until=facts["until"], trace=trace), trace, beside, helpers)
+        with ProgramOutput(limits) as output:
+            left = play_program(file, source, limits, trace, beside, helpers, output)
         trouble = "" if left is None else f" ({failure(left)})"
     except Differs:
         pass

@@ -6,6 +6,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING, Any, Protocol
 
 from actr3d.actr.kernel.run_limits import EndOfRun, Recorder, RunLimits, fresh_seed
@@ -15,10 +16,12 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
+from actr3d.printing import ToldOutput
 from actr3d.recording import Recording
 from actr3d.running.complaint import failure
 from actr3d.running.declared import check_build, has_build
 from actr3d.running.facts import built_facts, program_facts
+from actr3d.running.last_words import before_the_end
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.trace import Trace, TraceEvent
 
@@ -43,6 +46,8 @@ class ProgramRecorder(Recorder, FactRecorder, Protocol):
         ...
 
 
+PATIENCE = 5.0
+"""The maximum time to write a recording before the model ends its process [s]."""
 Settings = Callable[[Sequence[Field]], Mapping[str, Any]]
 """Returns values of parameters, by name, for the given fields."""
 
@@ -98,7 +103,7 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | 
         facts = built_facts(str(path), source, parameters, limits.program_seed, limits.until, helpers.loaded)
         with simulation.record(record, **facts) as recording:
             helpers.heard = partial(recording.fact, "helpers")  # an agent may import one later
-            with recorded_failure(recording):
+            with before_the_end(partial(_keep_all, recording, simulation.event_log.stdout)), recorded_failure(recording):
                 ended_by = _run_to_end(simulation)
                 result = simulation.conclude()
             recording.fact("ended", {"by": ended_by})
@@ -119,16 +124,20 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         limits.trace = Trace("all", keep=False)
     elif limits.trace.level != "all":
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
-    with Recording(record, program_facts(str(path), source, limits.seed, limits.until)) as recording:
-        left = play_program(str(path), source, limits, limits.trace, recording, HelperTexts())
+    with (
+        Recording(record, program_facts(str(path), source, limits.seed, limits.until)) as recording,
+        ProgramOutput(limits) as output,
+        before_the_end(partial(_keep_all, recording, output)),
+    ):
+        left = play_program(str(path), source, limits, limits.trace, recording, HelperTexts(), output)
         if left is not None:
             raise left
 
 
 def play_program(
-    file: str, source: str, limits: RunLimits, trace: Trace, recording: ProgramRecorder, helpers: HelperTexts
+    file: str, source: str, limits: RunLimits, trace: Trace, recording: ProgramRecorder, helpers: HelperTexts, output: ProgramOutput
 ) -> SystemExit | None:
-    """Runs a program, and records it to its end; returns the `SystemExit` that ended it, if any.
+    """Runs a program, and records it to its end; returns the `SystemExit` that ended it, if any. `output` emits what it prints.
 
     Raises:
         Exception: Any error that the program raises; it is recorded, too.
@@ -137,7 +146,7 @@ def play_program(
     limits.recorder = recording
     trace.listen(recording.event_alone)
     left: SystemExit | None = None
-    with recorded_failure(recording), ProgramOutput(limits) as output:
+    with recorded_failure(recording):
         try:
             run_text(source, file, limits=limits, folder=Path(file).parent, helpers=helpers)
         except SystemExit as error:
@@ -145,6 +154,16 @@ def play_program(
         output.finish()
     recording.fact("ended", {"by": "end" if left is None else "exit"})
     return left
+
+
+def _keep_all(recording: Recording, output: ToldOutput, ends: bool) -> None:
+    """Writes everything so far, as the model may be about to end its process; also a line without a line break, if it surely ends."""
+    if ends:
+        output.finish()
+    # In a thread, for which this waits no longer than it must: a signal handler of the model may have interrupted `flush` itself.
+    writing = Thread(target=recording.flush, daemon=True)
+    writing.start()
+    writing.join(PATIENCE)
 
 
 @contextmanager

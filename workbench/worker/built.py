@@ -281,6 +281,10 @@ class BuiltRun:
         self._conclude()
         self._conductor.end("ended", ENDINGS[self._end[1]])
 
+    def finish_output(self) -> None:
+        """Traces an unfinished line."""
+        self._simulation.event_log.stdout.finish()
+
     def flush(self) -> None:
         """Writes what is still to be recorded."""
         if self._recording is not None:

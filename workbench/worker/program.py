@@ -66,6 +66,7 @@ class ProgramRun:
         self._seed = fresh_seed() if start.seed is None else start.seed
         self._recording: Recording | None = None
         self._limits = RunLimits()
+        self._output: ProgramOutput | None = None
         self._clock: int = 0
         self._furthest: int = 0
         self._rush: int | None = None
@@ -163,6 +164,7 @@ class ProgramRun:
         exited: SystemExit | None = None
         try:
             with helpers_of(conductor.link, self._helpers) as helpers, ProgramOutput(limits) as output:
+                self._output = output
                 helpers.heard = self._keep_helpers
                 if not self._again:
                     exited = self._run_text(limits, helpers)
@@ -354,6 +356,11 @@ class ProgramRun:
         if over or to < self._clock:
             self._again = True
             raise _Again
+
+    def finish_output(self) -> None:
+        """Traces an unfinished line."""
+        if self._output is not None:
+            self._output.finish()
 
     def flush(self) -> None:
         """Writes what is still to be recorded."""
