@@ -287,6 +287,9 @@ def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: py
 CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
 
 
+BROKEN_OFF = "the recording says that the run was broken off at 0.25 s, which cannot be checked"
+
+
 def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY, encoding="utf-8")
@@ -295,7 +298,7 @@ def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path
     with Recorded(path) as recorded:
         comparison = replay(recorded)
     assert comparison.events > 20
-    assert str(comparison) == f"agrees as far as it goes: {comparison.events} events; the run was broken off at 0.25 s"
+    assert str(comparison) == f"agrees as far as it goes: {comparison.events} events; {BROKEN_OFF}"
 
 
 def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Path) -> None:
@@ -312,7 +315,8 @@ def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Pat
         assert (same.difference, same.ticks, same.unfinished) == (None, 60, 0)
         assert same.events == recorded.event_count
         other = replay(recorded, lambda: driving(seed=2))
-        assert other.difference == "recorded: period 0.01 s, timestep 0.002 s, seed 1; now: period 0.01 s, timestep 0.002 s, seed 2"
+        assert other.difference is not None
+        assert re.match(r'event 1 at 0 s; recorded: .*"seed": 1, .*; now: .*"seed": 2, ', other.difference)
 
 
 def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

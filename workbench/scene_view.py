@@ -13,8 +13,8 @@ import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 
+from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
-from workbench.compiled import loaded
 from workbench.curves import INTEGRATION
 from workbench.look import Look
 from workbench.overlays import OVERLAYS, Drawn, Overlay

@@ -43,8 +43,8 @@ function Replayed({ run }) {
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = told.agrees === true ? "Every byte agrees." : told.agrees === false ? "It differs." : "It cannot tell.";
-  const text = told.text.replace(/^(every byte agrees|differs): /, "");
+  const head = told.agrees === true ? (told.text.startsWith("agrees as far") ? "It agrees as far as it goes." : "Every byte agrees.") : told.agrees === false ? "It differs." : "It cannot tell.";
+  const text = told.text.replace(/^(every byte agrees|agrees as far as it goes|differs): /, "");
   return html`<div class="replayed" role="status"><b class=${told.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
 }
 

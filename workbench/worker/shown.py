@@ -13,19 +13,19 @@ from actr3d.camera import EXTENT_FIELDS, CameraParameters, Sight, glance
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import Actr3dError, did_you_mean
 from actr3d.simulation import Simulation
+from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
 from actr3d.world import Aperture, Floor, World
 from actr3d.world.body import Body
+from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors import SENSORS
 from actr3d.world.sensors.touch import present
 from workbench import protocol as say
-from workbench.compiled import loaded, saved
 from workbench.curves import Curves, stretch
 from workbench.loader import Parameter
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.answers import answer
 from workbench.worker.past import Past
-from workbench.worker.surroundings import surroundings
 from workbench.worker.tops import Top
 from workbench.worker.walked import Walked
 from workbench.worker.watch import Touches
