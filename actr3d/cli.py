@@ -29,6 +29,14 @@ from actr3d.running.run import run_model
 from actr3d.trace import LEVELS, Trace, TraceEvent
 from actr3d.values import to_json
 
+BENCHMARKS = {
+    "core": "actr3d.bench.core",
+    "camera": "actr3d.bench.camera",
+    "lockstep": "actr3d.bench.lockstep",
+    "aperture": "actr3d.experiment.aperture.benchmark",
+}
+"""By name, the module whose `main` runs a benchmark; it is imported when it is needed, because most are slow to import."""
+
 
 def event_line(event: TraceEvent) -> str:
     """Returns an event as a human-readable line."""
@@ -97,7 +105,7 @@ def _keep_output(out: TextIO, printed: ModelOutput | None, record: str | None, l
 
 def _settings(options: argparse.Namespace, fields: Sequence[Field]) -> dict[str, Any]:
     """Returns the parameter values given on the command line."""
-    return {**read_settings(options.set, fields), **read_options(options.words, fields, options.parser._option_string_actions)}
+    return {**read_settings(options.set, fields), **read_options(options.words, fields, options.general)}
 
 
 def _help(run: argparse.ArgumentParser, file: str | None) -> int:
@@ -192,21 +200,24 @@ def _parser() -> argparse.ArgumentParser:
     run = commands.add_parser(
         "run",
         help="run a model file",
-        description="Runs a Python ACT-R model file, unchanged, or what a model file builds; run FILE --help tells of its own options.",
+        description="Runs a Python ACT-R model file, unchanged, or what a model file builds. "
+        "`run FILE --help` also lists the options of the file.",
         epilog="Exit codes: 0 the model ran, whatever came of it; 1 it failed, or the output could not be written; 2 wrong options; "
         "130 it was interrupted.",
         add_help=False,
         allow_abbrev=False,
     )
     run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
-    run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file")
-    run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)")
-    run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest")
-    run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)")
-    run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too")
-    run.add_argument("--record", metavar="RECORDING", help="record everything to this new file")
-    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds")
-    run.set_defaults(function=run_command, parser=run)
+    general = [
+        run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file"),
+        run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)"),
+        run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest"),
+        run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)"),
+        run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too"),
+        run.add_argument("--record", metavar="RECORDING", help="record everything to this new file"),
+        run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds"),
+    ]
+    run.set_defaults(function=run_command, parser=run, general=[name for option in general for name in option.option_strings])
     again = commands.add_parser(
         "replay",
         help="run a recording again",
@@ -221,21 +232,27 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=["core", "camera", "lockstep", "aperture"], help="what to measure")
-    bench.add_argument("--trials", type=_count, metavar="N", help="of the aperture: how many trials a cell (30)")
+    bench.add_argument("name", choices=BENCHMARKS, help="what to measure")
+    bench.add_argument("--trials", type=_count, metavar="N", help="aperture only: number of trials per cell (30)")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
-    soak.set_defaults(function=_bench, name="soak")
+    soak.set_defaults(function=_soak)
     return parser
 
 
 def _bench(options: argparse.Namespace) -> int:
-    bench: Any = importlib.import_module(f"actr3d.bench.{options.name}")
-    if options.name == "aperture":
+    bench: Any = importlib.import_module(BENCHMARKS[options.name])
+    if options.trials is not None and options.name == "aperture":
         return bench.main(json_output=options.json, trials=options.trials)
     return bench.main(json_output=options.json)
+
+
+def _soak(options: argparse.Namespace) -> int:
+    from actr3d.bench import soak
+
+    return soak.main(json_output=options.json)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

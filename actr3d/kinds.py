@@ -46,7 +46,7 @@ KINDS: Mapping[str, Kind] = {
         "chunk [texts]",
         "a buffer holds this chunk now (its slots), or none; `texts` is what patterns compare lists by",
     ),
-    "run": Kind("all", "top model", "limit", "the model is told to run for so long [s]; without limit where there is none"),
+    "run": Kind("all", "top model", "limit", "a run begins, for this time [s]; None without a limit"),
     "stop": Kind(
         "all", "top model", "by [error]", "that ends: «limit», «until», «stop», «done» (nothing is left to do) or «error», with its class"
     ),

@@ -58,11 +58,11 @@ def standard_output(apart: bool) -> Generator[TextIO]:
     """
     out = sys.stdout
     try:
-        ours = out.fileno() == 1
+        reserved = out.fileno() == 1
         out.flush()
     except (OSError, ValueError):
-        ours = False
-    if not ours:
+        reserved = False
+    if not reserved:
         yield out
     elif apart:
         with _moved(out) as number:

@@ -65,17 +65,17 @@ class ModelOutput(io.TextIOWrapper):
 
 
 class _BothBytes(io.BufferedIOBase):
-    """The byte stream of a `ToldOutput`."""
+    """The byte stream of a `TeeOutput`."""
 
-    def __init__(self, told: ToldOutput, out: Any) -> None:
-        self._told = told
+    def __init__(self, tee: TeeOutput, out: Any) -> None:
+        self._tee = tee
         self._out = out
 
     def writable(self) -> bool:
         return True
 
     def write(self, data: Any, /) -> int:
-        return self._told.take(self._out.write, data, bytes(data))
+        return self._tee.take(self._out.write, data, bytes(data))
 
     def flush(self) -> None:
         self._out.flush()
@@ -84,7 +84,7 @@ class _BothBytes(io.BufferedIOBase):
         """Does nothing, as in `_Lines`."""
 
 
-class ToldOutput:
+class TeeOutput:
     """A `sys.stdout` for a `with` block, which writes to the previous output, and also passes on each line.
 
     Args:

@@ -78,7 +78,7 @@ class Run(Protocol):
         """The current time [us]; None if the run is over and deleted, or has become part of another run."""
         ...
 
-    def tell(self, trace: Trace) -> None:
+    def emit_state(self, trace: Trace) -> None:
         """Emits the current state to a trace."""
         ...
 
@@ -192,15 +192,18 @@ class Trace:
             raise ParameterError(f"Trace.listen(level): a trace of level '{self.level}' has no events of level '{level}'")
         self._listeners = (*self._listeners, (listener, rank))
         self._set_flags()
+        active = [run for run in self._runs if run.now_us() is not None]
+        if not active:
+            return
         opening = Trace(LEVELS[rank], keep=False)
-        opening._listeners = ((listener, rank),)
-        opening._set_flags()
-        for run in self._runs:
-            if run.now_us() is not None:
-                run.tell(opening)
-        if opening._failures:
-            self.ignore(listener)
+        opening.listen(listener)
+        for run in active:
+            run.emit_state(opening)
+        try:
             opening.raise_failures()
+        except Exception:
+            self.ignore(listener)
+            raise
 
     def ignore(self, listener: Listener) -> None:
         """Removes a listener.

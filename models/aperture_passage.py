@@ -1,32 +1,33 @@
-"""A person walks to a doorway, and turns the shoulders where it is too narrow.
+"""A person walks to a doorway, and turns the shoulders if it is too narrow.
 
-People turn their shoulders to pass an aperture that is narrower than 1.30 times their shoulders, and judge from afar that they
-can pass as they are where it is wider than 1.16 times (Warren & Whang 1987, JEP:HPP 13). What counts is the ratio of the aperture
-to the body. The walker does not know the size of its own body at first: it learns it.
+People turn their shoulders to pass an aperture that is narrower than 1.30 times their shoulder width. From a distance, they judge
+that they can pass without turning if it is wider than 1.16 times that width (Warren & Whang 1987, JEP:HPP 13). What counts is the
+ratio of the aperture to the body. The walker does not know the size of its own body at first: it learns it.
 
 The work is one planning unit (SGOMS) with four unit tasks:
 
-1. *Learn*: it turns its shoulders each way several times. How wide it is in each posture goes to declarative memory.
-2. *Judge*: is there an opening that is wide enough for it as it is? If not, it remembers how narrow it can make itself, and looks
-   for an opening of that size. If there is none, it declines.
+1. *Learn*: the walker turns its shoulders to each side several times. Its width in each posture is stored in declarative memory.
+2. *Judge*: is there an opening that is wide enough to pass without turning? If not, the walker remembers how narrow it can make
+   itself, and looks for an opening of that size. If there is none, it declines.
 3. *Approach*: it walks. Its eyes, a parallel system with productions of 10 ms, look for obstacles ahead.
-4. *Squeeze*: an obstacle interrupts the walk. It turns its shoulders at a constant speed until vision finds an opening that is wider
-   than the body feels by some part. Then it walks on, passes, and turns back (*leave*).
+4. *Squeeze*: an obstacle interrupts the walk. The walker turns its shoulders at a constant speed until vision finds an opening that
+   is wider than its felt width by a margin. Then it walks on, passes, and turns back (*leave*).
 
 The two variants
 ----------------
-The `human` variant (the default) looks first. It turns only below 1.30 times its width, from 1.6 s before the wall on, hips and legs
-with the shoulders, until there is as much room beside it as beside a person who need not turn: 0.30 of its shoulders' width. The
-faster it walks the faster it turns. Its body is as much bigger as its shoulders are wider.
+The `human` variant (the default) looks before it turns. It turns only if the opening is narrower than 1.30 times its width. The turn
+starts 1.6 s before the wall; hips and legs turn with the shoulders, until there is as much room on the sides as a person has who need
+not turn: 0.30 of the shoulder width. The faster it walks, the faster it turns. The size of its body is proportional to its shoulder
+width.
 
-The `replication` variant follows the original ACT-R 3D (facts about its code and its trials: human-data). What is within 3 times its
-width starts a turn of 240 degrees a second, 120 with the torso alone, whatever the size of the opening. It stops with each answer
-of its vision, and turns on where that is no. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one each 175 ms.
-The original's own means lie there, and a fast walker, who has time for fewer pieces, turns less. It turns by about 18 degrees before
-any doorway. Two things are not facts but inferred from these means: that it turns in pieces, and how deep the trunk is.
+The `replication` variant follows the original ACT-R 3D (facts about its code and its trials: human-data). An object within 3 times its
+width starts a turn at 240 degrees/s, of which the torso alone contributes 120, whatever the size of the opening. The turn stops at
+each answer of vision, and continues if no opening was found. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one
+every 175 ms. The original's means are at these angles, and a fast walker turns less because it has time for fewer pieces. It turns by
+about 18 degrees before any doorway. Two things are inferred from these means: the turn in pieces, and the depth of the trunk.
 
-Both go on looking until the doorway's edges are beside them. Where it becomes narrower they turn again (people stand still for that
-where they have come near), or stop. What changes less than 0.3 s before they are there is noticed too late.
+Both variants keep looking until the edges of the doorway are beside them. If the doorway becomes narrower they turn again, or stop;
+the `human` variant stands still while it turns if it is near. A change less than 0.3 s before they arrive is noticed too late.
 
 What to expect
 --------------
@@ -34,7 +35,7 @@ What to expect
 - An aperture of 0.6 m is passed without a turn, but with a turn by the `large` group.
 - An aperture of 0.25 m is declined.
 
-The run begins with about 8 s of learning. At its end the tab *Buffers* shows what the world measured.
+The run begins with about 8 s of learning. At its end the tab *Buffers* shows the result, as measured in the world.
 
 What to try
 -----------
@@ -54,69 +55,72 @@ from annotated_types import Ge, Gt, Le
 
 from actr3d.actr import *
 from actr3d.configuration import Configuration, Live
+from actr3d.experiment.aperture import Passage
 from actr3d.motor import Motor
 from actr3d.sgoms import SGOMS, Ordered, Situated
-from actr3d.simulation import Passage, Simulation
+from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
 WIDTHS = {"small": 0.404, "large": 0.484}
 SPEEDS = {("small", "normal"): 1.29, ("small", "fast"): 1.61, ("large", "normal"): 1.28, ("large", "fast"): 1.77}
 SHOULDERS, CHEST = 0.259, 0.563
-"""How wide shoulders are as a part of the height (Drillis & Contini 1966), and how deep the chest is as one of the shoulders' width:
-0.25 m (ANSUR II, 2012) at 0.444 m. So whoever has wider shoulders is bigger all over."""
+"""Shoulder width as a fraction of the height (Drillis & Contini 1966), and depth of the chest as a fraction of the shoulder width:
+0.25 m (ANSUR II, 2012) at 0.444 m. All sizes of a body are proportional to its shoulder width."""
 
 TORSO, CLAVICLE, SIDEWAYS = 60, 20, 80
-"""How far the replication's torso and the shoulders on it turn, and how far a person does [degrees].
+"""The greatest turn of the replication's torso, of the shoulders relative to it, and of a person [degrees].
 Source: the original's limits of 20 and 80 (human-data)."""
 NECK = 60
-"""How far the head looks back over a turned body [degrees]; the eye does the rest. Source: the mannequin's limit."""
+"""The greatest turn of the head against a turned body [degrees]; the eye does the rest. Source: the mannequin's limit."""
 BEARING = 19.6
-"""What is further off the way ahead is no obstacle [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
+"""Objects further from the walking direction are no obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
 TIGHT = 1.03
-"""An opening this many times as wide as it is lets it through, if it cannot turn any further. Ours."""
+"""If the walker cannot turn further, it passes an opening this many times its width. Source: chosen for this model."""
 BESIDE = 57.3
-"""What is further off the way ahead is beside it, not before it [degrees]. Ours."""
+"""Objects further from the walking direction are beside the walker, not ahead [degrees]. Source: chosen for this model."""
 FIELD = 2.6
-"""How wide the field of view is [rad]. Ours, to see the edges of a doorway until it is in it; people's is wider."""
+"""The width of the field of view [rad]. Source: chosen for this model, to see the edges of a doorway until it is reached; that of
+people is wider."""
 BEHIND = 0.8
-"""How far it goes on behind the middle of an opening [m]: more than its own depth, sideways. Ours."""
+"""How far the walker continues behind the middle of an opening [m]: more than the depth of a body turned sideways. Source: chosen
+for this model."""
 DOOR = "feature:opening height:>1.5 depth:>0.5"
-"""What one can walk through [m]. Source: the original's requests."""
+"""Openings that one can walk through [m]. Source: the original's requests."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(Configuration):
-    """What may be set."""
+    """The parameters of the model."""
 
     variant: Literal["human", "replication"] = "human"
-    """Who walks: a model of people, or the original ACT-R 3D's model."""
+    """The walker: a model of people, or a replication of the original ACT-R 3D's model."""
 
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
-    """The free width of the doorway [m]. Source: Warren & Whang (1987) have 0.35 to 0.70."""
+    """The free width of the doorway [m]. Source: Warren & Whang (1987) used 0.35 to 0.70."""
 
     group: Literal["small", "large"] = "small"
-    """Of which group its shoulders and its speed are: 0.404 or 0.484 m wide. Source: Warren & Whang (1987)."""
+    """The group that determines shoulder width (0.404 or 0.484 m) and speed. Source: Warren & Whang (1987)."""
 
     shoulder_width: Annotated[float, Ge(0.3), Le(0.7)] | None = None
-    """How wide its shoulders are [m]; None: the mean of its group."""
+    """The shoulder width [m]; None: the mean of the group."""
 
     condition: Literal["normal", "fast"] = "normal"
-    """How fast its group walks: small 1.29 or 1.61 m/s, large 1.28 or 1.77 m/s. Source: Warren & Whang (1987)."""
+    """The walking speed of the group: small 1.29 or 1.61 m/s, large 1.28 or 1.77 m/s. Source: Warren & Whang (1987)."""
 
     speed: Annotated[float | None, Ge(0.1), Le(3), Live("parameter", "walker.pace.wanted")] = None
-    """How fast it walks [m/s]; None: as its condition says."""
+    """The walking speed [m/s]; None: that of the condition."""
 
     margin: Annotated[float, Ge(0), Le(1)] | None = None
-    """By which part of its width an opening must be wider for it not to turn; None: 0.30 for people (Warren & Whang 1987), 0.139 in
-    the replication (human-data)."""
+    """The walker turns if an opening exceeds its width by less than this fraction; None: 0.30 for people (Warren & Whang 1987), 0.139
+    in the replication (human-data)."""
 
     noise: Annotated[float, Ge(0), Le(0.2)] = 0.01
-    """The standard deviation of seen distances, as a part of these. Source: ours; 0 judges exactly."""
+    """The standard deviation of perceived distances, as a fraction of them; 0 judges exactly. Source: chosen for this model."""
 
 
 class Wait(Model):
-    """Is over some time after it began; begun anew, it starts from the beginning."""
+    """A timer: `state` is «over» some time after `go`; another `go` restarts it."""
 
     state = "idle"
     begun = 0
@@ -135,7 +139,7 @@ class Wait(Model):
 
 
 class Arrival(Wait):
-    """Is over when so much of the way has been walked, at a speed that may change."""
+    """A timer that is over when a distance has been walked, at a speed that may change."""
 
     def walk(self, metres, speed):
         self.speed = speed
@@ -143,23 +147,23 @@ class Arrival(Wait):
         self.go(metres / speed)
 
     def change(self, speed, further=0):
-        """Takes another speed, and a way that is so much longer [m]."""
+        """Changes the speed [m/s], and makes the distance longer [m]."""
         if self.state == "on":
             self.walk(max(0, max(0, self.due - self.now()) * self.speed + further), speed)
 
 
 class Pace(Model):
-    """How fast it is to walk [m/s], which a user may change; None: as its condition says."""
+    """The wanted walking speed [m/s], which a user may change; None: that of the condition."""
 
 
 class Shoulders(Model):
-    """Turns torso and shoulders over legs that face the way they go, while the eye goes on looking ahead."""
+    """Turns torso and shoulders, while the legs and the eye keep pointing in the walking direction."""
 
     groups = "torso", "head", "left_shoulder", "right_shoulder"
     posture = "rotate_torso"
 
     def turn(self, part, rate):
-        """Turns them to a part of all that they can be turned, to the side that was chosen [degrees/s]."""
+        """Turns them to a fraction of their greatest turn, to the chosen side, at a rate [degrees/s]."""
         motor, angle = self.parent.motor, self.side * part
         motor.rotate_torso(angle * TORSO, rate)
         motor.rotate("head", "yaw", -angle * TORSO, rate)
@@ -167,7 +171,7 @@ class Shoulders(Model):
         motor.rotate("right_shoulder", "yaw", angle * CLAVICLE, rate)
 
     def change(self, rate):
-        """Turns on at another rate, if they are being turned to the doorway."""
+        """Continues at another rate [degrees/s], if they are turning for a narrow doorway."""
         if self.parent.b_context["way"] == "narrow" and self.parent.motor[f"{self.groups[0]}_busy"]:
             self.turn(1, rate)
 
@@ -176,12 +180,12 @@ class Shoulders(Model):
             self.parent.motor.stop(group)
 
     def turned(self):
-        """Returns whether the torso is felt to be turned as far as it can be."""
+        """Returns whether the torso is felt to be turned as far as possible."""
         return abs(float(self.parent.motor.torso_yaw_angle)) >= TORSO
 
 
 class WholeBody(Shoulders):
-    """Turns the shoulders with all of the body, hips and legs too, which go on the same way."""
+    """Turns the shoulders with the whole body, hips and legs included; the walking direction stays the same."""
 
     groups = "stance", "head", "eye"
     posture = "stance_yaw"
@@ -196,12 +200,12 @@ class WholeBody(Shoulders):
         return self.angle() >= SIDEWAYS
 
     def angle(self):
-        """Returns how far the body is felt to be turned [degrees]."""
+        """Returns the felt turn of the body [degrees]."""
         return abs(float(self.parent.motor.stance_yaw_angle))
 
 
 class Eyes(ACTR):
-    """Scans for obstacles ahead, asks for an opening where there is one, and lets the shoulders turn.
+    """Scans for obstacles ahead, asks for an opening when there is an obstacle, and turns the shoulders.
 
     Source of the times: productions 10 ms, a scan 50 ms, a search for obstacles 20 ms, a request 50 ms (human-data).
     """
@@ -220,7 +224,7 @@ class Eyes(ACTR):
         self.look_before(self.parent.radius, self.parent.wanted(float(width)))
 
     def look_before(self, radius, width):
-        """Searches for what is before somebody of a width: the edges of an opening that is wide enough are beside that."""
+        """Searches for objects ahead of a walker of a width [m]; the edges of an opening that is wide enough are beside these."""
         self.parent.vision.request("feature:obstacle", bottom_up=True, radius=radius, bearing=BESIDE, aside=width / 2)
 
     def first_alert(b_turn="watch:yes way:unknown", b_context="way:open", b_visual="feature:obstacle distance:?far"):
@@ -251,7 +255,7 @@ class Eyes(ACTR):
             motor.walk(self.parent.speed)
 
     def doubt(b_turn="do:wait way:clear", vision="busy:False error:True", motor="width:?width"):
-        """In a doorway, its edges are out of sight; else what was wide enough is so no longer."""
+        """No opening was found: either the walker is in the doorway, whose edges are out of sight, or the doorway is now too narrow."""
         self.look_before(self.parent.radius, self.parent.wanted(float(width)))
         b_turn.modify(do="doubt")
 
@@ -275,7 +279,7 @@ class Eyes(ACTR):
 
 
 class EyesInPieces(Eyes):
-    """Stops turning with each answer, scans again, and turns on."""
+    """Stops turning at each answer of vision, scans again, and continues to turn."""
 
     def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True"):
         shoulders.stop()
@@ -295,7 +299,7 @@ class EyesInPieces(Eyes):
 
 
 class EyesAtOnce(Eyes):
-    """Turns on until an opening is found, and stands still meanwhile where it has come near."""
+    """Turns until an opening is found; near the wall, it stands still while it turns."""
 
     def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:False", near="state:!over"):
         b_turn.modify(do="turn")
@@ -339,10 +343,10 @@ class EyesAtOnce(Eyes):
 
 
 class Walker(SGOMS):
-    """What both variants have in common.
+    """The common part of both variants.
 
-    Source of the times: productions 50 ms, no latency of declarative memory (human-data); of their standard deviation of 20 ms: that
-    of the original's angle before wide doorways, 4.7 degrees at 240 degrees a second.
+    Source of the times: productions 50 ms, no latency of declarative memory (human-data). Source of the standard deviation of 20 ms:
+    the original's angle before wide doorways has one of 4.7 degrees, at 240 degrees/s.
     """
 
     b_visual = Buffer()
@@ -363,7 +367,7 @@ class Walker(SGOMS):
         b_context.set("way:open")
         b_plan_unit.set("planning_unit:pass_doorway")
 
-    # -- learning what its body is like
+    # -- learning the width of the body
 
     def swing_out(b_unit_task="unit_task:learn state:start", motor="busy:False"):
         b_method.set("method:swing left:4")
@@ -431,11 +435,11 @@ class Walker(SGOMS):
             motor.walk(self.speed)
 
     def go_at(self, speed):
-        """Takes a speed for its own [m/s]."""
+        """Sets the walking speed [m/s]."""
         self.speed = speed
 
     def nears(self, far):
-        """Expects to come too near to what is so far ahead [m], and returns whether it is so already."""
+        """Starts the timer for coming too near to an object at a distance [m]; returns whether it is too near already."""
         left = float(far) - self.stopping
         self.near.walk(max(0, left), self.speed)
         return left < 0
@@ -471,11 +475,11 @@ class Replication(Walker):
     shoulders = Shoulders()
     answer = "turn"
     passable = 1.139
-    stopping = 0.5  # where it has found no opening, it stops here [m]: ours, the original never did
+    stopping = 0.5  # without an opening, it stops at this distance [m]; chosen for this model, the original never stopped
     rate = swing = 120
 
     def wanted(self, width):
-        """Returns how wide an opening must be for it not to turn further [m]."""
+        """Returns the least width of an opening at which the walker need not turn further [m]."""
         fits = self.b_turn["way"] == "clear" or self.shoulders.turned()
         return (TIGHT if fits else 1 + self.margin) * width
 
@@ -483,61 +487,62 @@ class Replication(Walker):
 class Human(Walker):
     """A model of people.
 
-    It wants the same part of its shoulders' width as room, whatever its posture. It has three numbers that are not measured: when it
-    reacts, how fast it turns, and by how much it turns on. The last two let it turn more when it is fast.
+    It keeps the same margin in any posture, a fraction of its shoulder width. Three of its numbers are not measured: when it reacts,
+    how fast it turns, and how far it continues to turn. Because of the last two it turns more when it walks faster.
     """
 
     eyes = EyesAtOnce()
     shoulders = WholeBody()
     answer = "ask"
     passable = 1.16
-    swing = 120 * SIDEWAYS / TORSO  # to learn takes it no longer than the replication
+    swing = 120 * SIDEWAYS / TORSO  # learning takes as long as in the replication
 
     def go_at(self, speed):
-        """Takes a speed for its own [m/s], with what depends on it."""
+        """Sets the walking speed [m/s], and the values that depend on it."""
         super().go_at(speed)
-        # Who is turned sideways reaches half its width ahead.
+        # A body that is turned sideways reaches half its width ahead.
         self.stopping = max(ROOM * self.shoulder_width, self.shoulder_width / 2 + STOPPING * speed)
         self.radius = max(REACTION * speed, FAR)
         self.rate = TURNING * speed
 
     def wanted(self, width):
-        """Returns how wide an opening must be for it not to turn further [m]."""
+        """Returns the least width of an opening at which the walker need not turn further [m]."""
         if self.shoulders.turned():
             return TIGHT * width
         if self.shoulders.angle() <= 1:
             less = 0
-        else:  # what was enough is so too where it is seen a little narrower
+        else:  # an opening that was wide enough still is if it is perceived a little narrower
             less = 2 * ON if self.b_turn["way"] == "clear" else ON
         return max(TIGHT * width, width + (self.margin - less) * self.shoulder_width)
 
 
 REACTION = 1.6
-"""How long before it would reach the wall a person reacts to it [s]. Ours: enough for turning as far as it can. Who walks so
-slowly that this is nearer than `FAR` would not have done so, or have the doorway's edges beside it, out of sight: `FAR` counts then."""
+"""A person reacts to a wall this long before reaching it [s], but at least at the distance `FAR`: nearer than that, a slow walker could
+not turn fully, or would have the edges of the doorway out of sight. Source: chosen for this model; long enough for a full turn."""
 FAR = 2.0
-"""How far ahead people look at least [m]. Ours: 1.3 m for turning as far as it can (`TURNING`), 0.5 for stopping, and 0.2 for reacting."""
+"""The least distance at which people react [m]. Source: chosen for this model: 1.3 m for a full turn (`TURNING`), 0.5 for stopping,
+and 0.2 for reacting."""
 TURNING = 62.0
-"""How far a person's shoulders turn while the legs go on by a metre [degrees/m]: 80 degrees a second at 1.29 m/s. Ours: enough for
-turning sideways within `REACTION`. That it grows with the speed is ours, too: people turn more when they are fast."""
+"""The turn of a person's shoulders for each metre that the legs walk [degrees/m]: 80 degrees/s at 1.29 m/s. Source: chosen for this
+model, fast enough to turn sideways within `REACTION`; also that it grows with the speed, because people turn more when they are fast."""
 ON = 0.055
-"""By which part of the shoulders' width the room still grows after it is seen to be enough, since a person who turns does not stop
-at once. Ours."""
+"""The fraction of the shoulder width by which the room still grows after it is seen to be enough, because a turning person does not
+stop at once. Source: chosen for this model."""
 ROOM = 0.9
-"""How many times its shoulders' width a person keeps away at least, until there is a way through. Ours: half of it is what turns, and
-the edges of a doorway are beside it."""
+"""The least distance that a person keeps until there is a way through, in shoulder widths. Source: chosen for this model: half of the
+width is what turns, and the edges of a doorway are beside it."""
 STOPPING = 0.25
-"""How long it takes a person to see that there is no way through, and to stop [s]. Ours: three answers of its vision at most."""
+"""The time in which a person sees that there is no way through, and stops [s]. Source: chosen for this model: three answers of vision."""
 RADIUS = 3.0
-"""Within how many times its width an obstacle alerts the replication. Source: human-data."""
+"""The distance at which an obstacle alerts the replication, in shoulder widths. Source: human-data."""
 HEIGHT = 1.714
-"""How tall the replication's body is, in both groups [m]. Source: shoulders of 0.444 m, the mean of both, over `SHOULDERS`."""
+"""The height of the replication's body, in both groups [m]. Source: shoulders of 0.444 m, the mean of both, over `SHOULDERS`."""
 TRUNK = 0.11
-"""How deep the replication's trunk is [m]. Ours: of what fits the original's means best; how deep it was is not known."""
+"""The depth of the replication's trunk [m]. Source: the value that fits the original's means best; the original's depth is not known."""
 
 
 def body_of(parameters: Parameters) -> Mannequin:
-    """Returns who walks."""
+    """Returns the body of the walker."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
     if p.variant == "human":
@@ -546,7 +551,7 @@ def body_of(parameters: Parameters) -> Mannequin:
 
 
 def mind_of(parameters: Parameters) -> Walker:
-    """Returns the mind of who walks."""
+    """Returns the agent in that body."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
     given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise}

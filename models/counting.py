@@ -38,7 +38,7 @@ class Counting(ACTR):
         memory.request("count ?now ?next")
         goal.modify(task="count")
 
-    # ?now stands in both patterns: what was remembered must be about the number that the goal is at.
+    # ?now is in both patterns: the retrieved fact must be about the number in the goal.
     def count_on(goal="task:count number:?now last:!?now", retrieval="count ?now ?next"):
         print(now)
         goal.modify(number=next)

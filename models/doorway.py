@@ -1,21 +1,21 @@
-"""Walks through a doorway, and turns the shoulders where they would not fit otherwise.
+"""Walks through a doorway, and turns the shoulders if the doorway is too narrow.
 
 The agent walks its body towards a doorway 7 m away. Every 100 ms it looks: the view has the edges of what is visible, without
 names. This is the raw view, which steps outside what a vision module gives an agent; aperture_passage.py does without it.
-Beside the middle of the screen it finds the nearest edge to the left and to the right, and from their distances
-and angles how wide the gap is. At 1.5 m it decides: a gap narrower than 1.3 times its shoulders is passed sideways (Warren
+It finds the nearest edges to the left and to the right of the middle of the screen, and computes the width of the gap
+from their distances and angles. At 1.5 m it decides: a gap narrower than 1.3 times its shoulders is passed sideways (Warren
 and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it turns back and stops.
 
 What to expect
 --------------
-With a doorway of 0.5 m it turns its shoulders, and passes without a touch. With 0.8 m it walks straight on. The walk takes about 7 s.
+With a doorway of 0.5 m it turns its shoulders, and touches nothing. With 0.8 m it walks straight on. The walk takes about 7 s.
 
 What to try
 -----------
 - `width = 0.5`: turns its shoulders; `width = 0.8`: walks straight on.
 - `width = 0.6, speed = 2`: has less time to turn.
 - `width = 0.2`: too narrow even for a body turned sideways: it walks on against the wall, until you stop it.
-- Move the slider of the aperture while it walks: what it has decided already stays.
+- Move the slider of the aperture while it walks: a decision is not changed.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ SIDEWAYS = {"pelvis_yaw": 0.6, "torso_yaw": 0.75}
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(Configuration):
-    """What may be set."""
+    """The parameters of the model."""
 
     width: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
     """The free width of the doorway [m]."""
@@ -75,7 +75,7 @@ class Walker(ACTR):
                 print(f"{self.now():.2f} s: a gap of {width:.2f} m")
 
     def gap(self, view):
-        """Returns how wide the gap ahead is and how far away [m], as the middle row of the view tells; None without one."""
+        """Returns the width and the distance of the gap ahead [m], from the middle row of the view; None if there is no gap."""
         middle = view.as_array()[view.as_array()["row"] == view.rows // 2]
         left, right = middle[middle["x2"] < 0.5], middle[middle["x1"] > 0.5]
         if len(left) == 0 or len(right) == 0:

@@ -12,11 +12,10 @@ from typing import Any
 
 import pytest
 
-from actr3d.bench import aperture
-from actr3d.bench.constraints import Findings, equivalence, turning_point
-from actr3d.bench.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trial
 from actr3d.cli import main
-from actr3d.simulation import PassageResult
+from actr3d.experiment.aperture import PassageResult, benchmark
+from actr3d.experiment.aperture.constraints import Findings, equivalence, turning_point
+from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trial
 
 
 def test_the_originals_means_are_there() -> None:
@@ -150,11 +149,11 @@ def test_where_it_can_pass_is_one_of_them() -> None:
 def test_a_cell_that_nobody_reached_is_no_agreement() -> None:
     original = original_means()
     found = dict(original)
-    assert aperture.root_mean_square(found, original) == 0
+    assert benchmark.root_mean_square(found, original) == 0
     found["small", "normal", 0.40] += 28**0.5
-    assert aperture.root_mean_square(found, original) == pytest.approx(1)
+    assert benchmark.root_mean_square(found, original) == pytest.approx(1)
     del found["small", "normal", 0.40]
-    assert aperture.root_mean_square(found, original) == math.inf
+    assert benchmark.root_mean_square(found, original) == math.inf
 
 
 @pytest.mark.parametrize(("rise", "code"), [(0.0, 0), (9.0, 1)])
@@ -171,7 +170,7 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
         said = ["can pass as it is" if judging and trial.ratio > 1.155 else "can pass turned" for trial in trials]
         return [Outcome(trial=trial, result=result(trial), said=text, cost=0.3) for trial, text in zip(trials, said, strict=True)]
 
-    monkeypatch.setattr(aperture, "run_trials", run)
+    monkeypatch.setattr(benchmark, "run_trials", run)
     assert main(["bench", "aperture", "--trials", "5"]) == code
     told = capsys.readouterr().out
     assert f"root mean square difference {rise:.2f} degrees" in told
@@ -179,7 +178,7 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
     assert told.count("\nmet ") == 8
     turned = {(trial.group, trial.condition, trial.aperture) for trial in experiment("human", 5) if (good(trial).wall_angle_deg or 0) > 5}
     assert told.split("human: angle")[1].count(" (7.0)") == len(turned)
-    assert "mean margin of who turned 7.0 cm at 40, 7.0 cm at 45, 7.0 cm at 50, 7.0 cm at 55, 7.0 cm at 60" in told
+    assert "mean margin of agents that turned 7.0 cm at 40, 7.0 cm at 45, 7.0 cm at 50, 7.0 cm at 55, 7.0 cm at 60" in told
     assert "5 trials a cell; a trial takes 300 ms of one processor for 11.0 s simulated" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == code
     measured = json.loads(capsys.readouterr().out)
@@ -211,7 +210,7 @@ def test_trials_that_fail_are_told_and_count(monkeypatch: pytest.MonkeyPatch, ca
             outcomes.append(Outcome(trial=trial, result=result, said=said, cost=0.3))
         return outcomes
 
-    monkeypatch.setattr(aperture, "run_trials", run)
+    monkeypatch.setattr(benchmark, "run_trials", run)
     assert main(["bench", "aperture", "--trials", "5"]) == 1
     told = capsys.readouterr().out
     assert "replication: did not pass, or touched the wall:\n  large fast 40 cm: 2 of 5 (stopped, touched the wall)\n" in told

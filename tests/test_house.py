@@ -40,13 +40,13 @@ PARTS: dict[str, set[str]] = {
     "recording": BASE | BODILY,
     "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
     "running": BASE | BODILY | SENSES | RUNNING | {"printing"},
-    "experiment": BASE | BODILY | SENSES | RUNNING,
+    "experiment": BASE | BODILY | SENSES | RUNNING | {"running"},
     "bench": BASE | BODILY | SENSES | RUNNING | {"running", "experiment"},
     "printing": set(),
     "output": {"printing"},
     "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "output", "printing"},
     "__main__": {"cli"},
-    "models": BASE | BODILY | SENSES | RUNNING,
+    "models": BASE | BODILY | SENSES | RUNNING | {"experiment"},
 }
 """Every part of the library, and the parts that it may import."""
 NOT_IN_THE_CORE = {"numpy", "numba", "scipy", "mujoco", "trimesh"}

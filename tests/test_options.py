@@ -22,7 +22,8 @@ from typing import Annotated, Literal
 from annotated_types import Gt, Le
 from actr3d.actr import *
 from actr3d.configuration import Configuration
-from actr3d.simulation import Passage, Simulation
+from actr3d.experiment.aperture import Passage
+from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,8 @@ from walkers import digest, driving
 
 from actr3d.actr.loading import load_text
 from actr3d.errors import SimulationError, WorldError
-from actr3d.simulation import Passage, PassageResult, Simulation
+from actr3d.experiment.aperture import Passage, PassageResult
+from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Car, Floor, Load, Mannequin, Scene
 
 WALKER = """

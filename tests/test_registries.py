@@ -13,9 +13,12 @@ from mujoco import MjSpec
 
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # it registers `view`
 import actr3d.world
+from actr3d.errors import SimulationError
+from actr3d.simulation import Simulation
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
 from actr3d.world.body import ACTUATORS, SENSORS, actuator, sensor
+from actr3d.world.world import WORLD_COMMANDS, world_command
 
 ARM = """<mujoco><worldbody><body name="arm"><joint name="elbow" axis="0 0 1"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="turn" joint="elbow"/></actuator></mujoco>"""
@@ -30,7 +33,7 @@ def example(kind: str) -> Embodied:
 @pytest.fixture
 def registered() -> Iterator[None]:
     """Forgets after a test what it has registered."""
-    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS)]
+    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS, WORLD_COMMANDS)]
     yield
     for registry, known in before:
         registry.clear()
@@ -112,3 +115,18 @@ def test_no_part_of_the_library_asks_for_a_kind_of_body() -> None:
             if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
                 asked = {name.id for name in ast.walk(node.args[1]) if isinstance(name, ast.Name)}
                 assert not asked & BODY_KINDS.keys(), f"{path.name}:{node.lineno}"
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_new_command_to_the_world_reaches_it_from_a_simulation() -> None:
+    @world_command
+    def lower(world: World, metres: float) -> None:
+        """Lowers the floor."""
+        heights.append((world, metres))
+
+    heights: list[tuple[World, float]] = []
+    simulation = Simulation(Scene(parts=(Floor(),)), {})
+    simulation.command("lower", 0.5)
+    with pytest.raises(SimulationError, match=r"command 'lower': .*missing 1 required"):
+        simulation.command(lower.__name__)
+    assert heights == [(simulation.world, 0.5)]

@@ -19,8 +19,8 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
 from actr3d.cli import event_line
 from actr3d.errors import ParameterError
+from actr3d.experiment.aperture import Passage
 from actr3d.kinds import KINDS, LEVELS
-from actr3d.simulation import Passage
 from actr3d.trace import Trace, TraceEvent
 
 ROOT = Path(__file__).parent.parent

@@ -111,7 +111,7 @@ class Room(Source):
 
     def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> None:
         self.curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
-        from actr3d.simulation.clearance import Clearance, Wall  # also loads the camera, which would slow the start
+        from actr3d.experiment.aperture.clearance import Clearance, Wall  # also loads the world, which would slow the start
 
         self._clearance = Clearance(model, data, geoms, Wall(**wall))
 

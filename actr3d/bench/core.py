@@ -100,10 +100,10 @@ def _cost(module: ModuleType, before: float, length: float) -> float:
     return seconds_of(lambda: agent.run(length)) / length
 
 
-def _against_peer(peer: Peer, source: str, name: str, before: float, ours: float, theirs: float) -> float:
+def _against_peer(peer: Peer, source: str, name: str, before: float, own_time: float, peer_time: float) -> float:
     """Returns the time that python_actr takes for the same simulated time, relative to this library."""
     own, other = load_text(source, f"{name}.py"), peer.load(source, name)
-    return ratio(lambda: _cost(other, before, theirs), lambda: _cost(own, before, ours))
+    return ratio(lambda: _cost(other, before, peer_time), lambda: _cost(own, before, own_time))
 
 
 def _counting(peer: Peer) -> tuple[float, float]:
@@ -115,13 +115,13 @@ def _counting(peer: Peer) -> tuple[float, float]:
         agent: Any = module.Agent()
         return seconds_of(lambda: agent.run(0.101)), seconds_of(lambda: agent.run(20))
 
-    theirs: list[tuple[float, float]] = []
-    ours: list[tuple[float, float]] = []
+    peer_costs: list[tuple[float, float]] = []
+    own_costs: list[tuple[float, float]] = []
     for _ in range(3):
-        theirs.append(cost(other))
-        ours += [cost(own) for _ in range(5)]  # so short that a single interruption would distort it
-    whole = median(map(sum, theirs)) / median(map(sum, ours))
-    return whole, median(counting for _, counting in theirs) / median(counting for _, counting in ours)
+        peer_costs.append(cost(other))
+        own_costs += [cost(own) for _ in range(5)]  # one is short, and a single interruption would distort it
+    whole = median(map(sum, peer_costs)) / median(map(sum, own_costs))
+    return whole, median(counting for _, counting in peer_costs) / median(counting for _, counting in own_costs)
 
 
 def _request_cost(size: int) -> Callable[[], float]:

@@ -20,7 +20,7 @@ def resident() -> float:
     for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
         if line.startswith("VmRSS:"):
             return int(line.split()[1]) / 1024
-    raise OSError("this system does not tell how much memory a process has")
+    raise OSError("this system does not report the memory of a process")
 
 
 def measure(ticks: int = TICKS) -> list[Figure]:

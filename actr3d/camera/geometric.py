@@ -15,10 +15,9 @@ from actr3d.camera.kernel.envelope import room_for
 from actr3d.camera.kernel.layout import EXTENT
 from actr3d.camera.kernel.scan import MOST_PIECES_OF_A_PATCH, scan
 from actr3d.camera.kernel.scene import room_for_scene
-from actr3d.camera.objects import objects_of
 from actr3d.camera.optics import optics_of
 from actr3d.camera.parameters import CameraParameters
-from actr3d.camera.topology import geoms_of, topology_of
+from actr3d.camera.topology import geoms_of, objects_of, topology_of
 from actr3d.camera.view import View
 from actr3d.errors import CameraError
 from actr3d.saying import warn_modeller
@@ -115,7 +114,7 @@ class GeometricCamera:
         return int(self._labels[object]) or None if object > 0 else None
 
     def state(self) -> tuple[int, ...]:
-        """Returns the labels given so far, to be passed to `restore`: all that a camera keeps from one look to the next."""
+        """Returns the labels that were given, to be passed to `restore`: all that a camera keeps from one look to the next."""
         return tuple(self._labels.tolist())
 
     def restore(self, state: tuple[int, ...]) -> None:

@@ -54,7 +54,7 @@ class Sight:
         return self._stands.get(view)
 
     def state(self) -> tuple[int, ...]:
-        """Returns the labels given so far."""
+        """Returns the labels that were given."""
         return self._camera.state()
 
     def restore(self, state: Any) -> None:

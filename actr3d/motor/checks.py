@@ -6,7 +6,7 @@ from weakref import WeakSet
 
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
-from actr3d.actr.procedural.production_system import ProductionSystem
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 from actr3d.errors import did_you_mean
 from actr3d.saying import warn_at
 
@@ -19,7 +19,8 @@ def check_patterns(motor: Model) -> None:
     for system in subtree(top_of(motor)):
         if not isinstance(system, ProductionSystem) or type(system) in _CHECKED:
             continue
-        of_motor = [production for production in system._productions if any(target is motor for target in production.context.values())]
+        productions = rules_of(system).productions
+        of_motor = [production for production in productions if any(target is motor for target in production.context.values())]
         if of_motor:
             _CHECKED.add(type(system))
         for production in of_motor:

@@ -8,7 +8,7 @@ from math import copysign, radians
 from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk
-from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.declarative.memory import Memory, collect
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
@@ -550,7 +550,7 @@ class Motor(WithParameters, Port):
         assert schema is not None
         posture = schema.posture(name, end, joint, {"width": self.width, "depth": self.depth, "height": self.height})
         if self._memory is not None:
-            self._memory._collect(Chunk(posture))
+            collect(self._memory, Chunk(posture))
         if self._buffer is not None:
             self._buffer.set(posture)
 

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.kernel.run_limits import RunLimits
-from actr3d.printing import ToldOutput
+from actr3d.printing import TeeOutput
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
     from actr3d.simulation.stdout_capture import StdoutCapture
 
 
-class ProgramOutput(ToldOutput):
+class ProgramOutput(TeeOutput):
     """Emits the lines of a program to its trace.
 
     Args:
@@ -29,7 +29,7 @@ class ProgramOutput(ToldOutput):
             self._limits.trace.emit(self._limits.clock(), "model", "output", {"text": text})
 
 
-class BuiltOutput(ToldOutput):
+class BuiltOutput(TeeOutput):
     """Sends the lines that a file prints while it builds a simulation to that simulation, which itself captures those of its agents."""
 
     def __init__(self) -> None:

@@ -16,7 +16,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
-from actr3d.printing import ToldOutput
+from actr3d.printing import TeeOutput
 from actr3d.recording import Recording
 from actr3d.running.complaint import failure
 from actr3d.running.declared import check_build, has_build
@@ -156,7 +156,7 @@ def play_program(
     return left
 
 
-def _keep_all(recording: Recording, output: ToldOutput, ends: bool) -> None:
+def _keep_all(recording: Recording, output: TeeOutput, ends: bool) -> None:
     """Writes everything so far, as the model may be about to end its process; also a line without a line break, if it surely ends."""
     if ends:
         output.finish()

@@ -14,12 +14,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr import ACTR, Buffer, Chunk, Memory
+from actr3d.actr.declarative.memory import buffer_of
 from actr3d.actr.kernel.class_members import Method
 from actr3d.errors import PlanError
 from actr3d.sgoms.checks import check_plans
 from actr3d.sgoms.levels import LEVELS, Interruption, Level, PlanUnitLevel, UnitTaskLevel
-from actr3d.sgoms.places import place_of, put_back
-from actr3d.sgoms.units import END, Ordered, PlanningUnit, Plans, Situated
+from actr3d.sgoms.units import END, START, Ordered, PlanningUnit, Plans, Situated
 
 if TYPE_CHECKING:  # names that bodies of productions use
     b_unit_task = Buffer()
@@ -38,6 +38,9 @@ IN_MEMORY = ("sgoms_resume", "sgoms_resume_again", "sgoms_take_up", "sgoms_forge
 """The productions that resume if places are stored in memory."""
 IN_BUFFER = ("sgoms_resume_from_buffer", "sgoms_lose_place")
 """The productions that resume if places are stored in a buffer."""
+
+PREFIXES = dict(zip(("plan", "task", "method", "operator"), LEVELS, strict=True))
+"""Prefixes of the slots of each level's chunk in a place, whose names would clash otherwise."""
 
 
 class SGOMS(ACTR):
@@ -98,7 +101,7 @@ class SGOMS(ACTR):
                     f"{kind}.{name}: must be the buffer that every SGOMS agent has; leave it out, or write {name} = SGOMS.{name} "
                     "to make a module with it"
                 )
-        if not isinstance(objects["DM"], Memory) or objects["DM"]._buffer is not objects["b_DM"]:
+        if not isinstance(objects["DM"], Memory) or buffer_of(objects["DM"]) is not objects["b_DM"]:
             raise PlanError(f"{kind}.DM: must be a memory with the buffer b_DM: DM = Memory(SGOMS.b_DM)")
 
     def _settable(self) -> set[str]:
@@ -139,7 +142,7 @@ class SGOMS(ACTR):
         """Saves the present place, and returns its number."""
         self._interruptions += 1
         number = str(self._interruptions)
-        place = place_of(self, plan, number, whole=self.resume_at == "method")
+        place = _place_of(self, plan, number, whole=self.resume_at == "method")
         if self.place_kept_in == "memory":
             self.DM.add(place)
         else:
@@ -155,7 +158,7 @@ class SGOMS(ACTR):
             else:
                 self.b_place.set(before)
         self._clear_below()
-        put_back(self, place)
+        _put_back(self, place)
 
     # -- productions: start
 
@@ -325,3 +328,45 @@ def _end(unit: str, situation: Any) -> Callable[..., None]:
         self._clear_below()
 
     return end
+
+
+def _place_of(agent: Any, plan: Chunk, number: str, *, whole: bool) -> dict[Any, Any]:
+    """Returns the chunk of an agent's present place.
+
+    Its slots: `saved` (the planning unit) and `place` (its number), which identify it, and those of the chunks
+    in the agent's buffers, as `plan_cue` or `task_state`.
+
+    Args:
+        agent: The agent.
+        plan: Its present planning unit.
+        number: The number of the interruption.
+        whole: Whether an interrupted unit task continues where it was; otherwise it starts again.
+    """
+    chunks: dict[str, dict[Any, Any]] = {"plan": dict(plan)}
+    task = agent.b_unit_task.chunk
+    if plan["state"] == "retrieving":
+        chunks["plan"]["state"] = "begin"  # the request is repeated on resumption
+    if task is not None and task["state"] == END:
+        chunks["task"] = dict(task)
+    elif task is not None and whole:
+        for prefix, buffer in list(PREFIXES.items())[1:]:
+            chunk = getattr(agent, buffer).chunk
+            if chunk is not None:
+                chunks[prefix] = dict(chunk)
+        chunks["task"]["resumed"] = "yes"
+    elif task is not None and plan["type"] == "situated":
+        chunks["plan"]["state"] = "choosing"
+    elif task is not None:
+        chunks["task"] = {**task, "state": START, "resumed": "yes"}
+    saved = {f"{prefix}_{slot}": value for prefix, slots in chunks.items() for slot, value in slots.items()}
+    return {"saved": plan["planning_unit"], "place": number, **saved}
+
+
+def _put_back(agent: Any, place: Chunk) -> None:
+    """Restores an agent's buffers from a place."""
+    for prefix, buffer in PREFIXES.items():
+        start = f"{prefix}_"
+        slots = {slot.removeprefix(start): value for slot, value in place.items() if isinstance(slot, str) and slot.startswith(start)}
+        if slots:
+            again = prefix == "task" and slots["state"] == START
+            getattr(agent, buffer).put_back(slots, "begun" if again else "resumed")

@@ -8,6 +8,7 @@ from typing import Any
 from actr3d.actr import ProductionSystem
 from actr3d.actr.kernel.tree import subtree
 from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import rules_of
 from actr3d.errors import PlanError, did_you_mean
 from actr3d.saying import warn_at
 from actr3d.sgoms.units import PlanningUnit
@@ -19,7 +20,7 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
     Raises:
         PlanError: If no production matches a unit task.
     """
-    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in part._productions]
+    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in rules_of(part).productions]
     productions = [p for p in productions if not p.name.startswith("sgoms_")]
     tasks = {task: name for name, unit in units.items() for task in unit.unit_tasks}
     taken = {name for production in productions for name in _named(production, "unit_task")}

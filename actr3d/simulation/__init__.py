@@ -4,9 +4,8 @@ from actr3d.actr.modules.port import BodyPort, Reading
 from actr3d.camera import View  # its package registers the sensor `view`
 from actr3d.simulation.commands import Command
 from actr3d.simulation.measure import Measure
-from actr3d.simulation.passage import Passage, PassageResult
+from actr3d.simulation.observers import Glimpse
 from actr3d.simulation.real_time import RunReport
 from actr3d.simulation.simulation import Simulation
-from actr3d.simulation.snapshot import Glimpse
 
-__all__ = ["BodyPort", "Command", "Glimpse", "Measure", "Passage", "PassageResult", "Reading", "RunReport", "Simulation", "View"]
+__all__ = ["BodyPort", "Command", "Glimpse", "Measure", "Reading", "RunReport", "Simulation", "View"]

@@ -10,7 +10,7 @@ from typing import Any, cast
 from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.simulation.agents import Agents
-from actr3d.world import World
+from actr3d.world.world import WORLD_COMMANDS, World
 
 Carry = Callable[..., None]
 
@@ -22,7 +22,7 @@ class Command:
     tick: int
     """Number of ticks before it."""
     word: str
-    """One of `ON_WORLD` or `ON_AGENTS`; any other word is for a body."""
+    """A command to the world (`WORLD_COMMANDS`), to the agents (`ON_AGENTS`), or to a body."""
     values: tuple[Any, ...]
     """Its positional arguments."""
     named: Mapping[str, Any]
@@ -57,7 +57,7 @@ class Command:
             self._call(ON_AGENTS[self.word], agents)
         elif not only_agents:
             if self.body is None:
-                self._call(ON_WORLD[self.word], world)
+                self._call(WORLD_COMMANDS[self.word], world)
             else:
                 world.bodies[self.body].set(self.word, *self.values, **self.named)
 
@@ -68,16 +68,10 @@ class Command:
             raise SimulationError(f"command '{self.word}': {error}") from error
 
 
-def _aperture(world: World, width: float, name: str = "aperture") -> None:
-    world.set_aperture_width(width, name)
-
-
 def _parameter(agents: Agents, path: str, value: Any) -> None:
     agents.set_parameter(path, value)
 
 
-ON_WORLD: dict[str, Carry] = {"aperture": _aperture}
-"""Commands to the world by word; they may change its state only, not the compiled model, so that a stored state contains it."""
 ON_AGENTS: dict[str, Carry] = {"parameter": _parameter}
 """Commands to the agents by word."""
 
@@ -93,9 +87,9 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
     for text in given:
         if not isinstance(text, str):
             raise SimulationError(f"a command is a word, and its body is named by one (got {text!r})")
-    if body is None and word not in ON_WORLD and word not in ON_AGENTS:
+    if body is None and word not in WORLD_COMMANDS and word not in ON_AGENTS:
         if len(bodies) != 1:
-            known = [*ON_WORLD, *ON_AGENTS]
+            known = [*WORLD_COMMANDS, *ON_AGENTS]
             say = f"name its body: {', '.join(bodies)}" if bodies else f"there are: {', '.join(known)}"
             raise SimulationError(f"no command '{word}'{did_you_mean(word, known)}; {say}")
         (body,) = bodies

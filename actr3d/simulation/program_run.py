@@ -97,13 +97,13 @@ class ProgramRun:
         present = self._present()
         return None if present is None else present.now_us()
 
-    def tell(self, trace: Trace) -> None:
+    def emit_state(self, trace: Trace) -> None:
         """Traces the present state of everything."""
         present = self._present()
         if present is not None:
             named = Trace(trace.level, keep=False)
             named.listen(lambda event: self._pass_on(event, trace))
-            present.tell(named)
+            present.emit_state(named)
 
     def stop(self) -> None:
         """Ends it with the present tick."""

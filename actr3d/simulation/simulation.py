@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import linecache
+import sys
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import asdict
 from functools import partial
@@ -13,19 +15,19 @@ from typing import Any, Literal
 from zlib import crc32
 
 from actr3d.actr.kernel.run_limits import RunLimits, fresh_seed
+from actr3d.actr.kernel.source_code import SOURCE
 from actr3d.clock import seconds
-from actr3d.errors import SimulationError
+from actr3d.errors import RecordingError, SimulationError
 from actr3d.recording import Recording
+from actr3d.recording.form import OWN_FACTS
 from actr3d.simulation.agents import Factory
 from actr3d.simulation.commands import Command
 from actr3d.simulation.event_log import EventLog, Listener
 from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.lockstep import Lockstep
 from actr3d.simulation.measure import Measure
-from actr3d.simulation.observers import Observer, Observers
-from actr3d.simulation.provenance import facts_of
+from actr3d.simulation.observers import Glimpse, Observer, Observers
 from actr3d.simulation.real_time import Ending, RealTime, RunReport
-from actr3d.simulation.snapshot import Glimpse
 from actr3d.simulation.surroundings import surroundings
 from actr3d.simulation.timeline import Timeline
 from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
@@ -254,8 +256,8 @@ class Simulation:
     def command(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> None:
         """Carries out a command at once, between two ticks: `command("aperture", 0.6)`, `command("walk", 1.2, body="walker")`.
 
-        It is a word of the world (`aperture`), of the agents (`parameter`, a path and a value), or any word of a body. It
-        is recorded with its tick, and repeated at the same tick when the run goes back and forward again. After the run
+        It is a command to the world (see `actr3d.world.world.WORLD_COMMANDS`), to the agents (`parameter`, a path and a value),
+        or to a body. It is recorded with its tick, and repeated at the same tick when the run goes back and forward again. After the run
         went back, a new command starts another future: what came after the present is forgotten, also by the recording.
 
         Args:
@@ -429,7 +431,31 @@ class Simulation:
         world = self.world
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": world.scene.timestep_us, "scene": world.fingerprint}
         own |= {"compiled": to_text(saved(world.mj_model)), "world": surroundings(world)}
-        return facts_of(own, given, [*self._embodied.values(), *self._bodiless.values()])
+        return _facts_of(own, given, [*self._embodied.values(), *self._bodiless.values()])
 
     def _end_recording(self) -> None:
         self.event_log.end_recording(whole=self.timeline.begun and not self.timeline.lockstep.broken)
+
+
+def _sources_of(factories: Iterable[Any]) -> dict[str, str]:
+    """Returns by name the text of every file that defines agents; files without text are left out."""
+    found: dict[str, str] = {}
+    for factory in factories:
+        module = sys.modules.get(getattr(factory, "__module__", ""))
+        name = getattr(module, "__file__", None)
+        if module is not None and name is not None and name not in found:
+            text = module.__dict__.get(SOURCE) or "".join(linecache.getlines(name))
+            if text:
+                found[name] = text
+    return found
+
+
+def _facts_of(own: Mapping[str, Any], given: Mapping[str, Any], factories: Iterable[Any]) -> dict[str, Any]:
+    """Returns the facts of a simulation: its own, those of its user, and the source of its agents.
+
+    Raises:
+        RecordingError: If the user gives a fact that a recording sets itself.
+    """
+    if taken := sorted({*own, *OWN_FACTS} & given.keys()):
+        raise RecordingError(f"a recording sets '{taken[0]}' itself; give that fact another name")
+    return {"kind": "simulation", **own, **given, "sources": given.get("sources") or _sources_of(factories)}

@@ -9,10 +9,10 @@ from threading import get_ident
 from types import TracebackType
 from typing import Any, Self
 
-from actr3d.printing import ToldOutput
+from actr3d.printing import TeeOutput
 
 
-class StdoutCapture(ToldOutput):
+class StdoutCapture(TeeOutput):
     """The `sys.stdout` of the agents while they run: traces each line, and writes new output to the former `sys.stdout`.
 
     Agents that repeat their past print the same output in the same order; counting shows which output is new. Output of other

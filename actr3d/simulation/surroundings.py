@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from actr3d.simulation.clearance import Wall
+from actr3d.experiment.aperture.clearance import Wall
 from actr3d.world import Aperture, Floor, World
 
 

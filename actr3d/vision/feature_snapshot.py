@@ -81,7 +81,7 @@ def _of(module: Vision, eyes: list[Sight]) -> Iterator[Sighting]:
         view, perceived = search.view, search.perceived
         if view is None or perceived is None:
             continue  # it has begun again, and has no view yet
-        stood = next((stand for eye in eyes if (stand := eye.stood(view)) is not None), None)
+        stood = next((pose for eye in eyes if (pose := eye.stood(view)) is not None), None)
         if stood is None:
             continue  # the view of another body
         for number, feature in enumerate(search.noticed):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from mujoco import MjData, MjModel
@@ -25,6 +26,19 @@ from actr3d.world.velocity_servo import fit_servos
 PRESSED = 0.01
 """Greatest depth of an aperture's walls in another object when its width is set [m]: contacts as stiff as theirs push that out
 at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+
+F = TypeVar("F", bound=Callable[..., None])
+WORLD_COMMANDS: dict[str, Callable[..., None]] = {}
+"""By name, the commands that a user can give to a world during a run; `world_command` registers them."""
+
+
+def world_command(function: F) -> F:
+    """Registers a command under the function's name; its first argument is the world.
+
+    It may change the state of the world only, not the compiled model, so that a stored state contains its effect.
+    """
+    WORLD_COMMANDS[function.__name__] = function
+    return function
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -228,3 +242,9 @@ class World:
     def _mocap(self, name: str) -> int:
         body = self.mj_model.body(name)
         return int(self.mj_model.body_mocapid[int(body.id)])
+
+
+@world_command
+def aperture(world: World, width: float, name: str = "aperture") -> None:
+    """Sets the free width of an aperture [m]."""
+    world.set_aperture_width(width, name)

@@ -1,25 +1,25 @@
 """Base-level learning: practice and forgetting.
 
-Words were learned, some of them by one look at them, some by two, four or eight. Later on they are asked for: at
-once, after minutes, after an hour, after days.
+Words were studied once, twice, four or eight times. Later they are tested: at once, after minutes, after an hour,
+after days.
 
 The mechanism is `DMBaseLevel`. Each time a chunk is added to memory again, it gains activation, which fades
 with time.
 
 What to expect
 --------------
-`B = ln sum t_j^-d`, where t_j is the time since the j-th look (Anderson & Schooler 1991, Psychological Science 2;
-Anderson & Lebiere 1998, chapter 4), with d = 0.5. A word is retrieved after `F exp(-B)`, as long as B lies above
-the threshold; otherwise it is forgotten. So the curves of forgetting are power functions: each tenfold delay costs
-nearly the same, d ln 10 = 1.15, once the looks lie far back. And twice as many looks add nearly the same each
-time, ln 2 = 0.69. The table in the *Console* shows activations taken from the times of retrieval beside those of
-the equation.
+`B = ln sum t_j^-d`, where t_j is the time since the j-th study (Anderson & Schooler 1991, Psychological Science 2;
+Anderson & Lebiere 1998, chapter 4), with d = 0.5. A word is retrieved after `F exp(-B)` if B is above
+the threshold; otherwise it is forgotten. So forgetting follows power functions: each tenfold delay costs nearly the
+same activation, d ln 10 = 1.15, when all studies are long ago. Twice as many studies add nearly the same each time,
+ln 2 = 0.69. The table in the *Console* compares the activations that follow from the times of retrieval with those
+of the equation.
 
 What to try
 -----------
 - `decay = 0.3`: forgets more slowly.
 - `threshold = -5`: forgets less.
-- `gap = 60`: looks that lie further apart.
+- `gap = 60`: more time between studies.
 """
 
 decay = 0.5

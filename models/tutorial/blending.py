@@ -1,7 +1,7 @@
 """Blending: an estimate from all that was experienced.
 
-How long will the bus take to come? Nobody remembers one particular morning for that; all waits that were ever
-experienced add to the estimate, recent ones more than old ones.
+How long does one wait for the bus? Nobody answers this from the memory of one particular morning: all waits that were
+experienced contribute to the estimate, recent ones more than old ones.
 
 A `BlendingMemory` does not retrieve the most active chunk, but a mixture of all that match. Numbers in their slots
 become a mean, in which each chunk counts with the weight `exp(A)`.
@@ -17,7 +17,7 @@ passes, all experiences become equally old, and it moves towards their plain mea
 What to try
 -----------
 - `decay = 0`: the plain mean, always.
-- `decay = 1`: the last experience nearly alone.
+- `decay = 1`: nearly the last experience alone.
 - Another wait in `WAITS`, in the tab *Editor*.
 """
 

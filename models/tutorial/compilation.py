@@ -3,20 +3,20 @@
 Words are translated. At first each word must be remembered: ask, wait for the answer, say it. With practice the
 memory is no longer needed: seeing the word is enough to say it.
 
-`PMCompile` watches for a production that makes a request, followed by one that uses the answer. Of the two it makes
-one new production, with the answer built in, which needs no retrieval: one for each word.
+`PMCompile` watches for a production that makes a request, followed by one that uses the answer. It combines
+the two into a new production that contains the answer and needs no retrieval: one for each word.
 
 What to expect
 --------------
 Remembering takes 0.15 s: two productions of 0.05 s, and a retrieval of `F exp(-A)` = 0.05 s between them. The
 compiled production takes 0.05 s. In Python ACT-R it begins with a utility of 0; as `ask` has -1, it is used at
-once, and each word is remembered just once. (In ACT-R 7 a compiled production comes to its parents' utility step by
-step, each time it is compiled again: Taatgen & Anderson 2002, Cognition 86.) The tab *Productions* lists the new
+once, and each word is remembered just once. (In ACT-R 7 the utility of a compiled production approaches that of its
+parents each time it is compiled again: Taatgen & Anderson 2002, Cognition 86.) The tab *Productions* lists the new
 productions.
 
 What to try
 -----------
-- `utility_of_asking = 0`: a draw, so that either way is taken half the time.
+- `utility_of_asking = 0`: equal utilities, so that each way is chosen half of the time.
 - `utility_of_asking = 1`: the new production is never used.
 """
 
@@ -54,7 +54,7 @@ class Translator(ACTR):
         goal.modify(task="say")
         memory.request("english:?word german:?")
 
-    # What is bound here is built into the compiled production. The time is not: it is looked up anew.
+    # The values bound here become part of the compiled production. The time does not: it is read again at each firing.
     def say(goal="task:say word:?word", retrieval="english:?word german:?german"):
         times.append((word, german, self.now() - self.since))
         goal.set("task:listen")

@@ -2,16 +2,15 @@
 
 The agent counts from one number to another, with nothing but remembered facts of the form «after 3 comes 4».
 
-It runs through the cycle of productions and retrievals. A production asks declarative memory for a fact
-(`memory.request`); the fact arrives in the retrieval buffer a little later; its arrival is what the next
-production waits for.
+It repeats a cycle of productions and retrievals. A production asks declarative memory for a fact (`memory.request`).
+The fact arrives in the retrieval buffer a little later, and the next production waits for that.
 
 What to expect
 --------------
 A production takes 0.05 s. A retrieval takes `F exp(-A)` (Anderson & Lebiere 1998, chapter 3), with F = 0.05 s here,
 and A = 0 as the memory has no activation modules: 0.05 s too. So the first number comes after
-0.05 + 0.05 + 0.05 = 0.150 s, and each further one 0.1 s later; the last one needs no fact, so it is said 0.05 s
-after the one before.
+0.05 + 0.05 + 0.05 = 0.150 s, and each further one 0.1 s later. The last one needs no fact, so it is said 0.05 s
+after the one before it.
 
 What to try
 -----------

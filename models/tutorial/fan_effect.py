@@ -3,16 +3,16 @@
 Facts of the form «the miller is in the harbour» have been learned, and now some of them are recognised. Of some
 people and places only one fact is known, of others two or three: that number is their fan.
 
-The mechanism is spreading activation. What is in the goal buffer sends activation to the facts in memory that share
-it, and the more facts share it, the less each of them gets.
+The mechanism is spreading activation. The person and the place in the goal buffer send activation to the facts in
+memory that contain them; the more facts contain one of them, the less activation each fact receives.
 
 What to expect
 --------------
 The activation of a fact is `A = sum W_j S_j` over the person and the place in the goal, where W_j is the weight of
 each (here 0.5) and `S_j = S - ln(fan_j + 1)` (Anderson & Lebiere 1998, chapter 3; Anderson & Reder 1999, Journal of
 Experimental Psychology: General 128). It is retrieved after `F exp(-A)`. The table in the *Console* shows the time
-of each retrieval beside that equation. What grows is the time; it does so with the fan of the person and that of
-the place alike, and more slowly for each further fact.
+of each retrieval beside that equation. The time grows with the fan of the person and with that of the place alike,
+and more slowly for each further fact.
 
 What to try
 -----------

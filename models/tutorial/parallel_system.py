@@ -1,7 +1,7 @@
 """A parallel production system: a quick eye beside a slow mind.
 
-A cook stirs a soup, and minds the stove. Stirring is thinking, step by step. Watching goes on all the time beside
-it, faster than any thought, but all it can do is to raise an alarm.
+A cook stirs a soup, and watches the stove. Stirring is central cognition, step by step. Watching runs beside it all
+the time and is faster, but it can only raise an alarm.
 
 A `ProductionSystem` inside an agent has productions and a cycle time of its own, and sees the agent's buffers by
 name. The two run at the same time, and meet in a buffer. (Python ACT-R's way of putting simple, automatic processes

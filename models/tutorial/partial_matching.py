@@ -1,11 +1,11 @@
 """Partial matching: remembering the wrong thing because it is similar.
 
-Each letter stands for a word. Asked for the word of b, one sometimes says that of d; less often m brings up the
-word of n; hardly ever c that of g.
+Each letter represents a word. Asked for the word of b, one sometimes says the word of d; less often, for m, the word
+of n; hardly ever, for c, the word of g.
 
 With a `Partial`, a request also finds chunks that are only similar to what was asked for. Each mismatch adds `MP M`
 to their activation, where M is the similarity (0 for the same, less for less similar) and MP the penalty (Anderson
-& Lebiere 1998, chapter 3). Noise in activation then now and again lifts the wrong chunk above the right one.
+& Lebiere 1998, chapter 3). Noise in activation then sometimes lifts the wrong chunk above the right one.
 
 What to expect
 --------------
@@ -17,7 +17,7 @@ about `sqrt(p (1 - p) / n)`.
 
 What to try
 -----------
-- `trials = 5000`: shares that lie nearer to the equation.
+- `trials = 5000`: shares nearer to the equation.
 - `noise = 0.6`: more errors.
 - `penalty = 20`: fewer errors.
 - A similarity of -0.1 between b and g, in the tab *Editor*.

@@ -17,7 +17,7 @@ What to try
 -----------
 - `threshold = -1`: the memory searches longer before it gives up.
 - Further kinds, in the tab *Editor*.
-- A direct link from a heron to an animal: what happens to the time, and what to the search where two links lead on?
+- A direct link from a heron to an animal: what happens to the time, and to the search where there are two links?
 """
 
 threshold = 0

@@ -1,9 +1,9 @@
-"""SGOMS: planning units and unit tasks, interruption, and finding back.
+"""SGOMS: planning units and unit tasks, interruption, and resumption.
 
-Somebody makes tea: boil, steep, pour. The telephone rings, and is answered. Then the tea goes on.
+Somebody makes tea: boil, steep, pour. The telephone rings, and is answered. Then tea-making continues.
 
 Work is divided into *planning units*, these into *unit tasks*, these into methods and operators (West & Nagy 2007, Journal of
-Cognitive Engineering and Decision Making 1). `Ordered` unit tasks are a chain in memory: what was done last is the cue for what comes
+Cognitive Engineering and Decision Making 1). `Ordered` unit tasks are a chain in memory: the last one is the cue for the
 next. `Situated` ones are chosen by what `b_context` says. The ears, a quick parallel system, ask for an interruption by another
 planning unit, the response. `when:end` lets the unit task end first, `when:now` cuts it short. The place is kept as a chunk in memory,
 and remembered when the response is over.
@@ -13,14 +13,14 @@ What to expect
 From one ordered unit task to the next it takes two productions and a retrieval (0.05 s each, as plans have a base level of 0); from
 one situated unit task to the next, two productions. The telephone rings at 2.0 s, while the tea steeps, the ears notice at 2.01 s,
 and a production of 0.05 s begins the response: the tea is left at 2.060 s. The place has one reference then. T seconds later its
-activation is `A = ln T^-0.5`, and finding back takes `F exp(-A)` = 0.05 T^0.5, beside two productions: the longer the call, the longer
-it takes. Here, T = 5.55 s and 0.118 s. What was cut short begins again: the tea steeps from 7.828 s on. It is all done at 10.328 s.
+activation is `A = ln T^-0.5`, and resumption takes `F exp(-A)` = 0.05 T^0.5, beside two productions: the longer the call, the longer
+it takes. Here, T = 5.55 s and 0.118 s. The interrupted unit task begins again: the tea steeps from 7.828 s on. All is done at 10.328 s.
 
 What to try
 -----------
 - `when = "end"`: the unit task ends before the telephone is answered.
 - `ring_at = 1.27`: it rings between two unit tasks.
-- `call_time = 30`: T exceeds exp(2 * 1.5) = 20 s, so the place lies below the threshold of -1.5, and is forgotten; the tea is begun
+- `call_time = 30`: T exceeds exp(2 * 1.5) = 20 s, so the place is below the threshold of -1.5, and is forgotten; the tea is begun
   again.
 """
 

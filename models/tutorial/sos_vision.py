@@ -1,11 +1,11 @@
 """SOS vision: seeing what catches the eye.
 
 Somebody glances at a crossing again and again, looking for a lamp. The red lamp catches the eye more often than the
-green one, and now and again neither does.
+green one, and sometimes neither does.
 
 `SOSVision` finds things in the agent's environment that match a pattern. Each is noticed with a probability of its
-own, its `salience`; one of those that are noticed comes to the buffer, at random. Where none is, the buffer is
-emptied and the module's `error` becomes True, which a production can match.
+own, its `salience`; one of those that are noticed comes to the buffer, at random. If none is, the buffer is
+cleared and the module's `error` becomes True, which a production can match.
 
 What to expect
 --------------
@@ -17,7 +17,7 @@ and 0.06. The tree does not match, so its salience does not matter. Of n glances
 What to try
 -----------
 - `red_salience = 0.4`: both lamps are seen equally often.
-- `glances = 1000`: shares that lie nearer to the equation.
+- `glances = 1000`: shares nearer to the equation.
 - In the tab *Editor*: a third lamp; a lamp with `visible = False`; asking for `colour:red` alone.
 """
 

@@ -15,7 +15,7 @@ costs nothing: it is woken when the board changes.
 What to try
 -----------
 - `last = 12`: count further.
-- In the tab *Editor*: a third player; `production_time = 0.1` in one of two classes (who is slow?); players who do not
+- In the tab *Editor*: a third player; `production_time = 0.1` in one of two classes (which player is slow?); players who do not
   wait for their turn (take the pattern's `turn:?me` away).
 """
 

@@ -1,16 +1,16 @@
-"""Utility learning: how a habit comes from what actions bring.
+"""Utility learning: how rewards of actions form a habit.
 
-Every morning somebody goes to work, by bus or on foot. Both bring the same reward, but walking takes longer. Nobody
-says which is better: that is learned from trying.
+Every morning somebody goes to work, by bus or on foot. Both bring the same reward, but walking takes longer. Which
+is better is learned by trying.
 
 Of the productions that match, the one with the highest utility fires. `PMNew` learns utilities from rewards,
-`PMNoise` adds noise, so that the second best is tried now and again.
+`PMNoise` adds noise, so that the second best is sometimes tried.
 
 What to expect
 --------------
 At each reward R, every production chosen since the last one changes by `U += alpha (R - dt - U)`, where dt is the
 time from its choice to the reward (Anderson 2007, How can the human mind occur in the physical universe?). So U
-comes near R - dt. With a reward of 2, and 0.1 s for the two productions on the way, that is 2 - 2.1 for the bus and
+approaches R - dt. With a reward of 2, and 0.1 s for the two productions on the way, that is 2 - 2.1 for the bus and
 2 - 3.1 on foot. Both begin at 0, and are chosen equally often at first. In the end the better one, ahead by d = 1,
 is chosen with probability `p = 1 - ((x - 1) exp(-x) + exp(-2x)) / (1 - exp(-x))^2`, x = d / s, where s is the scale
 of the logistic noise on both: 0.846 for s = 0.4.

@@ -175,6 +175,8 @@ class Chunk(dict[Any, Any]):
     """The memories' lists that contain this chunk, which are notified of changes; a copy is in none."""
     watches: tuple[ChunkObserver, ...] = ()
     """The observers of a buffer in a traced run that contains this chunk."""
+    penalty: float = 0.0
+    """The sum of the penalties for mismatches in the latest request that permitted them (partial matching)."""
     cached_text: str | None = None
     """The chunk as text, if no value in it can change by itself."""
 

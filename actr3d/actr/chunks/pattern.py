@@ -110,7 +110,7 @@ def _pieces(slot: Slot, rest: str, text: str) -> list[tuple[Slot, str, str]]:
 
 
 class _PatternParser:
-    """Converts patterns to conditions, and tracks which variables have been bound so far."""
+    """Converts patterns to conditions, and tracks which variables are bound already."""
 
     def __init__(self, bound: Mapping[str, Any] | None) -> None:
         self.bound: Mapping[str, Any] = bound or {}
@@ -251,11 +251,11 @@ class Pattern:
     def match(self, obj: Any) -> Bindings | None:
         """Returns the variables that a match binds (possibly none), or None for no match.
 
-        With `partial` set, the sum of all penalties is stored in `obj._partial`.
+        With `partial` set, the object is a chunk, whose `penalty` is set to the sum of all penalties.
         """
         bindings: Bindings = {}
         if self.partial is not None:
-            obj._partial = 0.0
+            obj.penalty = 0.0
         for op, name, key, value in self.conditions:
             target = obj if name is None else get_item(obj, name)
             if target is MISSING:
@@ -291,7 +291,7 @@ class Pattern:
         return text == value or (self.partial is not None and self._forgives(obj, key, value, text, negated=False))
 
     def _forgives(self, obj: Any, key: Slot, wanted: Any, found: str, negated: bool) -> bool:
-        """Adds the penalty of a mismatch to `obj._partial`, and returns whether partial matching allows it.
+        """Adds the penalty of a mismatch to `obj.penalty`, and returns whether partial matching allows it.
 
         A modeller's own `match` may not know the values (a KeyError, or None): that is no match.
         """
@@ -299,7 +299,7 @@ class Pattern:
         if ask is None:
             return False
         try:
-            obj._partial += ask(key, wanted) if negated else ask(key, wanted, found)
+            obj.penalty += ask(key, wanted) if negated else ask(key, wanted, found)
         except (AttributeError, TypeError, KeyError):
             return False
         return True

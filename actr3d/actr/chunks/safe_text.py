@@ -31,6 +31,7 @@ def _prints_plainly(value: Any, depth: int = 0) -> bool:
     if depth > DEEPEST:
         return False
     if isinstance(value, Enum):
+        # `value.value` may be a modeller's own property; Python documents `_value_`.
         return type(value).__repr__ is Enum.__repr__ and _prints_plainly(value._value_, depth + 1)
     if type(value) in _COLLECTIONS:
         return all(_prints_plainly(item, depth + 1) for item in cast("Sequence[Any]", value))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
@@ -15,6 +16,8 @@ from actr3d.saying import warn_modeller
 
 COMPASS = ((0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1))
 """The steps (x, y) to the eight neighbours, clockwise from north; y grows downwards, as the lines of a map do."""
+
+NO_WORLD = "this cell is part of no world; a world makes its cells itself"
 
 
 class Cell:
@@ -33,6 +36,10 @@ class Cell:
     agents: list[Any]
     """The agents whose bodies are here, in the order in which they arrived."""
     _world: World | None = None
+    _find: Callable[[Cell, int], Cell] | None = None
+    """Finds a neighbouring cell in the world; None before the cell is in one."""
+    _report: Callable[[Cell, str, Any], None] | None = None
+    """Reports a change to the world; None before the cell is in one."""
 
     def load(self, char: str) -> None:
         """Initializes the cell from its character of the map; for subclasses. A `#` is a wall."""
@@ -46,21 +53,31 @@ class Cell:
             GridError: If it has none.
         """
         if self._world is None:
-            raise GridError("this cell is part of no world; a world makes its cells itself")
+            raise GridError(NO_WORLD)
         return self._world
 
     @property
     def neighbour(self) -> list[Cell]:
         """The neighbouring cell in each of the world's directions; a wall beyond the edge of the map."""
-        world = self.world
-        return [world._neighbour(self, 8 * i // world.directions) for i in range(world.directions)]
+        directions = self.world.directions
+        return [self.neighbour_at(8 * i // directions) for i in range(directions)]
 
     neighbours = neighbour
 
+    def neighbour_at(self, eighths: int) -> Cell:
+        """Returns the neighbouring cell in a direction, given in eighths of a turn clockwise from north; a wall beyond the edge.
+
+        Raises:
+            GridError: If the cell is in no world.
+        """
+        if self._find is None:
+            raise GridError(NO_WORLD)
+        return self._find(self, eighths)
+
     def __setattr__(self, key: str, value: Any) -> None:
         object.__setattr__(self, key, value)
-        if key[0] != "_" and self._world is not None:
-            self._world._cell_changed(self, key, value)
+        if key[0] != "_" and self._report is not None:
+            self._report(self, key, value)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.x},{self.y}>" if self._world is not None else f"<{type(self).__name__}>"
@@ -135,8 +152,7 @@ class Body(Model):
 
     def _seen(self, eighths: int) -> Cell:
         """Returns the neighbouring cell in a direction, given in eighths of a turn to the right of ahead."""
-        world = self.world
-        return world._neighbour(self.cell, 8 * self.dir // world.directions + eighths)
+        return self.cell.neighbour_at(8 * self.dir // self.world.directions + eighths)
 
     @property
     def ahead_cell(self) -> Cell:
@@ -207,8 +223,7 @@ class Body(Model):
         Raises:
             GridError: If it is in no world.
         """
-        world = self.world
-        ahead = world._neighbour(self.cell, 8 * _whole(dir, "dir") // world.directions)
+        ahead = self.cell.neighbour_at(8 * _whole(dir, "dir") // self.world.directions)
         if ahead.wall:
             return False
         self._place(ahead)
@@ -343,7 +358,7 @@ class World(Model):
 
     def _make(self, x: int, y: int) -> Cell:
         cell = self._kind()
-        cell.__dict__.update(x=x, y=y, agents=[], _world=self)
+        cell.__dict__.update(x=x, y=y, agents=[], _world=self, _find=self._neighbour, _report=self._cell_changed)
         return cell
 
     # -- cells
@@ -421,8 +436,9 @@ class World(Model):
             setattr(self, self._free_name(), agent)
         ensure_converted(agent)
         body = _body_of(agent)
-        if body._cell is not None:
-            raise GridError(f"this agent is in a world already, at {body._cell!r}")
+        place = getattr(body, "cell", None)
+        if place is not None:
+            raise GridError(f"this agent is in a world already, at {place!r}")
         cell = self._cell_for(x, y, cell)
         if cell.wall:
             warn_modeller(f"an agent is put into a wall, at ({cell.x}, {cell.y})")
@@ -431,7 +447,7 @@ class World(Model):
         if color is not None:
             body.color = color
         body.__dict__["_agent"] = agent
-        body._place(cell)
+        body._place(cell)  # private, because productions see every public name of a model
         body.dir = dir
 
     def _free_name(self) -> str:
@@ -449,7 +465,7 @@ class World(Model):
             return self.get_cell(x, y)
         if cell is None:
             return self._free_cell()
-        if cell._world is not self:
+        if cell.world is not self:
             raise GridError(f"World.add: {cell!r} is no cell of this world")
         return cell
 

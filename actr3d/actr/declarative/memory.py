@@ -15,7 +15,7 @@ from actr3d.actr.declarative.chunk_query import search_for
 from actr3d.actr.declarative.finst import Finst
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.declarative.retrieval_record import Retrieval
-from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.buffer import Buffer, Harvester
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
@@ -87,9 +87,9 @@ class Memory(WithParameters, Model):
             self.__dict__["latency"] = self.rules.latency
         if self.rules.harvest and self.parent is not None:
             self.sch.harvests = True
-            harvesters: list[Memory] = self.parent.__dict__.setdefault("_harvesters", [])
-            if self not in harvesters:
-                harvesters.append(self)
+            harvesters: list[Harvester] = self.parent.__dict__.setdefault("_harvesters", [])
+            if all(one.memory is not self for one in harvesters):
+                harvesters.append(Harvester(self, self._buffer, self._collect))
 
     def __setattr__(self, key: str, value: Any) -> None:
         if key == "dm":
@@ -359,9 +359,23 @@ def _costs(partial: Partial) -> bool:
     return getattr(partial, "strength", 1.0) is not None
 
 
+# What the rest of the library asks of a memory. These are functions that use private names, because productions see every public
+# name of a model.
+
+
 def latest_retrieval(memory: Memory) -> Retrieval | None:
     """Returns the record of a memory's last request; None before the first."""
     return memory._last
+
+
+def buffer_of(memory: Memory) -> Any:
+    """Returns the buffer for retrieved chunks."""
+    return memory._buffer
+
+
+def collect(memory: Memory, chunk: Chunk) -> None:
+    """Adds a chunk to a memory like `Memory.add`, but without resetting its `error`."""
+    memory._collect(chunk)
 
 
 def own_activation(memory: Memory) -> Callable[[Any], float] | None:

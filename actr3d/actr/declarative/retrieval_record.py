@@ -16,7 +16,7 @@ from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.saying import warn_modeller
 
 Row = tuple[Chunk, tuple[float, ...], float, float]
-"""A candidate as it is stored, because there may be thousands: (chunk, parts, partial, activation)."""
+"""A candidate in memory: a plain tuple because there may be thousands: (chunk, parts, partial, activation)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ class Retrieval:
                 parts = parts_of(chunk)
                 activation = total(parts)
             if partial is not None:
-                cost = chunk._partial
+                cost = chunk.penalty
                 activation += cost
             chunk.activation = activation
             add((chunk, parts, cost, activation))

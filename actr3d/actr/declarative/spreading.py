@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Hashable
 from typing import Any
 
@@ -70,6 +71,20 @@ class DMSpreading(MemorySubModule):
                     total += weight * (self.strength - math.log(self._occurrences(value) + 1))
         return total
 
+    def activation_for_observer(self, chunk: Any) -> float:
+        """Returns the same as `activation`, without a warning: a later retrieval warns.
+
+        Raises:
+            ChunkError: As `activation` does.
+        """
+        warned = self._warned.copy()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                return self.activation(chunk)
+        finally:
+            self._warned = warned
+
     def _divided(self, source: Chunk, values: list[Any], weight: float) -> float:
         """Returns the activation from a buffer's chunk if its weight is divided among its chunk-valued slots."""
         sources = [value for value in source.values() if names_a_chunk(value)]
@@ -87,7 +102,7 @@ class DMSpreading(MemorySubModule):
         if countable(value) not in self._warned:
             self._warned.add(countable(value))
             warn_modeller(
-                f"the fan of '{value}' is so large that it would inhibit: S_ji = {strength:.3f} counts as 0; "
+                f"the fan of '{value}' is large enough to inhibit: S_ji = {strength:.3f} counts as 0; "
                 f"raise DMSpreading.strength (now {self.strength:g})"
             )
         return 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
@@ -70,13 +69,7 @@ def _part(module: MemorySubModule, chunk: Chunk) -> float | None:
     """Returns what a module adds to a chunk's activation now; None if it is known only at a retrieval."""
     if type(module) not in _READABLE or not LASTING_TYPES.issuperset(map(type, chunk.values())):
         return None
-    warned = set(module._warned) if isinstance(module, DMSpreading) else set[Any]()
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a retrieval warns, an observer does not
-            return module.activation(chunk)
+        return module.activation_for_observer(chunk) if isinstance(module, DMSpreading) else module.activation(chunk)
     except (ChunkError, ArithmeticError, ValueError):
         return None
-    finally:
-        if isinstance(module, DMSpreading):
-            module._warned = warned

@@ -35,7 +35,7 @@ class FunctionResult(NamedTuple):
 
 
 NOT_KNOWN = Fact(UNKNOWN, "no production has looked at it")
-OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can tell")
+OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can produce")
 
 
 class AgentState(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk
 from actr3d.actr.chunks.safe_text import plain_text
@@ -87,10 +87,10 @@ class Buffer(Model):
             return
         above: Model | None = self.__dict__.get("parent")  # None for a class's own buffer that is filled before an agent runs
         while above is not None:
-            memories = [m for m in above.__dict__.get("_harvesters", ()) if m.parent is above]
-            if memories:
-                for memory in [m for m in memories if m._buffer is self] or memories:
-                    memory._collect(chunk)
+            harvesters: list[Harvester] = [one for one in above.__dict__.get("_harvesters", ()) if one.memory.parent is above]
+            if harvesters:
+                for harvester in [one for one in harvesters if one.buffer is self] or harvesters:
+                    harvester.collect(chunk)
                 return
             profile = profile_of(above)
             if profile is not None and not profile.harvest:
@@ -140,6 +140,16 @@ class Buffer(Model):
 
     def __len__(self) -> int:
         return 0 if self.chunk is None else len(self.chunk)
+
+
+class Harvester(NamedTuple):
+    """A declarative memory that collects the chunks that leave the buffers of its agent (ACT-R 7)."""
+
+    memory: Model
+    buffer: Any
+    """Where the memory puts retrieved chunks."""
+    collect: Callable[[Chunk], None]
+    """Adds a chunk to the memory."""
 
 
 def reads_chunk(target: Any, key: Any) -> bool:

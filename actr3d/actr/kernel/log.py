@@ -196,7 +196,7 @@ def log(
 
 def log_line(log: Any, text: object) -> None:
     """Writes a line of text to a model's log, under the model's own name."""
-    log._ = text
+    log._ = text  # the attribute that python_actr's logs have for lines of text
 
 
 def log_everything(model: Any, log: Any = None) -> None:

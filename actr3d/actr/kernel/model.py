@@ -208,6 +208,7 @@ class Model(TreeNode):
             if separate:
                 self._merge_run(value)
             for part in subtree(value):
+                # Private, as everything that subclasses extend but productions must not see.
                 part._follow(profile_of(part.parent) if part.parent is not None else None)
         return True
 
@@ -397,7 +398,8 @@ class Model(TreeNode):
         return self.sch.now_us / 1_000_000
 
 
-# What the rest of the library asks of a model; as methods, productions would see these names.
+# What the rest of the library asks of a model. These are functions that call private methods, because productions see every public
+# name of a model; the private methods are those that subclasses extend.
 
 
 def is_converted(model: object) -> bool:
@@ -463,7 +465,7 @@ class TracedRun:
         top = self._top()
         return None if top is None or top.parent is not None else top.sch.now_us
 
-    def tell(self, trace: Trace) -> None:
+    def emit_state(self, trace: Trace) -> None:
         """Records the current state of everything in a trace."""
         top = self._top()
         if top is not None:
@@ -494,7 +496,7 @@ def _trace_opening(top: Model, trace: Trace) -> None:
 def _trace_states(top: Model, trace: Trace) -> None:
     """Records the current state of a part and of everything below it."""
     for part in subtree(top):
-        part._trace_state(trace)
+        part._trace_state(trace)  # private, because productions see every public name of a model
 
 
 def _trace_top(model: Model, kind: str, data: dict[str, Any]) -> None:

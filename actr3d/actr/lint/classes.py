@@ -39,7 +39,7 @@ def check_names_of_methods(klass: type, func: Callable[..., Any]) -> None:
 
 
 def _replaced(body: list[ast.stmt], seen: dict[str, ast.FunctionDef]) -> Iterator[tuple[ast.FunctionDef, ast.FunctionDef]]:
-    """Yields pairs of an earlier method and one that certainly replaces it; `seen` are the methods so far.
+    """Yields pairs of an earlier method and one that certainly replaces it; `seen` are the methods before.
 
     A branch that may not be taken replaces nothing for certain, but methods in it may be replaced.
     """

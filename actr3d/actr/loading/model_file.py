@@ -108,7 +108,7 @@ def _execute(code: CodeType, module: ModuleType, program: Program, limits: RunLi
         stack.enter_context(_as_main(module, program))
         stack.enter_context(shared_random(limits.program_seed))
         logs.LOG.source = module.__file__
-        stack.callback(_finish)  # also if the program fails: its log so far is written
+        stack.callback(_finish)  # also if the program fails: what it has logged is written
         try:
             exec(code, module.__dict__)
         except EndOfRun:

@@ -153,7 +153,7 @@ class Searching(Port):
 
 def latest_searches(module: Searching) -> list[tuple[int, Mapping[str, Any], str]]:
     """Returns the last top-down and bottom-up search of a module: the time of its view [us], what was in it, and the outcome."""
-    return module._latest_searches()
+    return module._latest_searches()  # private, because productions see every public name of a model
 
 
 class BodyPort(Port):
@@ -225,7 +225,7 @@ class BodyPort(Port):
         """Raises an error for a word that another part of the agent keeps private."""
         agent = next(part for part in lineage(self) if part.__dict__.get("_embodiment") is embodiment)
         for part in subtree(agent):
-            option = part._kept_private(word) if isinstance(part, Port) else None
+            option = part._kept_private(word) if isinstance(part, Port) else None  # of this class, and extended by subclasses
             if option is not None:
                 raise SimulationError(
                     f"port '{self._path}' cannot ask body '{embodiment.body}' for '{word}': agent '{path_of(agent)}' "

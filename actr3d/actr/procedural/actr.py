@@ -10,8 +10,8 @@ from actr3d.actr.kernel.events import AGAIN, Event
 from actr3d.actr.kernel.noise import pick
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem
-from actr3d.actr.procedural.utility import ProceduralSubModule
+from actr3d.actr.procedural.production_system import ProductionSystem, trace_utility_parts
+from actr3d.actr.procedural.utility import ProceduralSubModule, known_part
 from actr3d.trace import Trace
 
 LAST = -1000
@@ -141,19 +141,7 @@ class ACTR(ProductionSystem):
         super()._trace_state(trace)
         if trace.all:
             for production in self._productions:
-                self._trace_parts(production, trace)
-
-    def _trace_parts(self, production: Production, trace: Trace) -> None:
-        for name, value in self._utility_parts(production).items():
-            if value is not None:
-                data = {"production": production.name, "part": name, "value": value}
-                trace.emit(self.sch.now_us, self._path, "utility", data)
-
-    def _add_production(self, production: Production) -> None:
-        super()._add_production(production)
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            self._trace_parts(production, trace)
+                trace_utility_parts(self, production, trace)
 
     def _drawn_names(self) -> list[str]:
         any_one = self._productions[0] if self._productions else None
@@ -165,7 +153,7 @@ class ACTR(ProductionSystem):
     def _utility_parts(self, production: Production) -> dict[str, float | None]:
         if self._own_utility:
             return {"get_activation": None}
-        return {adaptor.name: adaptor._standing(production) for adaptor in self._adaptors}
+        return {adaptor.name: known_part(adaptor, production) for adaptor in self._adaptors}
 
     def _latest_choice(self) -> ConflictSet | None:
         weighed, matcher, picked = self._weighed, self._rules.matcher, self._rules.chosen

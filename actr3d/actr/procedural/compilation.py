@@ -12,6 +12,7 @@ from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_body import Body, Scope
+from actr3d.actr.procedural.production_system import add_production
 from actr3d.actr.procedural.utility import PMNew, ProceduralSubModule, utility_modules
 
 
@@ -74,22 +75,15 @@ class CompiledProduction(Production):
     def _post_body(self) -> Body:
         return self.post.body_of(self.post.node.body)
 
-    def fire(self) -> None:
+    def _run(self) -> None:
         """Runs the kept statements of the first production, then all of the second."""
         sch = self.system.sch
         bound: dict[str, Any] = {**(self.bound or {}), **self.pre_bound}
-        sch.fired = sch.firing = self
-        try:
-            if self._kept_body is not None:
-                bound = sch.bound = Scope(bound, self.context, self.pre.original_func)
-                self._kept_body(bound)
-            bound = sch.bound = Scope({**bound, **self.post_bound}, self.context, self.post.original_func)
-            self._post_body(bound)
-        except Exception as error:
-            self.note(error)
-            raise
-        finally:
-            sch.firing = None
+        if self._kept_body is not None:
+            bound = sch.bound = Scope(bound, self.context, self.pre.original_func)
+            self._kept_body(bound)
+        bound = sch.bound = Scope({**bound, **self.post_bound}, self.context, self.post.original_func)
+        self._post_body(bound)
 
 
 def _fill(pattern: Any, bound: Bindings) -> Any:
@@ -163,7 +157,7 @@ class PMCompile(ProceduralSubModule):
             trace.emit(self.sch.now_us, path_of(agent), "compile", {"production": made.name, "parents": list(made.parents)})
         for adaptor in utility_modules(agent):
             adaptor.create(made, parents=[pre, post])
-        agent._add_production(made)
+        add_production(agent, made)
 
     def _strengthen(self, made: CompiledProduction) -> None:
         """Moves a rule that was compiled again towards its first parent's utility (ACT-R 7)."""

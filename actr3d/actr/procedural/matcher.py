@@ -87,7 +87,8 @@ class Matcher:
         found: list[Condition] = []
         for number, condition in enumerate(production.conditions):
             if condition.op == "call":
-                condition = condition._replace(value=self._asking(production, number, condition.value))
+                asking = self._asking(production, number, condition.value)
+                condition = Condition(condition.op, condition.name, condition.key, asking)
             elif condition.op == "empty":
                 name = condition.name or "self"
                 self.observed.watch(name, None, self._context[name])

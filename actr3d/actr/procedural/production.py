@@ -135,15 +135,18 @@ class Production:
     def fire(self) -> None:
         """Runs the body with the variables that the last match bound."""
         sch = self.system.sch
-        bound = sch.bound = self.scope(self.bound or {})
         sch.fired = sch.firing = self
         try:
-            self._body(bound)
+            self._run()
         except Exception as error:
             self.note(error)
             raise
         finally:
             sch.firing = None
+
+    def _run(self) -> None:
+        bound = self.system.sch.bound = self.scope(self.bound or {})
+        self._body(bound)
 
     def note(self, error: Exception) -> None:
         """Adds a note to an error: the production in which it occurred, and what a misspelt name may mean."""

@@ -13,7 +13,7 @@ from actr3d.actr.kernel.noise import pick
 from actr3d.actr.kernel.parameters import WithParameters
 from actr3d.actr.kernel.profile import find_profile
 from actr3d.actr.kernel.tracing import traceable
-from actr3d.actr.kernel.tree import lineage
+from actr3d.actr.kernel.tree import lineage, path_of
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import Matcher
 from actr3d.actr.procedural.production import Production, defaults_of
@@ -49,6 +49,13 @@ class Rules:
     """The production that is about to fire."""
     by_utility: bool = False
     """Whether utilities decide among those that match, and so are part of the conflict set."""
+
+    def add(self, production: Production) -> None:
+        """Adds a production during the run."""
+        production.context = self.context
+        self.productions.append(production)
+        if self.matcher is not None:
+            self.matcher.build(self.productions)
 
 
 class ProductionSystem(WithParameters, Model):
@@ -114,7 +121,7 @@ class ProductionSystem(WithParameters, Model):
 
     def _begin(self) -> None:
         """Determines what productions see by name, runs the methods without parameters, and builds the matcher."""
-        self._calc_context()
+        _determine_context(self)
         rules = self._rules
         afterwards = [check(self) for check in BEFORE_FIRST_CYCLE]
         for production in rules.initializers:
@@ -132,27 +139,6 @@ class ProductionSystem(WithParameters, Model):
                 check()
         matcher = rules.matcher = Matcher(rules.context)
         matcher.build(rules.productions)
-
-    def _calc_context(self) -> None:
-        context: dict[str, Any] = {}
-        top: Model = self
-        for above in lineage(self):
-            for name, value in above.__dict__.items():
-                if name[0] != "_" and name != "parent" and name not in context and not isinstance(value, MethodWrapper):
-                    context[name] = value
-            top = above
-        context["self"] = self
-        context["top"] = top
-        self.__dict__["_top"] = top
-        self.__dict__["_context"] = self._rules.context = context
-        for production in (*self._rules.initializers, *self._rules.productions):
-            production.context = context
-            for name in production.keys:
-                if name not in context:
-                    raise ProductionException(
-                        f"production '{production.name}' ({production.place}) matches on '{name}', which neither the agent "
-                        f"nor its ancestors have{did_you_mean(name, [*context, 'utility'])}"
-                    )
 
     def _match(self) -> list[Production]:
         """Returns the productions that match now; records in the trace what they read beyond buffers and modules."""
@@ -241,14 +227,6 @@ class ProductionSystem(WithParameters, Model):
             self.log.production = None
         choice.fire()
 
-    def _add_production(self, production: Production) -> None:
-        """Adds a production during the run (compilation)."""
-        rules = self._rules
-        production.context = rules.context
-        rules.productions.append(production)
-        if rules.matcher is not None:
-            rules.matcher.build(rules.productions)
-
     def explain(self, at: float | None = None) -> Explanation:
         """Explains, for each production, whether it matches or what fails first, its utility, and why it was chosen or lost;
         for each memory, its last request. Runs no code of the model and draws no random number.
@@ -262,7 +240,8 @@ class ProductionSystem(WithParameters, Model):
         return EXPLAINERS[-1](self, at)
 
 
-# What the rest of the library asks of a production system; as methods, productions would see these names.
+# What the rest of the library asks of a production system. These are functions that call private methods, because productions see
+# every public name of a model; the private methods are those that `ACTR` extends.
 
 
 def rules_of(system: ProductionSystem) -> Rules:
@@ -273,7 +252,51 @@ def rules_of(system: ProductionSystem) -> Rules:
 def prepare_context(system: ProductionSystem) -> None:
     """Determines what the productions of a system see by name, if it has not begun to run."""
     if rules_of(system).matcher is None:
-        system._calc_context()
+        _determine_context(system)
+
+
+def _determine_context(system: ProductionSystem) -> None:
+    """Determines what the productions of a system see by name.
+
+    Raises:
+        ProductionException: If a production matches on a name that there is not.
+    """
+    context: dict[str, Any] = {}
+    top: Model = system
+    rules = rules_of(system)
+    for above in lineage(system):
+        for name, value in above.__dict__.items():
+            if name[0] != "_" and name != "parent" and name not in context and not isinstance(value, MethodWrapper):
+                context[name] = value
+        top = above
+    context["self"] = system
+    context["top"] = top
+    system.__dict__["_top"] = top
+    system.__dict__["_context"] = rules.context = context
+    for production in (*rules.initializers, *rules.productions):
+        production.context = context
+        for name in production.keys:
+            if name not in context:
+                raise ProductionException(
+                    f"production '{production.name}' ({production.place}) matches on '{name}', which neither the agent "
+                    f"nor its ancestors have{did_you_mean(name, [*context, 'utility'])}"
+                )
+
+
+def add_production(system: ProductionSystem, production: Production) -> None:
+    """Adds a production during the run (compilation)."""
+    rules_of(system).add(production)
+    trace = system.sch.trace
+    if trace is not None and trace.all:
+        trace_utility_parts(system, production, trace)
+
+
+def trace_utility_parts(system: ProductionSystem, production: Production, trace: Trace) -> None:
+    """Records what is known now of what each utility module adds to a production's utility."""
+    for name, value in utility_parts(system, production).items():
+        if value is not None:
+            data = {"production": production.name, "part": name, "value": value}
+            trace.emit(system.sch.now_us, path_of(system), "utility", data)
 
 
 def standing_choice(system: ProductionSystem) -> ConflictSet | None:

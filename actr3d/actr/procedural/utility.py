@@ -39,18 +39,6 @@ class ProceduralSubModule(WithParameters, Model):
         """Returns this module's part of a production's utility."""
         return 0
 
-    def _standing(self, prod: Any) -> float | None:
-        """Returns its part without drawing a random number; None if it is known only when a choice is made.
-
-        A modeller's own module is called only when a choice is made.
-        """
-        if type(self).utility.__module__ != __name__:
-            return None
-        try:
-            return self.utility(prod)
-        except ZeroDivisionError:  # a history without tries has no utility yet
-            return None
-
     def below_threshold(self) -> None:
         """Is called when no production's utility has reached the threshold."""
 
@@ -61,24 +49,45 @@ class ProceduralSubModule(WithParameters, Model):
         super()._trace_change(trace, key, value)
         if key in self._decisive and trace.all and self.parent is not None:
             for production in rules_of(cast("ProductionSystem", self.parent)).productions:
-                self._trace_part(trace, production, self._standing(production))
+                _trace_part(trace, self, production, known_part(self, production))
 
     def _learned(self, prod: Any) -> None:
         """Records a production's utility after learning."""
-        trace = self.sch.trace
-        if trace is not None and trace.all and self.parent is not None:
-            part = self._standing(prod)
-            if part is not None:
-                self._trace_part(trace, prod, part)
-
-    def _trace_part(self, trace: Trace, prod: Any, part: float | None) -> None:
-        data = {"production": prod.name, "part": self.name, "value": part}
-        trace.emit(self.sch.now_us, path_of(cast("Model", self.parent)), "utility", data)
+        trace_learned(self, prod)
 
 
 def utility_modules(agent: Model | None) -> list[ProceduralSubModule]:
     """Returns the utility modules of an agent."""
     return [] if agent is None else agent.__dict__.get("_adaptors", [])
+
+
+def known_part(module: ProceduralSubModule, prod: Any) -> float | None:
+    """Returns what a module adds to a production's utility, without drawing a random number; None if a choice must be made first.
+
+    A modeller's own module is called only when a choice is made.
+    """
+    if type(module).utility.__module__ != __name__:
+        return None
+    if isinstance(module, PMNoise):
+        return prod.baseNoise if module.noise == 0 else None
+    try:
+        return module.utility(prod)
+    except ZeroDivisionError:  # a history without tries has no utility yet
+        return None
+
+
+def trace_learned(module: ProceduralSubModule, prod: Any) -> None:
+    """Records what a module adds to a production's utility after learning."""
+    trace = module.sch.trace
+    if trace is not None and trace.all and module.parent is not None:
+        part = known_part(module, prod)
+        if part is not None:
+            _trace_part(trace, module, prod, part)
+
+
+def _trace_part(trace: Trace, module: ProceduralSubModule, prod: Any, part: float | None) -> None:
+    data = {"production": prod.name, "part": module.name, "value": part}
+    trace.emit(module.sch.now_us, path_of(cast("Model", module.parent)), "utility", data)
 
 
 class PMNoise(ProceduralSubModule):
@@ -101,10 +110,6 @@ class PMNoise(ProceduralSubModule):
 
     def utility(self, prod: Any) -> float:
         return prod.baseNoise + self.logisticNoise(self.noise)
-
-    def _standing(self, prod: Any) -> float | None:
-        own = type(self).utility is not PMNoise.utility
-        return None if own or self.noise != 0 else prod.baseNoise
 
     def logisticNoise(self, s: float) -> float:  # noqa: N802 - Python ACT-R's name
         """Draws logistic noise of scale `s`."""
@@ -159,7 +164,7 @@ class PMPGC(ProceduralSubModule):
         # All such modules of one agent share a production's history.
         for module in utility_modules(self.parent):
             if isinstance(module, PMPGC):
-                ProceduralSubModule._learned(module, prod)
+                trace_learned(module, prod)
 
     def utility(self, prod: Any) -> float:
         tries = prod.successes + prod.failures

@@ -109,13 +109,13 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
 def _bring_in(start: float, row: Row, count: int, waiting: int, present: int, floor: float) -> tuple[int, int]:
     """Activates the pieces that begin at a tangent, and skips those that one active piece hides completely.
 
-    Returns the number of pieces processed so far (activated or skipped), and the number of active pieces.
+    Returns the number of pieces already processed (activated or skipped), and the number of active pieces.
 
     Args:
         start: The tangent.
         row: The row.
         count: The number of pieces.
-        waiting: The number of pieces processed so far.
+        waiting: The number of pieces already processed.
         present: The number of active pieces.
         floor: The greatest floor of the active pieces, or more.
     """
@@ -168,7 +168,7 @@ def _front(row: Row, present: int) -> tuple[int, int, float]:
 def _pass_by(end: float, row: Row, count: int, waiting: int, present: int, front: int) -> tuple[int, int, float]:
     """Activates the pieces that begin before a tangent completely behind the front piece, if they end after it.
 
-    Returns the number of pieces processed so far, the number of active pieces, and the tangent at which the next piece begins, or
+    Returns the number of pieces already processed, the number of active pieces, and the tangent at which the next piece begins, or
     the given tangent.
     """
     floor, high = row.pieces[front].floor, row.pieces[front].high

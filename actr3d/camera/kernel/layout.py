@@ -105,7 +105,7 @@ class ExtentField(NamedTuple):
 
 EXTENT_FIELDS: Final = (
     ExtentField("row", "i4", "scan line", "", "which scan line, counted from 0 at the top"),
-    ExtentField("label", "i4", "object", "", "a number that tells objects apart, and nothing else"),
+    ExtentField("label", "i4", "object", "", "a number that distinguishes objects, without meaning"),
     ExtentField("y", "f8", "height", "", "where the scan line is on the screen: 0 at the top, 1 at the bottom"),
     ExtentField("x1", "f8", "left edge", "", "where its left edge is on the screen: 0 at the left, 1 at the right"),
     ExtentField("x2", "f8", "right edge", "", "where its right edge is on the screen: 0 at the left, 1 at the right"),

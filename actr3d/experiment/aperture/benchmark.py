@@ -10,8 +10,8 @@ from dataclasses import asdict, replace
 from statistics import mean
 from typing import Any
 
-from actr3d.bench.constraints import Constraint, Findings, turning_point
-from actr3d.bench.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
+from actr3d.experiment.aperture.constraints import Constraint, Findings, turning_point
+from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
 
 TRIALS = 30
 """The default number of trials per cell. Source: as many as each of the original's agents (human-data)."""
@@ -32,15 +32,15 @@ def cells(outcomes: list[Outcome]) -> dict[tuple[str, str, float], float]:
 
 def failures(outcomes: list[Outcome]) -> list[str]:
     """Returns the trials that did not pass, or touched the wall: one text per cell, with their number, the total, and how they ended."""
-    told: defaultdict[tuple[str, str, float], list[str]] = defaultdict(list)
+    endings: defaultdict[tuple[str, str, float], list[str]] = defaultdict(list)
     sizes = Counter((outcome.trial.group, outcome.trial.condition, outcome.trial.aperture) for outcome in outcomes)
     for outcome in outcomes:
         if outcome.result.outcome != "passed" or outcome.result.contacts:
             how = "touched the wall" if outcome.result.contacts else outcome.result.outcome
-            told[outcome.trial.group, outcome.trial.condition, outcome.trial.aperture].append(how)
+            endings[outcome.trial.group, outcome.trial.condition, outcome.trial.aperture].append(how)
     return [
         f"{group} {condition} {100 * aperture:.0f} cm: {len(how)} of {sizes[group, condition, aperture]} ({', '.join(sorted(set(how)))})"
-        for (group, condition, aperture), how in sorted(told.items())
+        for (group, condition, aperture), how in sorted(endings.items())
     ]
 
 
@@ -102,9 +102,9 @@ def _table(title: str, rows: list[dict[str, Any]], beside: str, scale: float = 1
     return lines
 
 
-def main(*, json_output: bool, trials: int | None = None) -> int:
+def main(*, json_output: bool, trials: int = TRIALS) -> int:
     """Measures and prints; returns the exit code: 0 if the bar and all constraints are met, and all agents reach the wall."""
-    measured = measure(trials or TRIALS)
+    measured = measure(trials)
     constraints = [Constraint(**constraint) for constraint in measured["constraints"]]
     good = measured["rmse"] <= BAR and not measured["unfinished"] and all(constraint.met for constraint in constraints)
     if json_output:
@@ -113,7 +113,9 @@ def main(*, json_output: bool, trials: int | None = None) -> int:
     print("\n".join(_table("replication: angle at the wall [degrees], mean (original's), by aperture [cm]", measured["cells"], "original")))
     holds = "holds" if measured["rmse"] <= BAR else "MISSED"
     print(f"{holds}  root mean square difference {measured['rmse']:.2f} degrees (at most {BAR:g}; we aim at {AIM:g})\n")
-    print("\n".join(_table("human: angle at the wall [degrees], mean (margin of who turned [cm])", measured["human"], "margin", 100)))
+    print(
+        "\n".join(_table("human: angle at the wall [degrees], mean (margin of those that turned [cm])", measured["human"], "margin", 100))
+    )
     for constraint in constraints:
         print(f"{'met    ' if constraint.met else 'NOT MET'}  {constraint.number}  {constraint.says}: {constraint.found}")
     for variant, texts in measured["failures"].items():

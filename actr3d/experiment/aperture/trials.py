@@ -18,8 +18,8 @@ from typing import Any
 import actr3d
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
+from actr3d.experiment.aperture.passage import PassageResult
 from actr3d.running.building import Blueprint
-from actr3d.simulation import PassageResult
 
 GROUPS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
 """The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
@@ -137,6 +137,6 @@ def original_means() -> dict[tuple[str, str, float], float]:
 
     Source: its own trials, 150 per cell (human-data).
     """
-    with (Path(__file__).parent / "data" / "original_aperture_means.csv").open(encoding="utf-8") as file:
+    with (Path(__file__).parent / "original_means.csv").open(encoding="utf-8") as file:
         rows: list[Any] = list(csv.DictReader(file))
     return {(row["group"], row["speed"], int(row["A"]) / 100): float(row["mean_deg"]) for row in rows}

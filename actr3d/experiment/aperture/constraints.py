@@ -17,7 +17,7 @@ import numpy as np
 from scipy import optimize
 from scipy.special import stdtr
 
-from actr3d.bench.trials import CONDITIONS, GROUPS, Outcome, Trial
+from actr3d.experiment.aperture.trials import CONDITIONS, GROUPS, Outcome, Trial
 
 TURNED = 5.0
 """An agent has turned if its angle is above this [degrees]: people sway by a few degrees (human-data). No source: our choice."""
@@ -180,7 +180,7 @@ class Findings:
             if room is not None:
                 margins[outcome.trial.aperture].append(room)
         means = {aperture: mean(of) for aperture, of in sorted(margins.items())}
-        found = f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin of who turned "
+        found = f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin of agents that turned "
         found += ", ".join(f"{100 * room:.1f} cm at {100 * aperture:.0f}" for aperture, room in means.items())
         met = touched == 0 and passed == len(self.outcomes) and bool(means)
         met &= all(MARGIN[0] <= room <= MARGIN[1] for room in means.values())

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from actr3d.errors import WorldError, did_you_mean
-from actr3d.simulation.clearance import Clearance, Wall
+from actr3d.experiment.aperture.clearance import Clearance, Wall
 from actr3d.world import World
 from actr3d.world.scene_objects import Aperture
 
