@@ -23,6 +23,7 @@ from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.running.complaint import complaint
 from actr3d.running.declared import check_build, has_build
+from actr3d.running.last_words import before_the_end
 from actr3d.running.options import options_help, read_options, read_settings
 from actr3d.running.run import run_model
 from actr3d.trace import LEVELS, Trace, TraceEvent
@@ -65,7 +66,11 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
     trouble: BaseException | None = None
     result: Any = None
     try:
-        with warnings.catch_warnings(), printing_to(printed or out):
+        with (
+            warnings.catch_warnings(),
+            printing_to(printed or out),
+            before_the_end(partial(_keep_output, out, printed, options.record, limits)),
+        ):
             warnings.showwarning = _show_warning
             result = run_model(options.file, limits, settings=partial(_settings, options), record=options.record)
     except (SystemExit, KeyboardInterrupt):
@@ -85,6 +90,17 @@ def _run(options: argparse.Namespace, out: TextIO) -> int:
     if unwritten:
         return _complain_of_output(unwritten)
     return 0 if trouble is None else 2 if isinstance(trouble, SettingError) else 1
+
+
+def _keep_output(out: TextIO, printed: ModelOutput | None, record: str | None, limits: RunLimits, ends: bool) -> None:
+    """Writes the output before the model ends its process, and says what is kept of the run."""
+    if ends:
+        all_written(out, printed)
+        if record is not None and not limits.ended:
+            print(f"the model has ended its own process; '{record}' holds the run until then, without its end", file=sys.stderr, flush=True)
+    else:
+        with suppress(OSError, ValueError):
+            out.flush()
 
 
 def _settings(options: argparse.Namespace, fields: Sequence[Field]) -> dict[str, Any]:

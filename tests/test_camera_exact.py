@@ -61,6 +61,15 @@ def test_edges_of_an_opening_and_distances_to_the_millimetre() -> None:
     assert [x1, x2] == pytest.approx([0.5 + 0.35 / 10.4, 0.5 + 2.35 / 10], abs=ABOUT)
 
 
+def test_both_edges_of_an_object_are_exact_where_a_sliver_of_another_part_begins_or_ends_it() -> None:
+    far, near = 'size=".1 1.20000012 2" pos="6.1 0 1"', 'size=".1 1 2" pos="5.1 0 1"'
+    camera, view = seen(f'<body><geom name="far" type="box" {far}/><geom type="box" {near}/></body>', rows=1)
+    ((x1, x2, d1, d2, *_),) = extents_of(camera, view, "far")
+    half = 1.20000012 / 6 / 2  # the far part is seen for a hundred-millionth of the screen on each side of the near one
+    assert [x1, x2] == pytest.approx([0.5 - half, 0.5 + half], abs=ABOUT)
+    assert [d1, d2] == pytest.approx([math.hypot(6, 1.20000012)] * 2, abs=ABOUT)
+
+
 def test_five_centimetres_from_a_wall() -> None:
     _, view = seen('<geom type="box" size=".1 3 2" pos=".15 2.98 1"/>', rows=1)
     ((extent,),) = only_row(view).values()

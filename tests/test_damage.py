@@ -118,8 +118,8 @@ def test_what_has_new_checksums_is_compared_all_the_same(original: Path, tmp_pat
     path = tmp_path / "run"
     for forged, message in [
         (["DELETE FROM answers"], "differs: answer 1; recorded: nothing"),
-        (["UPDATE facts SET value = '1000' WHERE name = 'timestep_us'"], "differs: recorded: period 0.01 s, timestep 0.001 s"),
-        (["""UPDATE facts SET value = '"x"' WHERE name = 'scene'"""], "differs: the scene compiles to another than then"),
+        (["UPDATE facts SET value = '1000' WHERE name = 'timestep_us'"], "differs: the fact 'timestep_us'; recorded: 1000; now: 2000"),
+        (["""UPDATE facts SET value = '"x"' WHERE name = 'scene'"""], "differs: the fact 'scene'; recorded: \"x\"; now: "),
         (
             ["""UPDATE facts SET value = 'null' WHERE name = 'ended'""", "DELETE FROM facts WHERE name = 'whole'"],
             "agrees as far as it goes: 40 ",

@@ -177,3 +177,15 @@ def test_a_program_that_raises_what_is_no_exception_is_recorded_as_failed(tmp_pa
     assert "Odd: on purpose" in capsys.readouterr().err
     assert main(["replay", str(recording)]) == 0
     assert "failed after 0 s (Odd: on purpose)" in capsys.readouterr().out
+
+
+def test_a_program_that_prints_the_report_of_its_run_agrees_with_itself(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file.write_text(
+        PROGRAM.split("one, two")[0] + "\nprint(simulation().run(0.05))\nprint(simulation().run(0.05, real_time=1e9))\n", encoding="utf-8"
+    )
+    assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "printed")]) == 0
+    assert capsys.readouterr().out == "RunReport(ended_by='seconds', ticks=5, simulated=0.05)\n" * 2
+    with Recorded(tmp_path / "printed") as recorded:
+        assert str(replay(recorded)).startswith("every byte agrees: 10 ticks, ")

@@ -13,7 +13,7 @@ from noting import Part, seen
 
 from actr3d.actr import Model
 from actr3d.actr.kernel.events import Trigger
-from actr3d.actr.kernel.scheduler import Scheduler
+from actr3d.actr.kernel.scheduler import MOST_LEFT, Scheduler
 
 
 def test_simultaneous_events_come_by_priority_then_in_order() -> None:
@@ -317,6 +317,32 @@ def test_delays_that_follow_one_another_do_not_drift(wait: Any) -> None:
     world = World()
     world.run()
     assert world.now() == STEPS / 60
+
+
+def test_many_different_delays_in_turn_do_not_drift() -> None:
+    delays = [1 / number for number in range(61, 161)]
+
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            exact = Fraction(0)
+            for turn in range(100 * len(delays)):
+                delay = delays[turn % len(delays)]
+                exact += Fraction(delay) * 1_000_000
+                yield delay
+                assert abs(self.sch.now_us - exact) < MOST_LEFT
+
+    World().run()
+
+
+def test_delays_of_less_than_a_microsecond_never_go_back() -> None:
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            for turn in range(10_000):
+                before = self.sch.now_us
+                yield (turn % 97 + 1) / 60e6
+                assert self.sch.now_us >= before
+
+    World().run()
 
 
 @pytest.mark.parametrize("first_come", [True, False])

@@ -182,7 +182,7 @@ def _why(status: int, subject: str) -> str:
     if status >= 0:
         return f"{subject} ended with exit code {status}"
     name = _name_of(-status)
-    return f"{subject} was ended by {name}{_MEANINGS.get(name, '')}"
+    return f"{subject} was ended by {name}{_MEANINGS.get(name, '')}; what it printed or recorded last may be missing"
 
 
 def _name_of(number: int) -> str:

@@ -15,7 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
-from workbench.compiled import from_text, loaded
+from actr3d.world.compiled import from_text, loaded
 
 _FREE, _BALL, _SLIDE = (int(kind) for kind in (mjtJoint.mjJNT_FREE, mjtJoint.mjJNT_BALL, mjtJoint.mjJNT_SLIDE))
 _TURN = ("qw", "qx", "qy", "qz")

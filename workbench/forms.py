@@ -96,7 +96,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
     Raises:
         RecordingError: If the recording cannot be read.
     """
-    from workbench.compiled import from_text, loaded
+    from actr3d.world.compiled import from_text, loaded
     from workbench.curves import NOTHING, Curves, stretch, stride
 
     with Recorded(path) as recorded:

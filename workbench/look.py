@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from workbench import protocol as say
-
-TITLES: dict[say.OverlayName, str] = {
-    "frustum": "field of view",
-    "edges": "edges seen",
-    "features": "obstacles and openings",
-    "path": "path walked",
-    "posture": "planned posture",
-    "contacts": "contacts",
-}
-"""The titles of the overlays, in the order of the menu."""
+from workbench.overlays import OVERLAYS
 
 
 @dataclass(frozen=True)
 class Look:
     """Holds the set of overlays that are shown."""
 
-    shown: frozenset[say.OverlayName] = frozenset({"features", "path", "contacts"})
+    shown: frozenset[str] = field(default_factory=lambda: frozenset(n for n, one in OVERLAYS.items() if one.shown_at_first))
 
     def after(self, said: say.Overlay) -> Look:
         """Returns the overlays that are shown after a command."""
@@ -30,4 +21,4 @@ class Look:
 
     def told(self) -> dict[str, Any]:
         """Returns the entry for pages: `overlays`, each with `name`, `title` and whether it is `shown`."""
-        return {"overlays": [{"name": name, "title": title, "shown": name in self.shown} for name, title in TITLES.items()]}
+        return {"overlays": [{"name": name, "title": overlay.title, "shown": name in self.shown} for name, overlay in OVERLAYS.items()]}

@@ -38,6 +38,23 @@ def index() -> FileResponse:
     return FileResponse(static() / "index.html", media_type="text/html")
 
 
+@router.get("/static/panels.js")
+def panels() -> Response:
+    """Returns a module with the panels of the page: one for each file of the folder `panels` that exports a `panel`."""
+    files = sorted(path.name for path in (static() / "panels").glob("*.js"))
+    imports = "".join(f'import * as panel{n} from "./panels/{file}";\n' for n, file in enumerate(files))
+    modules = ", ".join(f"panel{n}" for n in range(len(files)))
+    sorting = "flatMap(({ panel }) => panel ?? []).sort((one, other) => one.order - other.order)"
+    return Response(f"{imports}\nexport const PANELS = [{modules}].{sorting};\n", media_type="text/javascript")
+
+
+@router.get("/static/panels.css")
+def panel_styles() -> Response:
+    """Returns a style sheet that imports those of the folder `panels`."""
+    names = [path.name for path in sorted((static() / "panels").glob("*.css"))]
+    return Response("".join(f'@import url("panels/{name}");\n' for name in names), media_type="text/css")
+
+
 @router.get("/viser/")
 def any_scene(request: Request) -> Response:
     """Redirects to the 3D view of the newest session that has one."""

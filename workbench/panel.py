@@ -7,7 +7,8 @@ from functools import partial
 from typing import Any
 
 from workbench import protocol as say
-from workbench.look import TITLES, Look
+from workbench.look import Look
+from workbench.overlays import OVERLAYS
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": say.Run, "pause": say.Pause, "step": say.Step, "back": say.Back}
@@ -44,8 +45,8 @@ class Panel:
             self._sliders[name] = slider
         self._boxes: dict[str, Any] = {}
         with gui.add_folder("overlays"):
-            for name, title in TITLES.items():
-                box = gui.add_checkbox(title, initial_value=name in look.shown)
+            for name, overlay in OVERLAYS.items():
+                box = gui.add_checkbox(overlay.title, initial_value=name in look.shown)
                 box.on_update(partial(self._switched, name, box))
                 self._boxes[name] = box
 
@@ -71,6 +72,6 @@ class Panel:
         if event.client_id is not None:  # otherwise the panel itself was updated to the current state
             self._said(say.Aperture(width=slider.value / 100, name=name))
 
-    def _switched(self, name: say.OverlayName, box: Any, event: Any) -> None:
+    def _switched(self, name: str, box: Any, event: Any) -> None:
         if event.client_id is not None:
             self._said(say.Overlay(name=name, shown=box.value))

@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
+
+from workbench.overlays import OVERLAYS
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Text = Annotated[str, Field(max_length=1_000_000)]
@@ -16,9 +18,15 @@ Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
 Plain = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
 """A value that can be recorded."""
 
-OverlayName = Literal["frustum", "edges", "features", "path", "posture", "contacts"]
-"""What can be drawn over the 3D view: the field of view, the edges seen, the last features that vision found with their widths, the
-path walked, the posture that the body is commanded to take, and its contacts."""
+
+def _overlay(name: str) -> str:
+    if name not in OVERLAYS:
+        raise ValueError(f"there is no overlay of this name; there are: {', '.join(OVERLAYS)}")
+    return name
+
+
+OverlayName = Annotated[Name, AfterValidator(_overlay), Field(json_schema_extra={"enum": [*OVERLAYS]})]
+"""What can be drawn over the 3D view: the name of one of `OVERLAYS`."""
 
 
 class Said(BaseModel):

@@ -13,15 +13,14 @@ import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 
+from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
-from workbench.compiled import loaded
 from workbench.curves import INTEGRATION
 from workbench.look import Look
-from workbench.overlays import Overlay, make_overlays
+from workbench.overlays import OVERLAYS, Drawn, Overlay
 from workbench.overlays.features import Features
 from workbench.overlays.frustum import Frustum
 from workbench.panel import Panel
-from workbench.protocol import OverlayName
 from workbench.stage import Stage
 from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, start_viser, tell
 from workbench.worker.messages import Facts, State
@@ -184,7 +183,10 @@ class _Drawn:
         self._scene.camera_tracking_enabled = False  # it would shift the world
         self._scene.set_refresh_handler(lambda: None)  # so that its own threads read no data
         server.scene.configure_environment_map(hdri=None)  # it takes much of the drawing time without a graphics card
-        self._overlays: dict[OverlayName, Overlay] = make_overlays(server, self._scene, self._model, world, look)
+        drawn = Drawn(server, self._scene, self._model, world)
+        self._overlays: dict[str, Overlay] = {name: overlay(drawn) for name, overlay in OVERLAYS.items()}
+        for name, shown in self._overlays.items():
+            shown.show(name in look.shown)
         self._server, self._moments = server, moments
         self._stage = Stage(self._model)
         self._outlines = Outlines(server, self._model)
@@ -194,9 +196,9 @@ class _Drawn:
         self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
         self._look: Look | None = None
 
-    def asked(self, look: Look) -> tuple[OverlayName, ...]:
-        """Returns the visible overlays that need data from the worker, and always the field of view: any browser may use the eye's view."""
-        return tuple(name for name, overlay in self._overlays.items() if overlay.asked and name in (look.shown | {"frustum"}))
+    def asked(self, look: Look) -> tuple[str, ...]:
+        """Returns the overlays whose data the worker must send: those shown, and always the field of view, for the view through the eye."""
+        return tuple(name for name in self._overlays if name in look.shown | {"frustum"})
 
     def look(self, look: Look) -> None:
         """Shows the chosen overlays."""

@@ -37,6 +37,10 @@ def _flag(value: Any) -> bool:
     return isinstance(value, bool)
 
 
+def _true(value: Any) -> bool:
+    return value is True
+
+
 def _run_kind(value: Any) -> bool:
     return value in ("simulation", "program")
 
@@ -103,7 +107,7 @@ _KINDS = {
     "world": _DICT,
     "ended": _Kind('{"by": a text}, or null', _ended),
     "failed": _Kind("a text, or null", _failed),
-    "whole": _FLAG,
+    "whole": _Kind("true", _true),
     "branched": _Kind("a number from 0 on, or null", _time),
 }
 """Facts that this library or the workbench reads; what others are, whoever writes them knows."""

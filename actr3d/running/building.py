@@ -42,7 +42,7 @@ class Blueprint:
             self._kind = get_type_hints(self._build).get(names[0])
             if not isinstance(self._kind, type) or not is_dataclass(self._kind):
                 found = getattr(self._kind, "__name__", self._kind)
-                raise ModelFileError(f"{self._place}: build({names[0]}: {found}) takes what is no dataclass; it must be {RIGHT}")
+                raise ModelFileError(f"{self._place}: build({names[0]}: {found}) takes what is no dataclass; write {RIGHT}")
         self.fields: tuple[Field, ...] = () if self._kind is None else fields_of(self._kind)
         """Its parameters."""
 

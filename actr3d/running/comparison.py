@@ -26,8 +26,10 @@ class Comparison:
     """How many events were compared."""
     difference: str | None
     """Where it first differs; None where every byte agrees, as far as the recording goes."""
-    broken_off: str | None = None
-    """How the recorded run ended before its end, and when; None where it was over, or was closed between two ticks."""
+    to_its_end: bool = True
+    """Whether the run was compared to its end; False where the recording says that it was left, broken off or failed before."""
+    notes: tuple[str, ...] = ()
+    """How the recorded run ended before its end, and what cannot be checked by running it again."""
     unfinished: int = 0
     """How many events of a tick that never came to its end the recording holds; they were not compared."""
 
@@ -35,10 +37,9 @@ class Comparison:
         if self.difference is not None:
             return f"differs: {self.difference}"
         counts = f"{self.ticks:,} ticks, {self.events:,} events" if self.ticks else f"{self.events:,} events"
-        if self.broken_off is None:
-            return f"every byte agrees: {counts}"
         rest = f" ({self.unfinished:,} more events of a tick that did not end)" if self.unfinished else ""
-        return f"agrees as far as it goes: {counts}{rest}; {self.broken_off}"
+        head = "every byte agrees" if self.to_its_end else "agrees as far as it goes"
+        return "; ".join((f"{head}: {counts}{rest}", *self.notes))
 
 
 class Differs(EndOfRun):
@@ -65,6 +66,12 @@ class Beside:
         self.ended_first = False
         """Whether the recording was at its end before the run was, and may be."""
         self.difference: str | None = None
+        self.facts: dict[str, Any] = {}
+        """The facts of the new run; compared when it is over."""
+
+    def fact(self, name: str, value: Any) -> None:
+        """Takes a fact of the new run."""
+        self.facts[name] = value
 
     def event(self, event: TraceEvent) -> None:
         """Takes one event of the new run.
@@ -75,6 +82,9 @@ class Beside:
         then = self._next(self._events)
         self.events += 1
         self._compare(f"event {self.events} at {event.time:g} s", None if then is None else then.to_json(), event.to_json())
+
+    event_alone = event
+    """Of a program that may record nothing but events."""
 
     def state(self, run: int, tick: int, data: bytes) -> None:
         """Takes the physics at the start of a run, or at the end of a tick.

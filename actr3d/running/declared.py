@@ -40,7 +40,11 @@ def problem_of_build(source: str) -> tuple[int, str] | None:
     if not said and any(isinstance(one, ast.Name) and one.id == "build" and isinstance(one.ctx, ast.Load) for one in ast.walk(tree)):
         return None
     wrong = _wrong(node, tree)
-    return None if wrong is None else (node.lineno, f"{wrong}; it must be {RIGHT}" + ("" if said else " (or have another name)"))
+    return (
+        None
+        if wrong is None
+        else (node.lineno, f"{wrong}; write {RIGHT}" + ("" if said else "; rename it if it is not to build the model"))
+    )
 
 
 def _builds(tree: ast.Module) -> list[ast.stmt]:
@@ -66,8 +70,8 @@ def _wrong(node: ast.stmt, tree: ast.Module) -> str | None:
         return f"build is {kind}, not a function that is defined in this file"
     head = f"build({ast.unparse(node.args)})"
     if not _returns_simulation(node):
-        returned = "does not say what it returns" if node.returns is None else f"says that it returns {ast.unparse(node.returns)}"
-        return f"{head} {returned}, not a Simulation"
+        got = f"`def {head}`, without a return type" if node.returns is None else f"`def {head} -> {ast.unparse(node.returns)}`"
+        return f"build must be declared to return a Simulation (got {got})"
     return _wrong_arguments(head, node.args, tree)
 
 

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from actr3d.actr.kernel.run_limits import RunLimits
-from actr3d.actr.loading import run_text
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
-from actr3d.clock import MICROSECONDS, seconds
+from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.running.comparison import Beside, Comparison, Differs
 from actr3d.running.complaint import failure
+from actr3d.running.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.running.printed import BuiltOutput, ProgramOutput
 from actr3d.running.replayable import check_replayable
+from actr3d.running.run import play_program, recorded_failure
 from actr3d.trace import Trace
 
 if TYPE_CHECKING:
@@ -67,30 +68,36 @@ def replay(
                 return _replay_program(recorded, helpers, progress)
         if make is None and not recorded.facts.get("built"):
             raise RecordingError(f"'{recorded.path}' was made by a program that is not recorded with it; replay(recorded, make) can run it")
-        seed = recorded.facts.get("program_seed", recorded.facts["seed"])
-        with RunLimits(seed=seed), shared_random(seed):
-            if make is not None:
-                return _replay_simulation(recorded, make(), progress)
-            with _sealed(recorded, within) as helpers, BuiltOutput() as output:
-                simulation = _built(recorded, helpers)
-                output.lead_to(simulation)
-                return _replay_simulation(recorded, simulation, progress)
+        facts = recorded.facts
+        if make is not None:
+            seed = facts.get("program_seed", facts["seed"])
+            with RunLimits(seed=seed), shared_random(seed):
+                simulation = make()
+                return _replay_simulation(recorded, simulation, Beside(recorded), simulation.facts(), progress)
+        seed = facts["program_seed"]
+        with RunLimits(seed=seed, until=facts["until"]), shared_random(seed), _sealed(recorded, within) as helpers, BuiltOutput() as output:
+            simulation, parameters = _built(recorded, helpers)
+            output.lead_to(simulation)
+            beside = Beside(recorded)
+            helpers.heard = partial(beside.fact, "helpers")
+            file = facts["file"]
+            own = built_facts(file, facts["sources"][file], parameters, seed, facts["until"], helpers.loaded)
+            return _replay_simulation(recorded, simulation, beside, simulation.facts(**own), progress)
 
 
-def _built(recorded: Recorded, helpers: HelperTexts) -> Simulation:
+def _built(recorded: Recorded, helpers: HelperTexts) -> tuple[Simulation, dict[str, Any]]:
     from actr3d.running.building import build  # a program does without the world that this loads
 
     facts = recorded.facts
     file = facts["file"]
     try:
-        simulation, _ = build(facts["sources"][file], file, facts["parameters"], Path(file).parent, helpers)
+        return build(facts["sources"][file], file, facts["parameters"], Path(file).parent, helpers)
     except Actr3dError:
         raise
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # it did build something when it was recorded
         raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {failure(error)}") from error
-    return simulation
 
 
 def _sealed(recorded: Recorded, within: Path | None) -> AbstractContextManager[HelperTexts]:
@@ -100,61 +107,64 @@ def _sealed(recorded: Recorded, within: Path | None) -> AbstractContextManager[H
 
 
 def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress) -> Comparison:
+    """Runs a program beside its recording, until it ends, or does more than is recorded of a run that did not end by itself."""
     facts = recorded.facts
-    file = facts["file"]
+    file, source = facts["file"], facts["sources"][facts["file"]]
     beside = Beside(recorded, open_end=not (recorded.over or _failed(recorded)))
+    beside.facts |= program_facts(file, source, facts["seed"], facts["until"])
     trace = Trace("all", keep=False)
-    trace.listen(beside.event)
-    whole = max(1, recorded.event_count)
-    trace.listen(lambda _: progress(min(1.0, beside.events / whole)))
-    limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace, recorder=beside)
-    trouble, ended, failed = "", "end", None
+    count = max(1, recorded.event_count)
+    trace.listen(lambda _: progress(min(1.0, beside.events / count)))
+    limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
+    trouble = ""
     try:
         with ProgramOutput(limits) as output:
-            try:
-                run_text(facts["sources"][file], file, limits=limits, folder=Path(file).parent, helpers=helpers)
-            except SystemExit as error:
-                trouble, ended = f" ({failure(error)})", "exit"
-            if recorded.over:
-                output.finish()
-    except Differs:  # in the last line of a log, when the program itself was over
+            left = play_program(file, source, limits, trace, beside, helpers, output)
+        trouble = "" if left is None else f" ({failure(left)})"
+    except Differs:
         pass
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - the recorded run may have ended so, too
-        failed = failure(error)
-        trouble, ended = f" ({failed})", None
-    return _compared(recorded, beside, f"the run ended{trouble}", ended, failed)
+        trouble = f" ({failure(error)})"
+    return _compared(recorded, beside, f"the run ended{trouble}")
 
 
-def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Progress) -> Comparison:
-    """Runs a simulation beside its recording."""
+def _replay_simulation(recorded: Recorded, simulation: Simulation, beside: Beside, facts: dict[str, Any], progress: Progress) -> Comparison:
+    """Runs a simulation beside its recording, as many ticks as are recorded; of one that a model file builds, not beyond its end.
+
+    Args:
+        recorded: The recording.
+        simulation: The simulation, at its start.
+        beside: Compares what it does.
+        facts: The facts that its recording would begin with.
+        progress: Is told the share of the ticks that are done.
+    """
     from actr3d.simulation import Command
 
-    facts, world, journal = recorded.facts, simulation.world, simulation.event_log
-    then = facts["period_us"], facts["timestep_us"], facts["seed"]
-    now = round(simulation.period * MICROSECONDS), world.scene.timestep_us, simulation.seed
-    if then != now:
-        return Comparison(ticks=0, events=0, difference=f"recorded: {_beginning(*then)}; now: {_beginning(*now)}")
-    beside = Beside(recorded)
-    journal.record(cast("Any", beside))
+    log = simulation.event_log
+    beside.facts |= facts
+    log.record(cast("Any", beside))
     commands = [Command.from_data(command.tick, command.data) for command in recorded.commands()]
     simulation.plan(commands)
-    ticks, ended, failed = recorded.ticks, None, None
+    ticks, ended, built = recorded.ticks, None, bool(recorded.facts.get("built"))
     try:
-        for tick in range(1, ticks + 1):
+        while simulation.ticks < ticks and not (built and simulation.ticks and _ended_by(simulation)):
             simulation.step()
-            progress(tick / ticks)
-        ended = _ending(recorded, simulation)
+            progress(simulation.ticks / ticks)
+        ended = _ended_by(simulation)
         try:
-            _end(recorded, simulation, ended)
+            with recorded_failure(beside):
+                _end(recorded, simulation, ended)
         except (Differs, KeyboardInterrupt):
             raise
-        except BaseException as error:  # noqa: BLE001 - the recorded run may have failed so, too
-            failed = failure(error)
-        if recorded.closed:
-            journal.stdout.finish()
-        journal.check()
+        except BaseException:  # noqa: BLE001 - the fact 'failed' is compared
+            ended = None
+        if ended is not None:
+            beside.fact("ended", {"by": ended})
+        if recorded.over or _failed(recorded) or recorded.facts.get("whole"):
+            log.end_recording(whole=simulation.timeline.begun and not simulation.timeline.lockstep.broken)
+        log.check()
         for command in commands[: simulation.timeline.lockstep.commands]:
             beside.command(1, command.tick, command.to_data())
     except Differs:
@@ -162,30 +172,22 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, progress: Pro
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - what is recorded went on beyond that
-        beside.difference = f"the run failed after {seconds(simulation.ticks * facts['period_us']):g} s ({failure(error)})"
-    if world.fingerprint != facts["scene"]:
-        if beside.difference is None:
-            beside.difference = "the scene compiles to another than then, though the physics agrees"
-        elif beside.difference.startswith("the physics"):
-            beside.difference += "; it compiles to another scene than then"
-    return _compared(recorded, beside, "the run ended", ended, failed)
+        beside.difference = f"the run failed after {seconds(simulation.ticks * recorded.facts['period_us']):g} s ({failure(error)})"
+    return _compared(recorded, beside, "the run ended")
 
 
-def _ending(recorded: Recorded, simulation: Simulation) -> str:
-    """Says what has ended a simulation whose recorded ticks are over; `limits` where it could go on."""
-    then: dict[str, Any] = recorded.facts.get("ended") or {}
-    if then.get("by") in ("seconds", "until") and not recorded.facts.get("built"):
-        return str(then["by"])  # it was not run to its end by this library, but by a program that says so
-    return simulation.over or "limits"
+def _ended_by(simulation: Simulation) -> str | None:
+    """Returns what ends a simulation where it is now; None if it can go on."""
+    return simulation.over or (None if simulation.timeline.lockstep.may_tick() else "limits")
 
 
-def _end(recorded: Recorded, simulation: Simulation, ended: str) -> None:
+def _end(recorded: Recorded, simulation: Simulation, ended: str | None) -> None:
     """Does what the recorded run did after its last whole tick.
 
     Raises:
         BaseException: What the model raises.
     """
-    if _failed(recorded) and ended == "limits":
+    if _failed(recorded) and ended is None:
         simulation.step()
         return
     simulation.timeline.repeat_commands()
@@ -193,56 +195,80 @@ def _end(recorded: Recorded, simulation: Simulation, ended: str) -> None:
         simulation.conclude()
 
 
-def _beginning(period: int, timestep: int, seed: Any) -> str:
-    return f"period {seconds(period):g} s, timestep {seconds(timestep):g} s, seed {seed}"
+def _failed(recorded: Recorded) -> bool:
+    """Returns whether the recorded run failed: then it holds all until that."""
+    return recorded.facts.get("failed") is not None
 
 
-def _compared(recorded: Recorded, beside: Beside, trouble: str, ended: str | None, failed: str | None) -> Comparison:
+def _compared(recorded: Recorded, beside: Beside, trouble: str) -> Comparison:
     """Returns what came of a comparison whose run is over; what is recorded beyond that is a difference, unless it was broken off there.
 
     Args:
         recorded: The recording.
         beside: What was compared.
         trouble: Says that the run has ended, where the recorded one went on.
-        ended: What has ended it.
-        failed: What it failed with; None where it did not.
     """
-    left, difference, broken_off, unfinished = beside.rest(), beside.difference, None, 0
-    if _failed(recorded):
-        broken_off = _broken_off(recorded)
-    elif not recorded.closed:
-        broken_off = _broken_off(recorded)
+    left, difference, unfinished = beside.rest(), beside.difference, 0
+    if not (recorded.closed or _failed(recorded)):
         unfinished = left.pop("event", 0)
         left = {kind: count for kind, count in left.items() if kind == "state"}  # the rest may be of the tick that did not end
     if difference is None and left:
         more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
         difference = f"{trouble} after {beside.events:,} events; the recording holds {more} more"
-    if difference is None and (recorded.over or _failed(recorded)):
-        now = {"failed": failed, "ended": None if failed else {"by": ended}}
-        difference = _other_end({name: recorded.facts.get(name) for name in now}, now)
-    return Comparison(ticks=beside.ticks, events=beside.events, difference=difference, broken_off=broken_off, unfinished=unfinished)
+    end = _recorded_end(recorded)
+    apart, notes = _unchecked(recorded, beside)
+    differs = first_difference(recorded.facts, beside.facts, apart)
+    if difference is None:
+        difference = differs
+    elif difference.startswith("the physics") and recorded.facts.get("scene") != beside.facts.get("scene"):
+        difference += "; it compiles to another scene than then"
+    return Comparison(
+        ticks=beside.ticks,
+        events=beside.events,
+        difference=difference,
+        to_its_end=end is None,
+        notes=(*([] if end is None else [end]), *notes),
+        unfinished=unfinished,
+    )
 
 
-def _failed(recorded: Recorded) -> bool:
-    """Returns whether the recorded run failed: then it holds all until that."""
-    return recorded.facts.get("failed") is not None
+def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]:
+    """Returns the facts that running a recording again cannot check, and says so of those that it has."""
+    then, now = recorded.facts, beside.facts
+    from_code = then["kind"] == "program" or bool(then.get("built"))
+    told, silent = set(UNCHECKED), set(CHECKED_BEFORE)
+    if not from_code:  # `make` has other code, and what its program has recorded is unknown
+        told |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
+    said: dict[str, Any] = then.get("ended") or {}
+    if not (recorded.over or _failed(recorded)):
+        # What ends a run where the recorded one goes no further is another end than the recorded one, or than none.
+        goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
+        silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
+    elif not from_code and said.get("by") not in ("stop", "done", None):
+        told.add("ended")  # it was not run to its end by this library, but by a program that says so
+    helpers, used = then.get("helpers", {}), now.get("helpers", {})
+    early = beside.commands > 0 or not (recorded.over or _failed(recorded))
+    if early and {name: helpers[name] for name in used if name in helpers} == used:
+        # A run that went back and another way, or was broken off, may have loaded more than its recording needs.
+        (told if len(used) < len(helpers) else silent).add("helpers")
+    names = [f"'{name}'" for name in sorted(told) if then.get(name) is not None]
+    return told | silent, [f"not checked: {', '.join(names)}"] if names else []
 
 
-def _other_end(then: dict[str, Any], now: dict[str, Any]) -> str | None:
-    """Says in which fact the end of a run is another than it was; None in none."""
-    for name in now:
-        if then[name] != now[name]:
-            return f"the fact '{name}'; recorded: {json.dumps(then[name])}; now: {json.dumps(now[name])}"
-    return None
-
-
-def _broken_off(recorded: Recorded) -> str:
-    """Says how a run ended that did not come to its end, and when."""
-    period = recorded.facts.get("period_us")
+def _recorded_end(recorded: Recorded) -> str | None:
+    """Says how a run ended that did not come to its end by itself, and when; None if it did."""
+    facts = recorded.facts
+    if recorded.over:
+        return None
+    period = facts.get("period_us")
     last = 0
     if period is None:
         for event in recorded.events():
             last = event.time_us
     at = seconds(last if period is None else recorded.ticks * period)
-    failed = recorded.facts.get("failed")
-    return f"the run was broken off at {at:g} s" if failed is None else f"the run failed after {at:g} s ({failed})"
+    if _failed(recorded):
+        return f"the run failed after {at:g} s ({facts['failed']})"
+    if facts.get("ended") is None and facts.get("whole") and not facts.get("built"):
+        return None  # of a run that a program makes, nobody records how it ended
+    how = "left" if facts.get("ended") is not None else "stopped" if facts.get("whole") else "broken off"
+    return f"the recording says that the run was {how} at {at:g} s, which cannot be checked"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from actr3d.errors import RecordingError, UntrustedError
 from actr3d.recording import Recorded
 from actr3d.recording.form import versions
+from actr3d.running.facts import BUILT, PROGRAM
 
 _NEEDED = {
     "program": ("file", "sources", "seed", "until"),
     "simulation": ("seed", "period_us", "timestep_us", "scene"),
-    "built": ("file", "sources", "parameters"),
+    "built": ("file", "sources", "parameters", "program_seed", "until"),
 }
 """Facts without which a run cannot be run again; of simulations that a model file builds, those below «built», too."""
 
@@ -49,6 +50,11 @@ def _check_facts(recorded: Recorded) -> None:
         missing = [f"the source of '{facts['file']}'"]
     if missing:
         raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
+    if facts["kind"] == "program" or facts.get("built"):
+        foreign = sorted(facts.keys() - (PROGRAM if facts["kind"] == "program" else BUILT))
+        if foreign:
+            names = ", ".join(f"'{name}'" for name in foreign)
+            raise RecordingError(f"the recording '{recorded.path}' is foreign: no recording of its kind has the fact {names}")
 
 
 def _check_versions(then: dict[str, str]) -> None:

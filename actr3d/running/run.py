@@ -6,25 +6,48 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from threading import Thread
+from typing import TYPE_CHECKING, Any, Protocol
 
-from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.kernel.run_limits import EndOfRun, Recorder, RunLimits, fresh_seed
 from actr3d.actr.loading import run_text
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
+from actr3d.printing import TeeOutput
 from actr3d.recording import Recording
 from actr3d.running.complaint import failure
 from actr3d.running.declared import check_build, has_build
+from actr3d.running.facts import built_facts, program_facts
+from actr3d.running.last_words import before_the_end
 from actr3d.running.printed import BuiltOutput, ProgramOutput
-from actr3d.trace import Trace
+from actr3d.trace import Trace, TraceEvent
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
     from actr3d.simulation.real_time import Ending
 
+
+class FactRecorder(Protocol):
+    """Takes the facts that become known during a run."""
+
+    def fact(self, name: str, value: Any) -> None:
+        """Takes a fact."""
+        ...
+
+
+class ProgramRecorder(Recorder, FactRecorder, Protocol):
+    """Takes everything that a program does: a recording, or what compares it with one."""
+
+    def event_alone(self, event: TraceEvent) -> None:
+        """Takes an event."""
+        ...
+
+
+PATIENCE = 5.0
+"""The maximum time to write a recording before the model ends its process [s]."""
 Settings = Callable[[Sequence[Field]], Mapping[str, Any]]
 """Returns values of parameters, by name, for the given fields."""
 
@@ -77,11 +100,10 @@ def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | 
         if record is None:
             _run_to_end(simulation)
             return simulation.conclude()
-        facts: dict[str, Any] = {"file": str(path), "sources": {str(path): source}, "parameters": parameters, "built": True}
-        facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
+        facts = built_facts(str(path), source, parameters, limits.program_seed, limits.until, helpers.loaded)
         with simulation.record(record, **facts) as recording:
             helpers.heard = partial(recording.fact, "helpers")  # an agent may import one later
-            with _telling_failure(recording):
+            with before_the_end(partial(_keep_all, recording, simulation.event_log.stdout)), recorded_failure(recording):
                 ended_by = _run_to_end(simulation)
                 result = simulation.conclude()
             recording.fact("ended", {"by": ended_by})
@@ -102,27 +124,51 @@ def _record_program(path: Path, source: str, limits: RunLimits, record: Path | s
         limits.trace = Trace("all", keep=False)
     elif limits.trace.level != "all":
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
-    facts = {"kind": "program", "file": str(path), "sources": {str(path): source}, "seed": limits.seed, "until": limits.until}
-    with Recording(record, facts) as recording:
-        helpers = HelperTexts()
-        helpers.heard = partial(recording.fact, "helpers")
-        limits.recorder = recording
-        limits.trace.listen(recording.event_alone)
-        left: SystemExit | None = None
-        with _telling_failure(recording), ProgramOutput(limits) as output:
-            try:
-                run_text(source, str(path), limits=limits, folder=path.parent, helpers=helpers)
-            except SystemExit as error:
-                left = error
-            output.finish()
-        recording.fact("ended", {"by": "end" if left is None else "exit"})
+    with (
+        Recording(record, program_facts(str(path), source, limits.seed, limits.until)) as recording,
+        ProgramOutput(limits) as output,
+        before_the_end(partial(_keep_all, recording, output)),
+    ):
+        left = play_program(str(path), source, limits, limits.trace, recording, HelperTexts(), output)
         if left is not None:
             raise left
 
 
+def play_program(
+    file: str, source: str, limits: RunLimits, trace: Trace, recording: ProgramRecorder, helpers: HelperTexts, output: ProgramOutput
+) -> SystemExit | None:
+    """Runs a program, and records it to its end; returns the `SystemExit` that ended it, if any. `output` emits what it prints.
+
+    Raises:
+        Exception: Any error that the program raises; it is recorded, too.
+    """
+    helpers.heard = partial(recording.fact, "helpers")
+    limits.recorder = recording
+    trace.listen(recording.event_alone)
+    left: SystemExit | None = None
+    with recorded_failure(recording):
+        try:
+            run_text(source, file, limits=limits, folder=Path(file).parent, helpers=helpers)
+        except SystemExit as error:
+            left = error
+        output.finish()
+    recording.fact("ended", {"by": "end" if left is None else "exit"})
+    return left
+
+
+def _keep_all(recording: Recording, output: TeeOutput, ends: bool) -> None:
+    """Writes everything so far, as the model may be about to end its process; also a line without a line break, if it surely ends."""
+    if ends:
+        output.finish()
+    # In a thread, for which this waits no longer than it must: a signal handler of the model may have interrupted `flush` itself.
+    writing = Thread(target=recording.flush, daemon=True)
+    writing.start()
+    writing.join(PATIENCE)
+
+
 @contextmanager
-def _telling_failure(recording: Recording) -> Generator[None]:
-    """Writes the error of a failed run to its recording."""
+def recorded_failure(recording: FactRecorder) -> Generator[None]:
+    """Records the error of a failed run, and raises it."""
     try:
         yield
     except (EndOfRun, KeyboardInterrupt):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from actr3d.clock import seconds
@@ -13,7 +13,7 @@ Ending = Literal["seconds", "until", "stop", "done", "limits"]
 
 @dataclass(frozen=True, kw_only=True)
 class RunReport:
-    """Summary of a call of `run`. Results never depend on it."""
+    """Summary of a call of `run`. Results never depend on it; its text holds only what is the same whenever the run is repeated."""
 
     ended_by: Ending
     """`seconds` have passed; `until` came true; an agent called `stop`; the agents were `done`, with nothing left to do; the
@@ -22,11 +22,11 @@ class RunReport:
     """Number of ticks."""
     simulated: float
     """Simulated time [s]."""
-    wall: float
+    wall: float = field(repr=False)
     """Wall-clock time [s]."""
-    late_ticks: int = 0
+    late_ticks: int = field(default=0, repr=False)
     """Number of ticks that ended later than real time requires. None is skipped."""
-    latest: float = 0.0
+    latest: float = field(default=0.0, repr=False)
     """Greatest delay of a tick [s]."""
 
     @property

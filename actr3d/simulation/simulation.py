@@ -28,10 +28,12 @@ from actr3d.simulation.lockstep import Lockstep
 from actr3d.simulation.measure import Measure
 from actr3d.simulation.observers import Glimpse, Observer, Observers
 from actr3d.simulation.real_time import Ending, RealTime, RunReport
+from actr3d.simulation.surroundings import surroundings
 from actr3d.simulation.timeline import Timeline
 from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
 from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
+from actr3d.world.compiled import saved, to_text
 
 
 class Simulation:
@@ -412,11 +414,24 @@ class Simulation:
             raise SimulationError("a recording holds a run from its start on, and this one has begun already")
         if self.event_log.recorded:
             raise SimulationError("this run is being recorded already; what records it holds everything")
-        own = {"seed": self.seed, "period_us": self._period, "timestep_us": self.world.scene.timestep_us, "scene": self.world.fingerprint}
-        recording = Recording(path, _facts_of(own, facts, [*self._embodied.values(), *self._bodiless.values()]))
+        recording = Recording(path, self.facts(**facts))
         self.event_log.record(recording)
         recording.ending = self._end_recording
         return recording
+
+    def facts(self, **given: Any) -> dict[str, Any]:
+        """Returns the facts that a recording of this simulation begins with: of its time, its seed, its world at the start, its agents.
+
+        Args:
+            given: More facts: plain values by names that a recording does not use itself.
+
+        Raises:
+            RecordingError: If a fact has such a name.
+        """
+        world = self.world
+        own = {"seed": self.seed, "period_us": self._period, "timestep_us": world.scene.timestep_us, "scene": world.fingerprint}
+        own |= {"compiled": to_text(saved(world.mj_model)), "world": surroundings(world)}
+        return _facts_of(own, given, [*self._embodied.values(), *self._bodiless.values()])
 
     def _end_recording(self) -> None:
         self.event_log.end_recording(whole=self.timeline.begun and not self.timeline.lockstep.broken)

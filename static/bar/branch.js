@@ -1,7 +1,8 @@
 // Changes in the past of a run: its previous future is kept as a branch, or the user is asked whether it may be lost.
 
-import { html, signal } from "../vendor/preact.js";
+import { html, signal, useEffect } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
+import { remembered } from "../remembered.js";
 import { isLeft, say } from "../server.js";
 import { complain, session } from "../store.js";
 import { openRun } from "../runs/doing.js";
@@ -27,16 +28,37 @@ export function orderChange(what) {
   return change(what).catch((error) => isLeft(error) || complain(error.message));
 }
 
-const dismissed = signal(null); // the branch whose notice the user has dismissed
+const MOST_TOLD = 50; // the number of notices remembered
+
+/** The notices that were shown: they do not return when the page is loaded again. */
+const told = remembered("branches told", []);
+/** The notices that are closed: dismissed now, or shown before the page was loaded. */
+const closed = signal(told.peek());
+
+function Notice({ which, title, children }) {
+  useEffect(() => {
+    if (!told.peek().includes(which)) told.value = [...told.peek(), which].slice(-MOST_TOLD);
+  }, [which]);
+  return html`<span class="former branched" role="status" title=${title}>
+    <span>${children}</span>
+    <button class="bare" aria-label="Dismiss" title="Dismiss; the recording stays in Runs" onClick=${() => (closed.value = [...closed.value, which])}>✕</button>
+  </span>`;
+}
 
 /** Shows in the status line what was kept when the run was changed in its past. */
 export function Branch() {
-  const { branched, model } = session.value ?? {};
-  if (!branched || branched.recording === dismissed.value) return null;
+  const { id, born, branched, model, recorded } = session.value ?? {};
+  if (!branched) return null;
   const { recording, at, until } = branched;
+  const which = `${id} ${born} ${recording}`;
+  if (closed.value.includes(which)) return null;
+  const where = `the recording ${recording}, which is listed in Runs`;
+  if (recording === recorded) {
+    const title = `Changed at ${seconds(at)}; how it had gone on is still in ${where}. What follows is not recorded.`;
+    return html`<${Notice} key=${which} which=${which} title=${title}>The recording is unchanged: it still has the run up to ${seconds(until)}<//>`;
+  }
   const open = () => openRun({ id: recording, model, made: Date.now() / 1000 });
-  return html`<span class="former branched" role="status" title="Changed at ${seconds(at)}; how it had gone on is kept as the recording ${recording}, which is listed in Runs">
-    <span>The run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button></span>
-    <button class="bare" aria-label="Dismiss" title="Dismiss; the branch stays in Runs" onClick=${() => (dismissed.value = recording)}>✕</button>
-  </span>`;
+  return html`<${Notice} key=${which} which=${which} title="Changed at ${seconds(at)}; how it had gone on is kept as ${where}">
+    The run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button>
+  <//>`;
 }

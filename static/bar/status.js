@@ -29,9 +29,9 @@ export function StatusLine() {
     <span class="stretch"></span>
     <${Branch} />
     <${Former} />
-    ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
-    ${seed !== null && seed !== undefined ? html`<span title="The seed of the run">seed ${String(seed)}</span>` : null}
-    <span>${counted(state.value?.events ?? 0, "event")}</span>
+    ${recording ? html`<span class="fact" title="Kept as this recording">rec ${recording}</span>` : null}
+    ${seed !== null && seed !== undefined ? html`<span class="fact" title="The seed of the run">seed ${String(seed)}</span>` : null}
+    <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>
     ${watching.length > 1 ? html`<span id="browsers" title=${browsersInFull(watching)}>${browsers(watching, control)}</span>` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
       ${connected.value === false ? "connection lost; trying again …" : connected.value ? "connected" : "connecting …"}

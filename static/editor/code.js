@@ -108,6 +108,7 @@ function scrollToRevealed() {
 export function showText(place, document) {
   view ??= new EditorView({ state: document.state, dispatchTransactions: taken });
   if (inView !== document) {
+    finishMeasuring();
     leaveText();
     inView = document;
     view.setState(document.state);
@@ -118,6 +119,12 @@ export function showText(place, document) {
   view.requestMeasure();
   view.scrollDOM.scrollTop = document.scroll;
   if (document.revealed !== null) scrollToRevealed();
+}
+
+/** Lets CodeMirror measure what it has put off to the next frame. `setState` keeps such requests, for example to place the list of
+ * completions, which then look for positions of the former text in the new one and raise a RangeError. */
+function finishMeasuring() {
+  view.elementAtHeight(0); // any question about the layout does it
 }
 
 /** Stores the scroll position of a text before it is hidden. */

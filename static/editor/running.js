@@ -5,7 +5,7 @@ import { runModel } from "../bar/models.js";
 import { sinceNow } from "../server.js";
 import { complain, notices, session } from "../store.js";
 import { documents, save, shown } from "./documents.js";
-import { openTab } from "../tabs.js";
+import { openTab } from "../open_tab.js";
 
 /** Saves a text if necessary, and runs it from its start. */
 export async function saveAndRun(document) {

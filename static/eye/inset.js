@@ -5,7 +5,7 @@ import { useAnswer } from "../parts/answer.js";
 import { Icon } from "../parts/icon.js";
 import { seeing } from "../panels/eye.js";
 import { remembered } from "../remembered.js";
-import { openTab } from "../tabs.js";
+import { openTab } from "../open_tab.js";
 import { Retina } from "./retina.js";
 
 const open = remembered("retina", innerWidth >= 900);

@@ -82,4 +82,4 @@ function Description({ answer: { title, nodes, cut, readable } }) {
     ${cut ? html`<p class="quiet">The description is longer; its file has all of it.</p>` : null}`;
 }
 
-export const about = { id: "about", title: "About", View: About };
+export const panel = { id: "about", title: "About", order: 1, View: About };

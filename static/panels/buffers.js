@@ -104,4 +104,4 @@ function Buffers() {
   </div>`;
 }
 
-export const buffers = { id: "buffers", title: "Buffers", View: Buffers };
+export const panel = { id: "buffers", title: "Buffers", order: 2, View: Buffers };

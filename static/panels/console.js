@@ -129,4 +129,4 @@ function Console() {
   </div>`;
 }
 
-export const consoleTab = { id: "console", title: "Console", View: Console };
+export const panel = { id: "console", title: "Console", order: 9, View: Console };

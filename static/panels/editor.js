@@ -133,9 +133,10 @@ function Editor() {
   </div>`;
 }
 
-export const editor = {
+export const panel = {
   id: "editor",
   title: "Editor",
+  order: 7,
   View: Editor,
   badge: () => (unsaved().length > 0 ? { text: "", title: "unsaved" } : null),
 };

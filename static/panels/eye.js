@@ -107,4 +107,4 @@ function Eye() {
   </div>`;
 }
 
-export const eye = { id: "eye", title: "Eye", View: Eye };
+export const panel = { id: "eye", title: "Eye", order: 5, View: Eye };

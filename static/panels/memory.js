@@ -92,4 +92,4 @@ function Memory() {
   </div>`;
 }
 
-export const memory = { id: "memory", title: "Memory", View: Memory };
+export const panel = { id: "memory", title: "Memory", order: 4, View: Memory };

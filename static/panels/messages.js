@@ -63,9 +63,10 @@ function Messages() {
   </div>`;
 }
 
-export const messages = {
+export const panel = {
   id: "messages",
   title: "Messages",
+  order: 10,
   View: Messages,
   badge: () => (unseen() > 0 ? { text: unseen() > 99 ? "99+" : String(unseen()), level: "bad" } : null),
 };

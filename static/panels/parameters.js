@@ -173,9 +173,10 @@ function Parameters() {
   </form>`;
 }
 
-export const parameters = {
+export const panel = {
   id: "parameters",
   title: "Parameters",
+  order: 6,
   View: Parameters,
   badge: () => (session.value?.stale || waiting().length ? { text: "", title: "not in force yet" } : null),
 };

@@ -100,9 +100,10 @@ function Productions() {
   </div>`;
 }
 
-export const productions = {
+export const panel = {
   id: "productions",
   title: "Productions",
+  order: 3,
   View: Productions,
   badge: () => (held.value === null ? null : { text: "", title: "paused at a breakpoint", level: "bad" }),
 };

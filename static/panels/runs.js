@@ -69,4 +69,4 @@ function countText(shown, known, read) {
   return shown === known ? `${known}` : `${shown} of ${known}`;
 }
 
-export const runs = { id: "runs", title: "Runs", View: Runs };
+export const panel = { id: "runs", title: "Runs", order: 8, View: Runs };

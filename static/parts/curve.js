@@ -6,6 +6,7 @@ import { cut, widthOf } from "./surface.js";
 export const COLOURS = 6;
 const LEAST_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
 const DOT = 2; // the width of a single value [px]
+const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
 /** Returns the name of the colour of the nth curve. */
@@ -115,8 +116,9 @@ export function drawCurves(surface, box, { series, times, span, range }) {
   });
 }
 
-/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to. */
-export function drawTimes(surface, box, span, { y, height = 18, lines = true } = {}) {
+/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to;
+ * labels that would touch the range `taken` of the axis [px] are left out. */
+export function drawTimes(surface, box, span, { y, height = 18, lines = true, taken = null } = {}) {
   const step = stepFor(span.to - span.from, Math.max(2, Math.floor(box.width / 80)));
   const scale = box.width / (span.to - span.from);
   for (const time of ticks(span.from, span.to, step)) {
@@ -125,6 +127,7 @@ export function drawTimes(surface, box, span, { y, height = 18, lines = true } =
     const text = timeText(time, step);
     const half = widthOf(text, { size: 10 }) / 2;
     const at = Math.min(Math.max(x, box.x + EDGE + half), box.x + box.width - EDGE - half);
+    if (taken && at + half > taken.from - BETWEEN && at - half < taken.to + BETWEEN) continue;
     surface.text(text, at, y + height / 2, "quiet", { size: 10, anchor: "middle" });
   }
   return step;

@@ -3,7 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { open } from "../editor/documents.js";
-import { openTab } from "../tabs.js";
+import { openTab } from "../open_tab.js";
 
 const PLACE = /^(\s*File ")(.+)(", line )(\d+)(.*)$/;
 

@@ -2,7 +2,7 @@
 
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { isSettled, notices, session, settle } from "../store.js";
-import { openTab } from "../tabs.js";
+import { openTab } from "../open_tab.js";
 
 const SHOWN = 8000; // [ms]
 const toast = signal(null);

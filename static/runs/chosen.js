@@ -3,6 +3,7 @@
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
+import { remembered } from "../remembered.js";
 import { compareRuns } from "../compare/compare.js";
 import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./doing.js";
 import { download, Downloads } from "./downloads.js";
@@ -42,10 +43,13 @@ function Replayed({ run }) {
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = told.agrees === true ? "Every byte agrees." : told.agrees === false ? "It differs." : "It cannot tell.";
-  const text = told.text.replace(/^(every byte agrees|differs): /, "");
+  const head = told.agrees === true ? (told.text.startsWith("agrees as far") ? "It agrees as far as it goes." : "Every byte agrees.") : told.agrees === false ? "It differs." : "It cannot tell.";
+  const text = told.text.replace(/^(every byte agrees|agrees as far as it goes|differs): /, "");
   return html`<div class="replayed" role="status"><b class=${told.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
 }
+
+/** Whether the facts about the chosen run are shown; where there is little room, the list has it at first. */
+export const withFacts = remembered("run facts", innerHeight >= 900);
 
 function Facts({ run }) {
   const rows = [
@@ -82,9 +86,12 @@ function One({ run }) {
       <span class="stretch"></span>
       <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>
     </div>
-    <${Forms} run=${run} />
+    <div class="files">
+      <${Forms} run=${run} />
+      ${run.problem ? null : html`<button class="bare" aria-expanded=${withFacts.value} title="Result, parameters, seed, events and file" onClick=${() => (withFacts.value = !withFacts.value)}>Details ${withFacts.value ? "▾" : "▸"}</button>`}
+    </div>
     <${Replayed} run=${run} key=${run.id} />
-    ${run.problem ? html`<p class="problem bad">This recording cannot be opened: ${run.problem}</p>` : html`<${Facts} run=${run} />`}
+    ${run.problem ? html`<p class="problem bad">This recording cannot be opened: ${run.problem}</p>` : withFacts.value ? html`<${Facts} run=${run} />` : null}
   `;
 }
 
@@ -106,7 +113,7 @@ function Many({ list }) {
 /** @param list The chosen recordings, in the order of the list. */
 export function Chosen({ list }) {
   const doing = busy.value;
-  return html`<section class="runs-chosen" aria-label="Chosen">
+  return html`<section class="runs-chosen ${withFacts.value ? "with-facts" : ""}" aria-label="Chosen">
     ${doing ? html`<div class="replayed" role="status"><progress value=${doing.done} max=${doing.of} aria-label=${doing.text}></progress> ${doing.text}${doing.of ? ` ${doing.done} of ${doing.of}` : ""}</div>` : null}
     <${Downloads} />
     ${list.length === 0 ? html`<p class="empty">Choose a run to open, replay or download it; two to compare them.</p>` : null}

@@ -3,7 +3,7 @@
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
 import { isOver } from "../standing.js";
-import { session, state } from "../store.js";
+import { session, state, way } from "../store.js";
 
 const PART = 250;
 const LATER = 700; // [ms]
@@ -49,10 +49,12 @@ export async function listRuns() {
   awaitEnd(mine);
 }
 
-/** Reads the list again soon if the file of the current run is missing or not marked as ended: it is written a moment later. */
+/** Reads the list again soon if the file of the current run is missing, or its end is not up to date: it is written a moment later. */
 function awaitEnd(mine) {
   const own = runs.value?.find(({ id }) => id === present.value);
-  const late = own ? state.value?.status === "ended" && !own.ended : present.value !== null && session.value.alive;
+  const { status, furthest } = state.value ?? {};
+  const goesOn = own?.ended && own.time > furthest + 1e-6; // it had ended, but was changed in its past
+  const late = own ? goesOn || (status === "ended" && !own.ended) : present.value !== null && session.value.alive;
   tries = late ? tries + 1 : 0;
   if (tries > 0 && tries <= MOST_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
 }
@@ -63,9 +65,9 @@ export function forgetRun(id) {
   total.value -= 1;
 }
 
-/** Keeps the list up to date while it is shown; returns the function that stops this. */
+/** Keeps the list up to date while it is shown, also when the run goes another way; returns the function that stops this. */
 export function follow() {
-  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value}`);
+  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value} ${session.value?.branched?.recording} ${way.value}`);
   return effect(() => {
     key.value;
     untracked(() => void listRuns());

@@ -45,11 +45,11 @@ function Head({ column }) {
   const { by, down } = order.value;
   const here = keys.some(([key]) => key === by);
   return html`<th scope="col" class=${column} aria-sort=${here ? (down ? "descending" : "ascending") : "none"}>
-    ${keys.map(
+    <div>${keys.map(
       ([key, { text }]) => html`<button class="bare" key=${key} aria-label="Sort by ${text.toLowerCase()}" onClick=${() => sortBy(key)}>
         ${text}<span class="arrow" aria-hidden="true">${key === by ? (down ? "▾" : "▴") : ""}</span>
       </button>`,
-    )}
+    )}</div>
   </th>`;
 }
 

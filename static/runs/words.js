@@ -53,6 +53,11 @@ export function differentText(run) {
   return run.different.map((name) => `${name} ${valueText(run.parameters[name])}`).join(", ");
 }
 
+/** Whether a recording was closed before its run was over. */
+function wasLeft(run) {
+  return run.ended === "left";
+}
+
 /** Returns the result of a run in a few words. */
 export function outcomeText(run) {
   if (run.problem) return "unreadable";
@@ -60,7 +65,7 @@ export function outcomeText(run) {
   if (run.result?.outcome) return String(run.result.outcome);
   const first = Object.entries(run.result ?? {})[0];
   if (first) return `${labelOf(first[0])} ${measureText(...first)}`;
-  if (run.ended && run.ended !== "left") return "ended";
+  if (run.ended && !wasLeft(run)) return "ended";
   return run.session ? "not over" : "not finished";
 }
 
@@ -74,6 +79,7 @@ export function resultText(run) {
 /** Returns how a run ended, as text. */
 export function endedText(run) {
   if (run.problem || run.failed) return run.problem ?? run.failed;
+  if (wasLeft(run) && run.branched !== null) return "its past was changed";
   if (run.ended) return ENDED[run.ended] ?? run.ended;
   return run.session ? "goes on, or waits" : "left before its end";
 }

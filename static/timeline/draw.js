@@ -5,7 +5,7 @@ import { cut } from "../parts/surface.js";
 import { session } from "../store.js";
 import { bandText } from "./lanes.js";
 import { firstWhere } from "./search.js";
-import { AXIS } from "./rows.js";
+import { AXIS, MARGIN } from "./rows.js";
 
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
 const ROOM = 34; // the minimum width for a text [px]
@@ -19,24 +19,33 @@ const ROOM = 34; // the minimum width for a text [px]
  * @property {{from: number, to: number}} span The visible times [s].
  * @property {{rows: object[]}} layout See `layout` of rows.js.
  * @property {number} end The end of bands that are still open [s].
+ * @property {{from: number, to: number}} [now] The position of the playhead's label [px]; absent without one.
  * @property {number} begin Earlier times are no longer known [s].
  */
 
 /** Returns the position of a time [px]. */
-export function placeOf(time, { column, width, span }) {
-  return column + ((time - span.from) / (span.to - span.from)) * (width - column);
+export function placeOf(time, view) {
+  return view.column + MARGIN + (time - view.span.from) / secondsPerPixel(view);
 }
 
 /** Returns the time at a position [s]. */
-export function timeOf(x, { column, width, span }) {
-  return span.from + ((x - column) / Math.max(1, width - column)) * (span.to - span.from);
+export function timeOf(x, view) {
+  return view.span.from + (x - view.column - MARGIN) * secondsPerPixel(view);
+}
+
+/** Returns the duration of a pixel [s]. */
+export function secondsPerPixel({ column, width, span }) {
+  return (span.to - span.from) / Math.max(1, width - column - MARGIN);
+}
+
+/** Returns the times from the column of names to the right edge [s], including the margin. */
+function wholeSpan(scene) {
+  return { from: timeOf(scene.column, scene), to: scene.span.to };
 }
 
 /** Draws the timeline. */
 export function drawTimeline(surface, scene) {
   const { width, height, column, span, layout, scroll } = scene;
-  const box = { x: column, y: AXIS, width: width - column, height: height - AXIS };
-  surface.fill(0, 0, width, AXIS, "raised");
   surface.within(0, AXIS, width, height - AXIS, () => {
     for (const row of layout.rows) {
       const y = row.y - scroll;
@@ -46,9 +55,18 @@ export function drawTimeline(surface, scene) {
       else drawLane(surface, row, y, scene);
     }
   });
-  drawTimes(surface, box, span, { y: 0, height: AXIS, lines: false });
   if (scene.begin > span.from) drawUnknown(surface, scene);
-  surface.line([column - 0.5, 0, column - 0.5, height], "line");
+  surface.line([column - 0.5, AXIS, column - 0.5, height], "line");
+  drawAxis(surface, scene);
+}
+
+/** Draws the axis alone. Labels that the label of the playhead would cover are left out. */
+export function drawAxis(surface, scene) {
+  const { width, height, column, now } = scene;
+  const box = { x: column, y: AXIS, width: width - column, height: height - AXIS };
+  surface.fill(0, 0, width, AXIS, "raised");
+  drawTimes(surface, box, wholeSpan(scene), { y: 0, height: AXIS, lines: false, taken: now });
+  surface.line([column - 0.5, 0, column - 0.5, AXIS], "line");
   surface.line([0, AXIS - 0.5, width, AXIS - 0.5], "line");
 }
 
@@ -102,7 +120,7 @@ function drawMark(surface, band, x, next, y, height) {
 }
 
 function drawPlotRow(surface, plot, y, height, scene) {
-  const { column, width, span } = scene;
+  const { column, width } = scene;
   const room = column - SCALE - 8;
   surface.text(cut(`${plot.title} [${plot.unit}]`, room), 8, y + 10, "text", { bold: true });
   plot.series.slice(0, Math.floor((height - 18) / 13)).forEach(({ name }, n) => {
@@ -110,7 +128,7 @@ function drawPlotRow(surface, plot, y, height, scene) {
     surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
     surface.text(cut(shortName(name, plot), room - 12, { size: 10 }), 20, at, "quiet", { size: 10 });
   });
-  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span });
+  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene) });
 }
 
 /** Returns the name of a curve without redundant parts: the only body's name, and the plot's title. */

@@ -1,13 +1,13 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
 import { running, session } from "../store.js";
-import { placeOf, timeOf } from "./draw.js";
+import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { AXIS, column } from "./rows.js";
 import { furthest, orderThere, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
 const GRIP = 4; // the distance at which the border of the column of names can be dragged [px]
-const HANDLE = 7; // the same for the playhead, in the axis [px]
+const HANDLE = 20; // the same for the label of the playhead, in the axis [px]
 const STILL = 3; // a pointer that has moved by at most this has clicked [px]
 const COLUMN = [70, 360]; // the limits of the column's width [px]
 const NOTCH = 0.0015; // the zoom per pixel of the wheel
@@ -27,8 +27,7 @@ function sceneOf(stage) {
 }
 
 function secondsOf(pixels, stage) {
-  const { from, to } = span.peek();
-  return (pixels * (to - from)) / Math.max(1, stage.clientWidth - column.peek());
+  return pixels * secondsPerPixel(sceneOf(stage));
 }
 
 function placeIn(event, stage) {

@@ -7,6 +7,8 @@ import { lanes } from "./record.js";
 export const AXIS = 20; // [px]
 export const LANE = 16;
 export const PLOT = 46;
+/** The distance of the earliest visible time from the column of names, so that what is at it is drawn whole [px]. */
+export const MARGIN = 8;
 const GAP = 5; // between two groups
 
 /** The groups in their order. */

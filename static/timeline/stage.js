@@ -1,12 +1,12 @@
 // The drawn part of the timeline: the canvas, the playhead over it, and what is at the pointer.
 
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
-import { CanvasSurface, scaled } from "../parts/surface.js";
+import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
 import { events, running, state } from "../store.js";
 import { dark } from "../theme.js";
 import { curvesVersion, names, plots } from "./curves.js";
-import { drawTimeline, placeOf, timeOf } from "./draw.js";
+import { drawAxis, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { begin, partAt, press, turn } from "./hand.js";
 import { Painter } from "./painter.js";
 import { lanes, lanesVersion } from "./record.js";
@@ -14,6 +14,8 @@ import { AXIS, column, hidden, layout } from "./rows.js";
 import { furthest, present } from "./seek.js";
 import { found, Tip } from "./tip.js";
 import { settle, span } from "./view.js";
+
+const AROUND = 5; // the room left and right of the playhead's time in its label [px]
 
 const size = signal({ width: 0, height: 0 });
 const scroll = signal(0);
@@ -34,8 +36,19 @@ export function scene(whole = false) {
     span: span.peek(),
     layout: rows,
     end: furthest.peek(),
+    now: whole ? null : labelOfNow(),
     begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
   };
+}
+
+/** Returns the position of the playhead's label, beside which the playhead may be at the edges [px]; null if it is out of view. */
+function labelOfNow() {
+  const view = { column: column.peek(), width: size.peek().width, span: span.peek() };
+  const x = placeOf(present.peek(), view);
+  if (x < view.column - 1 || x > view.width + 1) return null;
+  const width = Math.ceil(widthOf(timeText(present.peek()), { size: 10, bold: true })) + 2 * AROUND;
+  const from = Math.round(Math.min(Math.max(x - width / 2, view.column + 1), view.width - width - 1));
+  return { from, to: from + width, width };
 }
 
 function paint(canvas) {
@@ -45,13 +58,23 @@ function paint(canvas) {
   if (now.width > now.column) drawTimeline(new CanvasSurface(context), now);
 }
 
-/** Places the playhead, and the veil over the future. */
+/** Draws the axis again on the drawing that is there. */
+function paintAxis(canvas) {
+  const now = scene();
+  if (canvas.width > 0 && now.width > now.column) drawAxis(new CanvasSurface(canvas.getContext("2d")), now);
+}
+
+/** Places the playhead with its label, and the veil over the future. */
 function place(stage) {
   const view = { column: column.value, width: size.value.width, span: span.value };
   const inside = (x) => Math.min(Math.max(x, view.column), view.width);
   const [now, far] = [placeOf(present.value, view), placeOf(furthest.value, view)];
-  const [veil, end, head] = [".timeline-veil", ".timeline-end", ".timeline-head"].map((part) => stage.querySelector(part));
-  head.hidden = now < view.column - 1 || now > view.width + 1;
+  const [veil, end, head, label] = ["veil", "end", "head", "now"].map((part) => stage.querySelector(`.timeline-${part}`));
+  const there = labelOfNow();
+  head.hidden = label.hidden = !there;
+  if (there) Object.assign(label.style, { transform: `translateX(${there.from}px)`, width: `${there.width}px` });
+  label.textContent = timeText(present.value);
+  paintAxis(stage.querySelector("canvas"));
   head.style.transform = `translateX(${now}px)`;
   veil.style.left = `${inside(now)}px`;
   veil.style.width = `${inside(far) - inside(now)}px`;
@@ -96,7 +119,7 @@ function lookUp(event, stage) {
   const row = y < AXIS ? null : layout(filter.peek()).rows.find((one) => y + scroll.peek() >= one.y && y + scroll.peek() < one.y + one.height);
   if (!row || (x < view.column && row.plot)) return null;
   if (x < view.column) return { row, time: 0, band: null, named: true };
-  return found(row, timeOf(x, view), (view.span.to - view.span.from) / Math.max(1, view.width - view.column));
+  return found(row, timeOf(x, view), secondsPerPixel(view));
 }
 
 export function Stage() {
@@ -134,6 +157,7 @@ export function Stage() {
         <div class="timeline-veil"></div>
         <div class="timeline-end" title="As far as the run has come"></div>
         <div class="timeline-head"></div>
+        <div class="timeline-now" aria-hidden="true"></div>
       </div>
     </div>
     <${Tip} at=${at.value} />

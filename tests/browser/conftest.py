@@ -7,13 +7,16 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, Route
 
 from tests.browser.looking import PATIENCE, chromium
 from tests.server.serving import Served, served
 
 REFUSED = re.compile("Failed to load resource: the server responded with a status of 40[0-9]")
 """What Chromium writes to its console of an answer that says why something is not done."""
+
+NO_SCENE = "<!doctype html><title>3D view</title><script>parent.postMessage({ drawn: true }, location.origin)</script>"
+"""Stands for the 3D view where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
 
 
 @pytest.fixture(scope="session")
@@ -30,12 +33,12 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture
-def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
+def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """Opens pages of a new user, whose browser remembers nothing but which tab is open: `tab`, or None for that of a first visit.
 
     Runs go as fast as they can, so that nobody waits for them; with `paced` as they do for users, at real time where there is a body.
-    Whatever their consoles complain of fails the test; with `refusals` not that the server
-    has refused something. The sessions of tests before are closed.
+    Whatever their consoles complain of fails the test; with `refusals` not that the server has refused something. The sessions of
+    tests before are closed. Only tests with the marker `scene` load the 3D view.
     """
     for session in workbench.get("/api/sessions").json()["sessions"]:
         workbench.post(f"/api/sessions/{session['id']}/close")
@@ -52,6 +55,9 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
     def fault(error: Any) -> None:
         complaints.append(str(error))
 
+    def leave_scene_out(route: Route) -> None:
+        route.fulfill(body=NO_SCENE, content_type="text/html")
+
     contexts: list[Any] = []
 
     def opened(
@@ -66,6 +72,8 @@ def pages(browser: Browser, workbench: Served) -> Iterator[Callable[..., Page]]:
         contexts.append(browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme))
         if tab is not None:
             contexts[-1].add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
+        if request.node.get_closest_marker("scene") is None:
+            contexts[-1].route("**/viser/**", leave_scene_out)
         page = contexts[-1].new_page()
         page.set_default_timeout(PATIENCE)
         page.on("console", note_unless_refused if refusals else note)

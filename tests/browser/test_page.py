@@ -12,6 +12,7 @@ from tests.browser.looking import choose, open_tab, shows
 from tests.server.serving import Served
 
 
+@pytest.mark.scene
 def test_run_step_and_the_aperture(page: Page) -> None:
     shows(page, "#time", "0.00 s")
     page.click("#step")

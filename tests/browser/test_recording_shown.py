@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.looking import drawn, open_tab, shows, until
@@ -66,6 +67,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
 
 
+@pytest.mark.scene
 def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before(pages: Pages, workbench: Served) -> None:
     name = recorded(workbench, "doorway.py")
     page = pages("doorway.py", tab="runs")

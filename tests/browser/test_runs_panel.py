@@ -84,6 +84,19 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     expect(present).to_contain_text("the model called stop()")
 
 
+@pytest.mark.parametrize("chosen", [False, True])
+def test_a_small_window_lists_several_runs(page: Page, recordings: Path, two: list[str], chosen: bool) -> None:
+    open_tab(page, "Runs")
+    expect(row(page, two[0])).to_be_visible()
+    if chosen:
+        row(page, two[0]).click()
+    rows = page.locator(".runs-list").evaluate("list => (list.clientHeight - list.querySelector('thead').offsetHeight) / 44")
+    assert rows >= 4.5
+    if chosen:
+        page.get_by_role("button", name="Details").click()
+        expect(page.get_by_role("table", name="Parameters")).to_contain_text("width0.5")
+
+
 HALF = """import os, time
 from actr3d.actr import *
 class Agent(ACTR):

@@ -18,6 +18,8 @@ from playwright.sync_api import Browser, Page, Route, WebSocket, expect
 from tests.browser.looking import until
 from tests.server.serving import MODELS, Served, served
 
+pytestmark = pytest.mark.scene
+
 PATIENCE = 120_000
 """[ms]; without a graphics card, on a busy machine."""
 

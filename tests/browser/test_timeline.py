@@ -17,6 +17,8 @@ from tests.server.serving import Served
 
 NAMES = 150
 """How wide the column of names is at first [px]."""
+MARGIN = 8
+"""How far inside the left edge of the axis the earliest moment is [px]."""
 LANE = 16
 """How high a row is [px]."""
 
@@ -30,7 +32,8 @@ def box(page: Page) -> FloatRect:
 def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
     """Returns a place of the timeline: how far from the left edge of its axis to the right one."""
     area = box(page)
-    return area["x"] + NAMES + share * (area["width"] - NAMES), area["y"] + y
+    left = NAMES + MARGIN
+    return area["x"] + left + share * (area["width"] - left), area["y"] + y
 
 
 def told(page: Page, share: float) -> Iterator[str]:
@@ -75,6 +78,53 @@ def ended(pages: Callable[..., Page]) -> Page:
     )
     expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     return page
+
+
+def drawing(page: Page) -> dict[str, Any]:
+    """Returns what the timeline has drawn: its marks, the labels of its ruler from left to right, and the label of the playhead [px]."""
+    drawn(page)
+    return page.evaluate(
+        """async () => {
+          const { drawTimeline } = await import("/static/timeline/draw.js");
+          const { scene } = await import("/static/timeline/stage.js");
+          const { widthOf } = await import("/static/parts/surface.js");
+          const [labels, marks] = [[], []];
+          const surface = { fill() {}, line() {}, within: (x, y, width, height, draw) => draw() };
+          surface.polygon = (points) => marks.push(Math.min(...points.filter((_, n) => n % 2 === 0)));
+          surface.text = (text, x, y, name, style = {}) => {
+            if (style.anchor === "middle" && y < 20) labels.push([text, x - widthOf(text, style) / 2, x + widthOf(text, style) / 2]);
+          };
+          drawTimeline(surface, scene());
+          const left = document.querySelector("#timeline").getBoundingClientRect().left;
+          const label = document.querySelector(".timeline-now");
+          const box = label.getBoundingClientRect();
+          return { labels, marks, now: [label.textContent, box.left - left, box.right - left] };
+        }"""
+    )
+
+
+@pytest.mark.parametrize("time", ["0.00", "1.96", "2.00", "3.50"])
+def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page, time: str) -> None:
+    page = ended
+    page.evaluate("async (time) => (await import('/static/timeline/seek.js')).seek(time)", float(time))
+    when(page, time)
+    told = drawing(page)
+    texts = [text for text, *_ in told["labels"]]
+    assert ("2 s" in texts) == (time not in ("1.96", "2.00"))  # it gives way, and only then
+    assert len(texts) >= 7
+    assert told["now"][0] == f"{time} s"
+    for (_, _, end), (_, begin, _) in pairwise(sorted([*told["labels"], told["now"]], key=lambda label: label[1])):
+        assert end < begin
+
+
+def test_what_happens_at_the_start_is_seen_whole(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    page.locator("#aperture").fill("90")
+    shows(page, "#width", "90 cm")
+    until(page, lambda: len(drawing(page)["marks"]) > 0)
+    assert drawing(page)["marks"] == [NAMES + MARGIN - 4]  # a diamond is 8 px wide
+    left = drawing(page)["now"]
+    assert left[1] >= NAMES
 
 
 def test_lanes_and_plots_tell_what_was_when(ended: Page) -> None:

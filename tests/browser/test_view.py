@@ -21,6 +21,8 @@ from tests.browser.looking import PATIENCE, drawn, shows, until
 from tests.server.serving import Served
 from workbench.stage import Stage
 
+pytestmark = pytest.mark.scene
+
 ASPECT = 1.5
 FOV = np.radians(50)
 

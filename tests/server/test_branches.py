@@ -13,6 +13,18 @@ from workbench import branches
 from workbench.keeping import is_unnamed
 from workbench.summaries import summary_json
 
+STOPPED = PUSHED.replace(
+    """        goal.set("on")
+
+def build""",
+    """        goal.set("late")
+    def end(goal="late"):
+        self.stop()
+
+def build""",
+)
+"""The same, but over soon."""
+
 
 def folder(talk: Talk) -> Path:
     start = talk.session.start
@@ -65,6 +77,22 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     talk.say("seek", time=0.2)
     talk.say("aperture", width=0.4)
     assert len(found(talk)) == 2
+
+
+def test_a_branch_is_over_only_where_its_run_was_over(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, STOPPED, record=True)
+    there(talk, 10)
+    talk.say("seek", time=0.05)
+    talk.say("aperture", width=0.3)  # the first branch: of a run that was paused
+    talk.say("run")
+    talk.until("ended")
+    talk.say("seek", time=0.05)
+    talk.say("aperture", width=0.4)  # the second: of a run that was over
+    there(talk, 12)
+    talk.say("seek", time=0.05)
+    talk.say("aperture", width=0.5)  # the third: it was over once, but then went another way, and was paused
+    ends = {round(summary.time, 2): summary.ended for summary in (talk.summary(path.stem) for path in found(talk))}
+    assert ends == {0.1: "left", 0.15: "stop", 0.12: "left"}
 
 
 def test_what_is_not_recorded_is_lost_only_where_that_is_allowed(desk: Desk, tmp_path: Path) -> None:

@@ -16,13 +16,13 @@ import pytest
 
 from actr3d.recording import Recorded
 from actr3d.recording.key import key_file
+from actr3d.world.compiled import to_text
 from tests.forging import forge
 from tests.server.asking import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
 from tests.server.desk import Desk, RefusedError, Talk
 from tests.server.test_runs import firing, written
 from workbench import listing
 from workbench.app import make_app
-from workbench.compiled import to_text
 from workbench.readers import Readers, ReadingError
 from workbench.worker.messages import LONGEST
 

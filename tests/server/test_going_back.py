@@ -7,7 +7,7 @@ import random
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, cast
 
 import pytest
 
@@ -22,10 +22,11 @@ from actr3d.simulation import Simulation
 from actr3d.values import to_json
 from tests.server.desk import Desk, Talk
 from workbench import protocol as say
+from workbench.overlays import OVERLAYS
 from workbench.worker.shown import Shown
 
 MODELS = Path(__file__).parents[2] / "models"
-KINDS = get_args(say.OverlayName)
+KINDS = tuple(OVERLAYS)
 
 LOOKING = """from actr3d.actr import *
 from actr3d.simulation import BodyPort, Simulation

@@ -111,7 +111,11 @@ def test_every_model_is_listed_without_complaint() -> None:
         ("print 'so'", 1, "Python 2"),
         ("a\0b", 1, "NUL"),
         ("x = '\ud800'", None, "not Python source"),
-        ("\ndef build():\n    return 3\n", 2, "build() does not say what it returns, not a Simulation; it must be `def build("),
+        (
+            "\ndef build():\n    return 3\n",
+            2,
+            "build must be declared to return a Simulation (got `def build()`, without a return type); write `def build(",
+        ),
         ("async def build() -> Simulation: ...", 1, "build is an async function"),
     ],
 )

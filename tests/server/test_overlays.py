@@ -6,12 +6,20 @@ import math
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
+from actr3d.camera import CameraParameters
+from actr3d.simulation import Simulation
+from actr3d.world import Car, Floor, Scene
 from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
+from workbench import protocol as say
+from workbench.look import Look
+from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay
+from workbench.overlays.overlay import overlay
 from workbench.palette import channels, label_colours, palette
 
 LOOKING = """from actr3d.actr import *
@@ -189,7 +197,7 @@ def test_who_looks_switches_for_all_and_takes_no_control(desk: Desk, tmp_path: P
     def shown() -> dict[str, bool]:
         return {one["name"]: one["shown"] for one in talk.facts["overlays"]}
 
-    assert list(shown()) == [*ALL[:4], "posture", "contacts"]
+    assert set(shown()) == {*ALL, "contacts"}
     before = shown()
     talk.say("overlay", name="edges", shown=True)
     talk.say("overlay", name="path", shown=False)
@@ -200,3 +208,46 @@ def test_who_looks_switches_for_all_and_takes_no_control(desk: Desk, tmp_path: P
     assert shown()["edges"] is True
     with pytest.raises(ValueError, match="name"):
         talk.say("overlay", name="sky", shown=True)
+
+
+@pytest.mark.parametrize("kind", OVERLAYS.values(), ids=list(OVERLAYS))
+def test_each_overlay_has_a_title_and_data_of_any_body_in_plain_values(kind: type[Overlay]) -> None:
+    assert kind.__doc__
+    assert kind.title
+    simulation = Simulation(Scene(parts=(Floor(), Car(name="car"))), {}, seed=1)
+
+    def eyesight(body: str) -> CameraParameters:
+        assert body == "car"
+        return CameraParameters()
+
+    observed = Observed(simulation, eyesight, dict)
+    data = kind.data(observed)
+    assert data.keys() <= {"car"}
+    assert msgspec.msgpack.decode(msgspec.msgpack.encode(data)) == data
+
+
+def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
+    command = {"type": "overlay", "name": "heights", "shown": True}
+    with pytest.raises(ValueError, match="there is no overlay of this name; there are: contacts, edges"):
+        say.ANYTHING.validate_python(command)
+    try:
+
+        @overlay("heights", "heights of bodies", shown=True)
+        class _Heights(Overlay):  # pyright: ignore[reportUnusedClass]
+            """Shows how high bodies are."""
+
+            def __init__(self, drawn: Drawn) -> None: ...
+
+            @staticmethod
+            def data(observed: Observed) -> dict[str, Any]:
+                """Returns the height of each body [m]."""
+                return {name: body.get("pose").z for name, body in observed.simulation.world.bodies.items()}
+
+            def draw(self, data: Any, drawn: Any) -> None: ...
+
+            def switch(self) -> None: ...
+
+        assert say.ANYTHING.validate_python(command).name == "heights"
+        assert Look().told()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
+    finally:
+        del OVERLAYS["heights"]

@@ -168,6 +168,6 @@ def test_a_program_that_makes_a_simulation_and_fails_before_that_says_so(desk: D
 def test_a_build_that_is_not_right_is_told_with_its_line(desk: Desk, tmp_path: Path) -> None:
     source = "from actr3d.simulation import Simulation\n\ndef build():\n    return Simulation(1)\n"
     talk = desk.begin(tmp_path, source, wait=None)
-    notice = talk.wait_for_notice("build()")
+    notice = talk.wait_for_notice("build must")
     assert (notice["level"], notice["file"], notice["line"]) == ("error", "model.py", 3)
-    assert notice["text"].startswith("build() does not say what it returns, not a Simulation; it must be")
+    assert notice["text"].startswith("build must be declared to return a Simulation (got `def build()`, without a return type); write")

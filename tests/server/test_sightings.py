@@ -11,8 +11,8 @@ import pytest
 from actr3d.camera.stand import Stand
 from actr3d.vision import Feature, Sighting
 from actr3d.vision.units import Metres
-from workbench.worker.contours import Places
-from workbench.worker.sightings import DIAMOND, _outline
+from workbench.overlays.contours import Places
+from workbench.overlays.features import DIAMOND, _outline
 
 
 @dataclass(frozen=True, kw_only=True)

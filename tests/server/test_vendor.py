@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from workbench import page
 from workbench.shipped import static
 
 VENDOR = static() / "vendor"
@@ -41,7 +42,7 @@ def test_a_file_of_the_page_loads_nothing_from_elsewhere(path: Path) -> None:
 def test_what_a_module_imports_is_there(path: Path) -> None:
     for name in re.findall(r"""(?:import|from)\s*\(?\s*["']([^"']+)["']""", path.read_text(encoding="utf-8")):
         assert name.startswith("."), name
-        assert (path.parent / name).is_file(), name
+        assert (path.parent / name).is_file() or (path.parent / name) == static() / "panels.js", name
 
 
 @pytest.mark.parametrize("path", [path for path in OWN if path.suffix == ".js"], ids=lambda path: path.name)
@@ -50,3 +51,35 @@ def test_a_module_uses_what_it_imports(path: Path) -> None:
     for names in re.findall(r"^import \{([^}]*)\} from", text, re.MULTILINE):
         for name in (each.split(" as ")[-1].strip() for each in names.split(",")):
             assert len(re.findall(rf"(?<![\w$]){re.escape(name)}(?![\w$])", text)) > 1, name
+
+
+def imports(path: Path) -> set[Path]:
+    """Returns the modules that a module of the page imports; the list of panels, which the server makes, stands for all panels."""
+    if path == static() / "panels.js":
+        return set((static() / "panels").glob("*.js"))
+    names = re.findall(r"""(?:import|from)\s*\(?\s*["'](\.[^"']+)["']""", path.read_text(encoding="utf-8"))
+    return {(path.parent / name).resolve() for name in names}
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    known = {path: imports(path) for path in [path for path in OWN if path.suffix == ".js"] + [static() / "panels.js"]}
+    while True:  # what imports only what is known to be in no circle is in none
+        free = {path for path, wanted in known.items() if not wanted & known.keys()}
+        if not free:
+            break
+        known = {path: wanted for path, wanted in known.items() if path not in free}
+    assert sorted(path.name for path in known) == []
+
+
+def test_a_new_file_of_the_folder_is_a_panel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "panels").mkdir()
+    for name in ("my-own.js", "buffers.js", "buffers.css"):
+        (tmp_path / "panels" / name).touch()
+    monkeypatch.setattr(page, "static", lambda: tmp_path)
+    text = bytes(page.panels().body).decode()
+    assert re.findall(r'^import \* as (\w+) from "(.+)";$', text, re.MULTILINE) == [
+        ("panel0", "./panels/buffers.js"),
+        ("panel1", "./panels/my-own.js"),
+    ]
+    assert "PANELS = [panel0, panel1].flatMap" in text
+    assert bytes(page.panel_styles().body).decode() == '@import url("panels/buffers.css");\n'

@@ -191,7 +191,9 @@ def test_a_worker_that_ends_is_told_of(desk: Desk, tmp_path: Path, does: str, to
 )
 @pytest.mark.parametrize("record", [False, True])
 def test_what_a_model_prints_before_it_ends_or_stops_itself_arrives(desk: Desk, tmp_path: Path, does: str, record: bool) -> None:
-    talk = desk.begin(tmp_path, of(f"print('first'); print('last'); {does}"), run=True, wait=None, record=record)
+    ends = "exec" in does or "_exit" in does
+    last = "print('last', end='')" if ends else "print('last')"  # a line without a line break, too
+    talk = desk.begin(tmp_path, of(f"print('first'); {last}; {does}"), run=True, wait=None, record=record)
     talk.wait(lambda: talk.facts["stuck"] or talk.state["status"] == "failed")
     assert [data["text"] for _, _, kind, data in talk.events if kind == "output"] == ["first", "last"]
     if record:

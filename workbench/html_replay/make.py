@@ -16,7 +16,7 @@ from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from actr3d.values import to_json
-from workbench.compiled import from_text, loaded
+from actr3d.world.compiled import from_text, loaded
 from workbench.curves import stride
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette

@@ -6,20 +6,21 @@ from typing import Any
 
 from mujoco import MjData
 
-from workbench.overlays.overlay import Overlay
+from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 
 
+@overlay("contacts", "contacts", shown=True)
 class Contacts(Overlay):
-    """Shows the contact points and the contact forces.
+    """Shows the contact points and the contact forces, which viser's scene draws itself."""
 
-    Args:
-        scene: The `ViserMujocoScene` of the world, which draws contacts itself.
-    """
+    def __init__(self, drawn: Drawn) -> None:
+        self._scene = drawn.scene
 
-    asked = False
-
-    def __init__(self, scene: Any) -> None:
-        self._scene = scene
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns nothing: the physics has the contacts."""
+        del observed
+        return {}
 
     def draw(self, data: MjData, drawn: Any) -> None:
         """Does nothing: the scene draws them."""

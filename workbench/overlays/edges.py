@@ -7,20 +7,29 @@ from typing import Any
 import numpy as np
 from mujoco import MjData
 
-from workbench.overlays.overlay import Lines, Overlay
+from actr3d.camera import CameraParameters, glance, stand_of
+from actr3d.world.body import Body
+from workbench.overlays.contours import contours_of, into_world
+from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
 from workbench.palette import label_colours
 
+NEARER = 0.995
+"""Edges are drawn at this fraction of their distance to the eye, so that the surfaces on which they lie do not hide them."""
 
+
+@overlay("edges", "edges seen")
 class Edges(Overlay):
-    """Shows the edges in the current view of each eye, at their distances.
+    """Shows the edges in the current view of each eye, at their distances."""
 
-    Args:
-        server: Viser's server.
-    """
-
-    def __init__(self, server: Any) -> None:
-        self._lines = Lines(server, "/overlays/edges", (0, 0, 0), 2.5)
+    def __init__(self, drawn: Drawn) -> None:
+        self._lines = Lines(drawn.server, "/overlays/edges", (0, 0, 0), 2.5)
         self._lines.show(False)
+
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns `lines` in the world as 4-byte floats `(n, 2, 3)` [m], and the `labels` of their objects as 8-byte integers."""
+        bodies = observed.simulation.world.bodies
+        return {name: _edges(body, observed.eyesight(name)) for name, body in bodies.items() if body.eye is not None}
 
     def draw(self, data: MjData, drawn: dict[str, dict[str, bytes]] | None) -> None:
         """Draws the edges that are seen now."""
@@ -32,3 +41,9 @@ class Edges(Overlay):
     def switch(self) -> None:
         """Shows or hides the edges."""
         self._lines.show(self.visible)
+
+
+def _edges(body: Body, eyesight: CameraParameters) -> dict[str, bytes]:
+    lines, labels = contours_of(glance(body, eyesight))
+    places = into_world(NEARER * lines, stand_of(body, body.physics.mj_data))
+    return {"lines": places.astype(np.float32).tobytes(), "labels": np.array(labels, dtype=np.int64).tobytes()}

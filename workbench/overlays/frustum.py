@@ -9,25 +9,21 @@ import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 
-from workbench.overlays.overlay import Overlay
+from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 
 SCALE = 0.6
 """Length of the drawn pyramid [m]."""
 COLOUR = (91, 127, 166)
 
 
+@overlay("frustum", "field of view")
 class Frustum(Overlay):
-    """Shows the field of view of each eye.
+    """Shows the field of view of each eye."""
 
-    Args:
-        server: Viser's server.
-        model: The compiled scene.
-        world: The contents of the world, as in `Facts.world`.
-    """
-
-    def __init__(self, server: Any, model: MjModel, world: dict[str, Any]) -> None:
-        self._server = server
-        eyes = {name: body["eye"] for name, body in world["bodies"].items() if body["eye"] is not None}
+    def __init__(self, drawn: Drawn) -> None:
+        model = drawn.model
+        self._server = drawn.server
+        eyes = {name: body["eye"] for name, body in drawn.world["bodies"].items() if body["eye"] is not None}
         self.sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, eye) for name, eye in eyes.items()}
         """The site numbers of the eyes, by body."""
         self.fields: dict[str, tuple[float, float]] = {}
@@ -35,6 +31,12 @@ class Frustum(Overlay):
         self._handles: dict[str, Any] = {}
         self._heads = [geom for site in self.sites.values() if (geom := _head(model, site)) is not None]
         self._sizes = model.geom_rbound
+
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns the horizontal and vertical field of view [rad] of each body with an eye."""
+        seeing = [name for name, body in observed.simulation.world.bodies.items() if body.eye is not None]
+        return {name: [observed.eyesight(name).horizontal_fov, observed.eyesight(name).vertical_fov] for name in seeing}
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
         """Moves the frustums with the eyes. An eye's x axis points forward and z up; a frustum's z axis points forward and y down."""

@@ -1,19 +1,66 @@
-"""Defines the base of all overlays, and lines that they share."""
+"""Defines the base of all overlays, their registry, and lines that they share."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from collections.abc import Callable
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
-from mujoco import MjData
+from mujoco import MjData, MjModel
+
+from actr3d.camera import CameraParameters
+from actr3d.simulation import Simulation
+
+OVERLAYS: dict[str, type[Overlay]] = {}
+"""All overlays by name, in the order of the menu."""
+
+
+class Drawn(NamedTuple):
+    """The 3D view that an overlay draws in."""
+
+    server: Any
+    """Viser's server."""
+    scene: Any
+    """The `ViserMujocoScene` that draws the world."""
+    model: MjModel
+    """The compiled scene."""
+    world: dict[str, Any]
+    """The contents of the world, as in `Facts.world`."""
+
+
+class Observed(NamedTuple):
+    """The simulation whose data an overlay draws; overlays change nothing."""
+
+    simulation: Simulation
+    eyesight: Callable[[str], CameraParameters]
+    """Returns the camera parameters with which a body's agent sees."""
+    paths: Callable[[], dict[str, list[list[float]]]]
+    """Returns the paths that bodies have walked up to now, by body: positions (x, y) [m]."""
 
 
 class Overlay(ABC):
-    """Base of all overlays: draws something over the scene for all bodies."""
+    """Base of all overlays: draws something over the scene for all bodies.
 
-    asked = True
-    """Whether the overlay needs data from the worker."""
+    An overlay is a subclass with the decorator `@overlay`, in a file of this folder: `data` runs in the worker of the run, `draw` in
+    the server.
+
+    Args:
+        drawn: The 3D view to draw in.
+    """
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    """The text in the menu."""
+    shown_at_first: ClassVar[bool]
     visible = False
+
+    @abstractmethod
+    def __init__(self, drawn: Drawn) -> None: ...
+
+    @staticmethod
+    @abstractmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns what is to be drawn now, by body; called only while the overlay is shown. The state of the physics is not part of it."""
 
     @abstractmethod
     def draw(self, data: MjData, drawn: Any) -> None:
@@ -33,6 +80,26 @@ class Overlay(ABC):
     @abstractmethod
     def switch(self) -> None:
         """Shows or hides what is already drawn, according to `visible`."""
+
+
+Kind = TypeVar("Kind", bound=Overlay)
+
+
+def overlay(name: str, title: str, *, shown: bool = False) -> Callable[[type[Kind]], type[Kind]]:
+    """Registers an overlay.
+
+    Args:
+        name: Its name in commands.
+        title: Its text in the menu.
+        shown: Whether it is shown until somebody hides it.
+    """
+
+    def register(cls: type[Kind]) -> type[Kind]:
+        cls.name, cls.title, cls.shown_at_first = name, title, shown
+        OVERLAYS[name] = cls
+        return cls
+
+    return register
 
 
 class Lines:

@@ -7,22 +7,24 @@ from typing import Any
 import numpy as np
 from mujoco import MjData
 
-from workbench.overlays.overlay import Lines, Overlay
+from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
 
 HEIGHT = 0.012
 """Height of the line above the floor [m], so that it is visible."""
 
 
+@overlay("path", "path walked", shown=True)
 class Path(Overlay):
-    """Shows the path of each body from the start of the run to the present, whether or not anyone watched.
+    """Shows the path of each body from the start of the run to the present, whether or not anyone watched."""
 
-    Args:
-        server: Viser's server.
-    """
-
-    def __init__(self, server: Any) -> None:
-        self._lines = Lines(server, "/overlays/path", (230, 120, 30), 3.0)
+    def __init__(self, drawn: Drawn) -> None:
+        self._lines = Lines(drawn.server, "/overlays/path", (230, 120, 30), 3.0)
         self._lines.show(False)
+
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns the positions of each body's root on the floor [m]."""
+        return observed.paths()
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
         """Draws the paths up to the present."""

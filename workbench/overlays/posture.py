@@ -6,28 +6,29 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from mujoco import MjData, MjModel
+from mujoco import MjData
 
-from workbench.overlays.overlay import Overlay
+from actr3d.world.body import Body
+from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 
 SLIGHT = 1e-3
 """A part counts as arrived if its position [m] and axes differ by less than this in total."""
 COLOUR = (60, 170, 90)
 
 
+@overlay("posture", "planned posture")
 class Posture(Overlay):
-    """Shows the moving parts at their commanded positions, relative to the body's current position.
+    """Shows the moving parts at their commanded positions, relative to the body's current position."""
 
-    Args:
-        server: Viser's server.
-        model: The compiled scene.
-        world: The contents of the world, as in `Facts.world`.
-    """
-
-    def __init__(self, server: Any, model: MjModel, world: dict[str, Any]) -> None:
-        self._server, self._model, self._data = server, model, MjData(model)
+    def __init__(self, drawn: Drawn) -> None:
+        self._server, self._model, self._data = drawn.server, drawn.model, MjData(drawn.model)
         self._handles: dict[int, Any] = {}
         self._seen: set[int] = set()
+
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns the commanded joint positions [rad] or [m], with their index in `qpos`, of each body."""
+        return {name: _targets(body) for name, body in observed.simulation.world.bodies.items()}
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
         """Draws the parts that differ from the current posture."""
@@ -71,3 +72,9 @@ class Posture(Overlay):
             visible = self.visible and number in self._seen
             if handle is not None and handle.visible != visible:
                 handle.visible = visible
+
+
+def _targets(body: Body) -> list[list[float]]:
+    """Returns the positions to which joints are moving, as index in `qpos` and position [rad] or [m]."""
+    targets = body.motion.targets
+    return [[int(joint.q), targets[name][0]] for name, joint in body.joints.items() if name in targets]

@@ -18,13 +18,13 @@ from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
 from actr3d.running.building import build
 from actr3d.running.complaint import failure
+from actr3d.running.facts import built_facts
 from actr3d.running.printed import BuiltOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.branches import new_branch, superfluous_branches
-from workbench.compiled import to_text
 from workbench.loader import Listing
 from workbench.worker.conductor import Conductor
 from workbench.worker.foreknown import Foreknown
@@ -101,9 +101,7 @@ class BuiltRun:
         simulation, start = self._simulation, self._start
         simulation.traced()
         if start.record is not None:
-            facts: dict[str, Any] = {"file": start.path, "sources": {start.path: start.source}, "parameters": parameters, "built": True}
-            facts.update(helpers=helpers.loaded, program_seed=limits.program_seed)
-            facts.update(compiled=to_text(self._shown.mj_model), world=self._shown.surroundings)
+            facts = built_facts(start.path, start.source, parameters, limits.program_seed, limits.until, helpers.loaded)
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
         if start.recorded is not None:
@@ -282,6 +280,10 @@ class BuiltRun:
             return
         self._conclude()
         self._conductor.end("ended", ENDINGS[self._end[1]])
+
+    def finish_output(self) -> None:
+        """Traces an unfinished line."""
+        self._simulation.event_log.stdout.finish()
 
     def flush(self) -> None:
         """Writes what is still to be recorded."""

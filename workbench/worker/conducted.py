@@ -40,6 +40,10 @@ class Conducted(Protocol):
         """
         ...
 
+    def finish_output(self) -> None:
+        """Traces an unfinished line, as nothing more will be printed."""
+        ...
+
     def flush(self) -> None:
         """Writes buffered data to the recording, so that a paused run's recording is complete up to that moment."""
         ...

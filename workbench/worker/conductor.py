@@ -318,10 +318,16 @@ class Conductor:
             time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
             self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
-    def say_all(self) -> None:
-        """Records and sends all events so far, from any thread of the model, as it may be about to end its process."""
+    def say_all(self, ends: bool) -> None:
+        """Records and sends all events so far, from any thread of the model, as it may be about to end its process.
+
+        Args:
+            ends: Whether it surely ends: then a line without a line break is sent, too.
+        """
         if not self.link.left:  # a forked copy of the process has nothing to send
             with suppress(Exception):  # there may be no run yet
+                if ends:
+                    self.run.finish_output()
                 self.run.flush()
             self.show_busy()
             self.link.flush()

@@ -17,10 +17,10 @@ from typing import Any, NoReturn
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.actr.loading.source_text import compile_source
 from actr3d.running.declared import check_build
+from actr3d.running.last_words import before_the_end, end_at_once
 from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.conductor import Conductor
-from workbench.worker.last_words import end_at_once, say_before_the_end
 from workbench.worker.link import Link
 from workbench.worker.memory import watch_memory
 from workbench.worker.messages import Over, Reply, notice
@@ -43,11 +43,11 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     os.register_at_fork(after_in_child=link.leave)
     os.register_at_fork(after_in_child=_PAST_PRINT.open)
     conductor = Conductor(link)
-    say_before_the_end(conductor.say_all)
     warnings.simplefilter("default")
     warnings.showwarning = _told_to(link)
     try:
-        _run(link, conductor)
+        with before_the_end(conductor.say_all):
+            _run(link, conductor)
     except EndOfRun:
         pass
     except BaseException as error:  # noqa: BLE001 - a model may also end with SystemExit

@@ -18,6 +18,7 @@ from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.running.complaint import failure
+from actr3d.running.facts import program_facts
 from actr3d.running.printed import ProgramOutput
 from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
@@ -65,6 +66,7 @@ class ProgramRun:
         self._seed = fresh_seed() if start.seed is None else start.seed
         self._recording: Recording | None = None
         self._limits = RunLimits()
+        self._output: ProgramOutput | None = None
         self._clock: int = 0
         self._furthest: int = 0
         self._rush: int | None = None
@@ -98,8 +100,7 @@ class ProgramRun:
             self._introduce()
         try:
             if start.record is not None:
-                told = {"kind": "program", "file": start.path, "sources": {start.path: self._source}}
-                self._recording = Recording(start.record, {**told, "seed": self._seed, "until": None})
+                self._recording = Recording(start.record, program_facts(start.path, self._source, self._seed, None))
             while not conductor.leaving:
                 self._run_once()
                 with suppress(_Again):
@@ -163,6 +164,7 @@ class ProgramRun:
         exited: SystemExit | None = None
         try:
             with helpers_of(conductor.link, self._helpers) as helpers, ProgramOutput(limits) as output:
+                self._output = output
                 helpers.heard = self._keep_helpers
                 if not self._again:
                     exited = self._run_text(limits, helpers)
@@ -354,6 +356,11 @@ class ProgramRun:
         if over or to < self._clock:
             self._again = True
             raise _Again
+
+    def finish_output(self) -> None:
+        """Traces an unfinished line."""
+        if self._output is not None:
+            self._output.finish()
 
     def flush(self) -> None:
         """Writes what is still to be recorded."""

@@ -13,19 +13,19 @@ from actr3d.camera import EXTENT_FIELDS, CameraParameters, Sight, glance
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import Actr3dError, did_you_mean
 from actr3d.simulation import Simulation
+from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
 from actr3d.world import Aperture, Floor, World
 from actr3d.world.body import Body
+from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors import SENSORS
 from actr3d.world.sensors.touch import present
 from workbench import protocol as say
-from workbench.compiled import loaded, saved
 from workbench.curves import Curves, stretch
 from workbench.loader import Parameter
+from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.answers import answer
-from workbench.worker.drawings import Drawings
 from workbench.worker.past import Past
-from workbench.worker.surroundings import surroundings
 from workbench.worker.tops import Top
 from workbench.worker.walked import Walked
 from workbench.worker.watch import Touches
@@ -74,7 +74,7 @@ class Shown:
         self.surroundings = surroundings(simulation.world)
         self._openings = self.scene()[1]
         """The widths of apertures at the start [m]."""
-        self._drawings = Drawings(simulation, self.eyesight, self.kept.walked)
+        self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
     def world(self, parameters: Iterable[Parameter] | None = None) -> dict[str, Any]:
         """Returns the description of the world for pages, as plain values.
@@ -97,7 +97,7 @@ class Shown:
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
         """Returns the current data of overlays by kind; empty if it cannot be computed, for example after the physics has diverged."""
         with suppress(Actr3dError):
-            return self._drawings.told(kinds)
+            return {kind: OVERLAYS[kind].data(self._observed) for kind in kinds}
         return {}
 
     def result(self) -> dict[str, Any] | None:

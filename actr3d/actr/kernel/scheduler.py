@@ -28,9 +28,9 @@ FAR = 1e12
 NO_PART = 1e-9
 """A smaller fraction of a microsecond is a floating-point rounding error: 0.07 s are 70000.00000000001 us."""
 MOST_LEFT = 32
-"""The maximum number of different delays whose rounding errors an event carries; a model has fewer delays that recur. A single sum
-of all rounding errors would serve any number of delays, but would shift the times of random delays by a microsecond: printed with
-few digits, some would then differ from python_actr's."""
+"""The maximum number of different delays whose rounding errors an event carries one by one; beyond it, the oldest error is included
+in the current delay, so that no error is lost. A single sum of all rounding errors would be simpler, but would shift the times of
+random delays by a microsecond: printed with few digits, some would then differ from python_actr's."""
 
 Ending = Literal["limit", "until", "stop", "done"]
 """What ended a run: its own limit, the limits of the program, `stop`, or that no events were left."""
@@ -169,12 +169,12 @@ class Scheduler:
         elif -NO_PART < part < NO_PART:
             time = self.now_us + later
         else:
-            part += left.get(delay, 0.0)
-            more = round(part)
-            time = self.now_us + later + more
             kept = {known: of for known, of in left.items() if known != delay} if len(left) > 1 or delay not in left else {}
+            part += left.get(delay, 0.0)
             if len(kept) >= MOST_LEFT:
-                del kept[next(iter(kept))]
+                part += kept.pop(next(iter(kept)))
+            more = max(round(part), -later)
+            time = self.now_us + later + more
             kept[delay] = part - more
             event.left = kept
         self.queue.push(time, event, priority, delay)

@@ -218,9 +218,12 @@ def _tell(
     object = row.pieces[winner].object
     if object == BACKGROUND:
         return done
-    done = without_sliver(optics, extents, first, done)
-    forget(row.stretches[0], done)
-    if not goes_on(object, low, optics, extents, first, done):
+    joined = goes_on(object, low, optics, extents, first, done)
+    if not joined:
+        done = without_sliver(optics, extents, first, done)
+        forget(row.stretches[0], done)
+        joined = goes_on(object, low, optics, extents, first, done)
+    if not joined:
         if done == len(extents):
             return done
         extents[done].label, extents[done].dn = object, 0.0

@@ -1,0 +1,66 @@
+"""The facts of a recorded run: those it is recorded with, and whether running it again gives the same."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Mapping
+from typing import Any
+
+SHOWN = 200
+"""The maximum length of a value in a message [characters]."""
+END = ("failed", "ended", "whole")
+"""The facts of how a run ended."""
+CHECKED_BEFORE = frozenset({"form", "versions"})
+"""Facts that are not compared here: a file of another form is not opened, and other versions are refused or allowed before the run."""
+UNCHECKED = frozenset({"branched"})
+"""Facts that running a recording again cannot show: `branched` says that a user of the workbench kept the run as a branch."""
+PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended"}) | CHECKED_BEFORE
+"""The facts that the recording of a program can have."""
+BUILT = (
+    PROGRAM
+    | {"whole", "parameters", "built", "program_seed", "period_us", "timestep_us", "scene", "compiled", "world"}
+    | UNCHECKED
+)  # fmt: skip
+"""The facts that the recording of a simulation that a model file builds can have."""
+
+
+def program_facts(file: str, source: str, seed: int | str | None, until: float | None) -> dict[str, Any]:
+    """Returns the facts that the recording of a program begins with."""
+    return {"kind": "program", "file": file, "sources": {file: source}, "seed": seed, "until": until}
+
+
+def built_facts(
+    file: str, source: str, parameters: Mapping[str, Any], seed: int | str, until: float | None, helpers: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Returns the facts of a model file that builds a simulation; `Simulation.facts` returns those of the simulation.
+
+    Args:
+        file: The name of the file.
+        source: Its text.
+        parameters: The values of all its parameters.
+        seed: The seed of the program.
+        until: The limit of its runs [s]; None for none.
+        helpers: The helper modules that it has loaded while it built the simulation.
+    """
+    told = {"file": file, "sources": {file: source}, "parameters": parameters, "built": True}
+    return {**told, "program_seed": seed, "until": until, "helpers": helpers}
+
+
+def first_difference(then: Mapping[str, Any], now: Mapping[str, Any], apart: Collection[str]) -> str | None:
+    """Returns the first fact that differs; a missing fact is the same as null.
+
+    Args:
+        then: The recorded facts.
+        now: Those of the repeated run.
+        apart: The names of facts that are not compared.
+    """
+    names = sorted({*then, *now} - {*apart}, key=lambda name: (END.index(name) if name in END else len(END), name))
+    for name in names:
+        was, is_now = json.dumps(then.get(name)), json.dumps(now.get(name))
+        if json.loads(was) != json.loads(is_now):
+            return f"the fact '{name}'; recorded: {_short(was)}; now: {_short(is_now)}"
+    return None
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

@@ -1,0 +1,76 @@
+"""Branches in a real browser: the notice that one was kept, how it is listed, and what is said where none was made."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.looking import open_tab, shows
+from tests.server.serving import Served
+
+
+def say(page: Page, **command: Any) -> None:
+    """Sends a command to the run."""
+    page.evaluate("async (command) => void (await (await import('/static/server.js')).say(command))", command)
+
+
+def change_the_past(page: Page) -> None:
+    """Runs the doorway to 1 s, goes back to 0.5 s, and changes the width there."""
+    say(page, type="until", time=1.0)
+    shows(page, "#status", r"at 1\.0 s")
+    say(page, type="seek", time=0.5)
+    shows(page, "#time", r"0\.50 s")
+    say(page, type="aperture", width=0.9)
+    shows(page, "#status", r"changed at 0\.50 s")
+
+
+def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown_once(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    change_the_past(page)
+    shows(page, ".branched", r"The run up to 1\.00 s is kept as a branch")
+    open_tab(page, "Runs")
+    row = page.locator("tr[data-run]", has_text="branch at 0.50 s")
+    expect(row.locator(".outcome")).to_have_text(re.compile("not finished.*its past was changed"))
+    expect(row).to_contain_text("1.00 s")
+    page.reload()
+    shows(page, "#status", r"changed at 0\.50 s")
+    expect(page.locator(".branched")).to_have_count(0)
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.60 s")
+    say(page, type="seek", time=0.2)
+    say(page, type="aperture", width=0.8)
+    shows(page, ".branched", r"The run up to 0\.60 s is kept as a branch")  # it is another one
+    page.get_by_role("button", name="Dismiss").click()
+    expect(page.locator(".branched")).to_have_count(0)
+
+
+def test_a_run_that_goes_another_way_after_its_end_is_listed_as_such_at_once(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    open_tab(page, "Runs")
+    say(page, type="run")
+    present = page.locator("tr.present")
+    expect(present).to_contain_text("the model called stop()")
+    say(page, type="seek", time=2.0)
+    shows(page, "#time", r"2\.00 s")
+    say(page, type="aperture", width=0.9)
+    expect(present).to_contain_text("not over")
+    expect(present).to_contain_text("2.00 s")
+    expect(page.locator("tr[data-run]", has_text="branch at 2.00 s")).to_contain_text("the model called stop()")
+
+
+def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages()
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=1.0)
+    shows(page, "#status", r"at 1\.0 s")
+    name = page.evaluate("async () => (await import('/static/store.js')).session.value.recording")
+    for one in workbench.get("/api/sessions").json()["sessions"]:
+        workbench.post(f"/api/sessions/{one['id']}/close")
+    page.goto(f"{page.url.partition('?')[0]}?recording={name}")
+    expect(page.locator(".recording-banner")).to_contain_text("1.00 s are known")
+    change_the_past(page)
+    shows(page, ".branched", r"The recording is unchanged: it still has the run up to 1\.00 s")
+    expect(page.locator(".branched")).not_to_contain_text("branch")

@@ -1,0 +1,53 @@
+"""What a model has printed and done before it ends its own process is written, and the command says what is kept."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from actr3d.recording import Recorded
+
+BUILT = """
+import os
+from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Scene
+class Counter(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("go")
+    def end(goal="go"):
+        print("one")
+        print("two", end="")
+        {end}
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(),)), bodiless={{"counter": Counter}})
+"""
+PROGRAM = "import os, sys, threading, time\nprint('one')\nprint('two', end='')\n{end}\n"
+
+
+@pytest.mark.parametrize("text", [PROGRAM, BUILT], ids=["program", "built"])
+@pytest.mark.parametrize(
+    ("end", "code"),
+    [
+        ("os._exit(3)", 3),
+        ("os.abort()", -6),
+        ("os.execv('/bin/true', ['true'])", 0),
+        ("os.fork() or os._exit(7); os.wait(); os._exit(4)", 4),
+        ("import threading; threading.Thread(target=os._exit, args=[5]).start(); threading.Event().wait(9)", 5),
+    ],
+)
+def test_a_model_that_ends_its_process_loses_nothing(text: str, end: str, code: int, tmp_path: Path) -> None:
+    file, path = tmp_path / "model.py", tmp_path / "run"
+    file.write_text(text.format(end=end), encoding="utf-8")
+    command = [sys.executable, "-m", "actr3d", "run", str(file), "--seed", "1", "--record", str(path)]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout) == (code, "one\ntwo")
+    assert f"the model has ended its own process; '{path}' holds the run until then, without its end" in done.stderr
+    with Recorded(path) as recorded:
+        recorded.check()
+        assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["one", "two"]
+        assert "ended" not in recorded.facts
