@@ -111,9 +111,10 @@ class Room(Source):
 
     def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> None:
         self.curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
-        from actr3d.experiment.aperture.clearance import Clearance, Wall  # also loads the world, which would slow the start
+        from actr3d.experiment.aperture.clearance import Clearance  # also loads the world, which would slow the start
+        from actr3d.world.scene_objects import Gap
 
-        self._clearance = Clearance(model, data, geoms, Wall(**wall))
+        self._clearance = Clearance(model, data, geoms, Gap(**wall))
 
     def read(self, numbers: NDArray[np.float64]) -> Values:
         """Returns the smallest distances to the left and right wall segment [m]; None if no part of the body is in the doorway."""

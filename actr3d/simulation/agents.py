@@ -75,7 +75,7 @@ class Agents:
     @property
     def done(self) -> bool:
         """Whether no agent has anything left to do, now or ever."""
-        return not (self._sch.queue.heap or self._sch._incoming or self.outbox)
+        return not (self._sch.queue.heap or self._sch.incoming or self.outbox)
 
     def may_run(self, end: int) -> bool:
         """Returns whether the limits of the program leave time until `end` [us].
@@ -112,7 +112,8 @@ class Agents:
 
     def take(self, request: Request, answer: Any) -> None:
         """Gives an agent an answer, available from the next tick on."""
-        self._sch.call_after(0, request.port._take, (request, answer))  # private, because productions see every public name of a model
+        # `_take` is private because productions see every public name of a model.
+        self._sch.call_after(0, request.port._take, (request, answer))
 
     def trace_event(self, trace: Trace, kind: str, data: dict[str, Any]) -> None:
         """Traces an event of the whole run."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
-from actr3d.experiment.aperture.clearance import Wall
 from actr3d.world import Aperture, Floor, World
 
 
@@ -21,15 +21,10 @@ def surroundings(world: World) -> dict[str, Any]:
         }
         for name, body in world.bodies.items()
     }
-    walls = {part.name: _wall(part, world)._asdict() for part in world.scene.parts if isinstance(part, Aperture)}
+    walls = {part.name: asdict(part.gap_in(world.mj_model)) for part in world.scene.parts if isinstance(part, Aperture)}
     grounds = {part.name for part in world.scene.parts if isinstance(part, Floor)}
     ground = [geom for geom, owner in enumerate(world.owners) if owner in grounds]
     return {"bodies": bodies, "apertures": list(walls), "walls": walls, "ground": ground}
-
-
-def _wall(aperture: Aperture, world: World) -> Wall:
-    left, right = (int(world.mj_model.geom(f"{aperture.name}_{side}").id) for side in ("left", "right"))
-    return Wall(aperture.position, aperture.heading, aperture.thickness, (left, right))
 
 
 def _finite(limit: float) -> float | None:

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, MinLen
-from mujoco import MjSpec, mjtGeom
+from mujoco import MjModel, MjSpec, mjtGeom
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
@@ -97,6 +97,20 @@ class Wall(Configuration):
         body.add_geom(name=self.name, type=mjtGeom.mjGEOM_BOX, size=size, rgba=self.colour, solref=WALL_SOLREF)
 
 
+@dataclass(frozen=True)
+class Gap:
+    """The place of an aperture in a compiled scene."""
+
+    position: tuple[float, float]
+    """The middle of the gap on the floor, (x, y) [m]."""
+    heading: float
+    """The direction in which one walks through it [rad]."""
+    thickness: float
+    """The thickness of the wall [m]."""
+    segments: tuple[int, int]
+    """The geoms to the left and to the right of the gap."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Aperture(Configuration):
     """A doorway: the gap between two wall segments in one line. Its width can be set before and during a run."""
@@ -139,6 +153,11 @@ class Aperture(Configuration):
         (x, y), z = self.position, self.height / 2
         left = (-math.sin(self.heading) * reach, math.cos(self.heading) * reach)
         return {"left": (x + left[0], y + left[1], z), "right": (x - left[0], y - left[1], z)}
+
+    def gap_in(self, mj_model: MjModel) -> Gap:
+        """Returns the place of the aperture in a compiled scene."""
+        left, right = (int(mj_model.geom(f"{self.name}_{side}").id) for side in ("left", "right"))
+        return Gap(self.position, self.heading, self.thickness, (left, right))
 
     def width_of(self, left: tuple[float, float, float]) -> float:
         """Returns the free width [m] when the left segment's centre is at `left`."""

@@ -365,7 +365,7 @@ class Model(TreeNode):
             sch.add(func)
         if sch.trace is None:
             sch.run(limit)
-            if sch.trace is not None and not sch._running:  # the trace began during the run
+            if sch.trace is not None and not sch.running:  # the trace began during the run
                 sch.trace.raise_failures()
         else:
             self._run_traced(limit)
@@ -373,7 +373,7 @@ class Model(TreeNode):
     def _run_traced(self, limit: float | None) -> None:
         """Runs the tree and records its start, its end and the reason for it; raises what a listener has raised meanwhile."""
         sch = self.sch
-        outermost, failed = not sch._running, None
+        outermost, failed = not sch.running, None
         _trace_top(self, "run", {"limit": traceable(limit)})
         try:
             if outermost and sch.trace is not None:

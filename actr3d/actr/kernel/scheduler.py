@@ -78,9 +78,11 @@ class Scheduler:
         if self.limits is not None:
             self.limits.clock = lambda: self.now_us
         self._ends = Ends()
-        self._running = False
+        self.running = False
+        """Whether a run is in progress."""
+        self.incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
+        """The calls that other threads have added, until the end of the running event."""
         self._named: dict[str, Trigger] = {}
-        self._incoming: deque[tuple[Callable[..., Any], float, Sequence[Any], Mapping[str, Any] | None, float]] = deque()
 
     @property
     def time(self) -> float:
@@ -110,7 +112,7 @@ class Scheduler:
             SchedulerError: If the delay is negative or not a number.
         """
         if thread_safe:
-            self._incoming.append((func, delay, args, keys, priority))
+            self.incoming.append((func, delay, args, keys, priority))
             return None
         generator = func(*args, **(keys or {})) if makes_generator(func) else None
         event = Event(func, args, keys, priority, generator)
@@ -226,11 +228,11 @@ class Scheduler:
             if time < self.now_us:
                 time = self.now_us
             self.queue.push(time, event, priority, seconds(time - self.now_us))
-        for name, trigger in other._named.items():
+        for name, trigger in other._named.items():  # of this class, too
             self.named(name).waiting += trigger.waiting
-        self._incoming += other._incoming
+        self.incoming += other.incoming
         other._named.clear()
-        other._incoming.clear()
+        other.incoming.clear()
         self.round_ms = self.round_ms or other.round_ms
         self.harvests = self.harvests or other.harvests
 
@@ -269,7 +271,7 @@ class Scheduler:
         self.stop_flag = False
         heap = self.queue.heap
         until = end if last is None or (end is not None and end <= last) else last
-        idle = until is not None and (not heap or heap[0][0] > until) and not self._incoming
+        idle = until is not None and (not heap or heap[0][0] > until) and not self.incoming
         if end is not None and not self.queue.first_come and not (idle and until != end):
             self._run_number += 1
             self.queue.push(end, Call(self._end, (self._run_number,)), END, length)
@@ -283,7 +285,7 @@ class Scheduler:
                 self._advance(end, total)
         elif self.stop_flag:
             self.ended_by = "stop"
-        elif end is None and not heap and not self._incoming:
+        elif end is None and not heap and not self.incoming:
             self.ended_by = "done"
         else:
             self.ended_by = "until"
@@ -293,16 +295,16 @@ class Scheduler:
 
     def _run_on(self, until: int | None) -> None:
         """Runs the queued events, up to a time [us], if any; warns if a run is already active."""
-        if self._running:
+        if self.running:
             warn_modeller(
                 f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
                 "to let time pass, yield a number of seconds"
             )
-        before, self._running = self._running, True
+        before, self.running = self.running, True
         try:
             self._run_events(until)
         finally:
-            self._running = before
+            self.running = before
 
     def _end(self, run_number: int) -> None:
         """Ends the run that requested it; has no effect if that run was stopped before."""
@@ -317,7 +319,7 @@ class Scheduler:
         passing = None if self.limits is None or self.in_lockstep else self.limits.passing
         still = 0
         while not self.stop_flag:
-            if self._incoming:
+            if self.incoming:
                 self._take_incoming()
             if not heap or (time := heap[0][0]) > end:
                 break
@@ -382,8 +384,8 @@ class Scheduler:
 
     def _take_incoming(self) -> None:
         """Schedules the calls requested by other threads."""
-        while self._incoming:
-            func, delay, args, keys, priority = self._incoming.popleft()
+        while self.incoming:
+            func, delay, args, keys, priority = self.incoming.popleft()
             self.add(func, delay, args, keys, priority)
 
     def idle_now(self) -> bool:
@@ -391,7 +393,7 @@ class Scheduler:
         heap = self.queue.heap
         if not self.queue.first_come:
             return False
-        return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self._incoming
+        return not (heap and heap[0][0] <= self.now_us) and not self.stop_flag and not self.incoming
 
     def _advance(self, time: int, total: float) -> None:
         """Advances the time without events, to a time [us], which is also given as a sum of delays [s]."""

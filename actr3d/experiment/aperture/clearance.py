@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -12,19 +12,7 @@ from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
 from actr3d.world.bounding_box import Extent
-
-
-class Wall(NamedTuple):
-    """A wall with an aperture in it."""
-
-    position: tuple[float, float]
-    """The middle of the gap on the floor [m]."""
-    heading: float
-    """The direction of walking through it [rad]."""
-    thickness: float
-    """[m]"""
-    segments: tuple[int, int]
-    """The geoms to the left and to the right of the gap."""
+from actr3d.world.scene_objects import Gap
 
 
 class Clearance:
@@ -34,15 +22,15 @@ class Clearance:
         model: The compiled scene.
         data: Its state, whose geometry is up to date in each call.
         geoms: The geoms of the body.
-        wall: The wall.
+        gap: The place of the aperture.
     """
 
-    def __init__(self, model: MjModel, data: MjData, geoms: NDArray[np.intp], wall: Wall) -> None:
-        self._model, self._data, self._geoms, self._wall = model, data, geoms, wall
+    def __init__(self, model: MjModel, data: MjData, geoms: NDArray[np.intp], gap: Gap) -> None:
+        self._model, self._data, self._geoms, self._gap = model, data, geoms, gap
         self._extent = Extent(model, data, geoms)
-        c, s = math.cos(wall.heading), math.sin(wall.heading)
+        c, s = math.cos(gap.heading), math.sin(gap.heading)
         self._axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
-        self._middle = np.array([*wall.position, 0.0])
+        self._middle = np.array([*gap.position, 0.0])
         self._radii = model.geom_rbound
 
     def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
@@ -52,7 +40,7 @@ class Clearance:
             held: More geoms that count as the body's: held objects.
         """
         geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
-        half = self._wall.thickness / 2
+        half = self._gap.thickness / 2
         past = (self._data.geom_xpos[geoms] - self._middle).dot(self._axes[:, 0])
         radii = self._radii[geoms]
         if (past - radii).min() > half or (past + radii).max() < -half:
@@ -60,7 +48,7 @@ class Clearance:
         box = self._extent.box(self._middle, self._axes, held)
         if box.upper[0] < -half or box.lower[0] > half:
             return None
-        left, right = (self._nearest(geoms, segment) for segment in self._wall.segments)
+        left, right = (self._nearest(geoms, segment) for segment in self._gap.segments)
         return left, right
 
     def _nearest(self, geoms: NDArray[Any], segment: int) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from actr3d.errors import WorldError, did_you_mean
-from actr3d.experiment.aperture.clearance import Clearance, Wall
+from actr3d.experiment.aperture.clearance import Clearance
 from actr3d.world import World
 from actr3d.world.scene_objects import Aperture
 
@@ -120,9 +120,7 @@ class Passage:
         if not geoms.keys() >= {*joints}:
             raise WorldError(f"body '{body}' has no shoulders to measure")
         self._shoulders = [geoms[name] for name in joints]
-        left, right = (int(model.geom(f"{aperture}_{side}").id) for side in ("left", "right"))
-        gap = Wall(wall.position, wall.heading, wall.thickness, (left, right))
-        self._clearance = Clearance(model, data, self._body.geoms, gap)
+        self._clearance = Clearance(model, data, self._body.geoms, wall.gap_in(model))
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
         self._hinges = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
         x, y, _ = self._places[self._body.root].tolist()
