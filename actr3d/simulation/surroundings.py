@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from actr3d.experiment.aperture.clearance import Wall
 from actr3d.world import Aperture, Floor, World
 
 
@@ -21,15 +20,16 @@ def surroundings(world: World) -> dict[str, Any]:
         }
         for name, body in world.bodies.items()
     }
-    walls = {part.name: _wall(part, world)._asdict() for part in world.scene.parts if isinstance(part, Aperture)}
+    walls = {part.name: _wall(part, world) for part in world.scene.parts if isinstance(part, Aperture)}
     grounds = {part.name for part in world.scene.parts if isinstance(part, Floor)}
     ground = [geom for geom, owner in enumerate(world.owners) if owner in grounds]
     return {"bodies": bodies, "apertures": list(walls), "walls": walls, "ground": ground}
 
 
-def _wall(aperture: Aperture, world: World) -> Wall:
+def _wall(aperture: Aperture, world: World) -> dict[str, Any]:
+    """Returns where a wall with an aperture stands, and the geoms to the left and to the right of the gap."""
     left, right = (int(world.mj_model.geom(f"{aperture.name}_{side}").id) for side in ("left", "right"))
-    return Wall(aperture.position, aperture.heading, aperture.thickness, (left, right))
+    return {"position": aperture.position, "heading": aperture.heading, "thickness": aperture.thickness, "segments": (left, right)}
 
 
 def _finite(limit: float) -> float | None:
