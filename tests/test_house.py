@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "fields", "saying", "values", "kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -27,7 +27,7 @@ PARTS: dict[str, set[str]] = {
     "clock": {"errors"},
     "configuration": {"errors"},
     "fields": set(),
-    "saying": {"errors"},
+    "warnings": {"errors"},
     "values": set(),
     "kinds": set(),
     "trace": {"errors", "clock", "values", "kinds"},

@@ -99,7 +99,7 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().set_aperture_width(-1), r"Aperture\.width: must be >= 0 \(got -1\.0\)"),
         (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
         (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
-        (lambda: doorway().step(-1), r"the physics goes on by a whole number of steps \(got -1\)"),
+        (lambda: doorway().step(-1), r"World\.step: must be a whole number of steps \(got -1\)"),
         (lambda: doorway().set_aperture_width(1, 3), "no aperture '3' in this scene"),  # pyright: ignore[reportArgumentType]
         (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
         (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),

@@ -2,10 +2,10 @@
 
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.glance import glance
-from actr3d.camera.kernel.layout import EXTENT_FIELDS, ExtentField
+from actr3d.camera.kernel.dtypes import EXTENT_FIELDS, ExtentField
 from actr3d.camera.parameters import CameraParameters
-from actr3d.camera.sense import Sight
 from actr3d.camera.stand import Stand, stand_of
 from actr3d.camera.view import View
+from actr3d.camera.view_sensor import Sight
 
 __all__ = ["EXTENT_FIELDS", "CameraParameters", "ExtentField", "GeometricCamera", "Sight", "Stand", "View", "glance", "stand_of"]

@@ -11,8 +11,8 @@ from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
 from actr3d.camera.eye import Eye, Kind, names_of
-from actr3d.camera.kernel.envelope import room_for
-from actr3d.camera.kernel.layout import EXTENT
+from actr3d.camera.kernel.dtypes import EXTENT
+from actr3d.camera.kernel.lower_envelope import room_for
 from actr3d.camera.kernel.scan import MOST_PIECES_OF_A_PATCH, scan
 from actr3d.camera.kernel.scene import room_for_scene
 from actr3d.camera.optics import optics_of
@@ -20,7 +20,7 @@ from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.topology import geoms_of, objects_of, topology_of
 from actr3d.camera.view import View
 from actr3d.errors import CameraError
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 
 class GeometricCamera:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from actr3d.camera.parameters import CameraParameters
-from actr3d.camera.sense import Sight
 from actr3d.camera.view import View
+from actr3d.camera.view_sensor import Sight
 from actr3d.errors import CameraError
 from actr3d.world.body import Body
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.camera.kernel.layout import OPTICS
+from actr3d.camera.kernel.dtypes import OPTICS
 from actr3d.camera.parameters import CameraParameters
 
 NEAREST = 1e-9

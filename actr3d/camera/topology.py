@@ -7,7 +7,7 @@ from mujoco import MjModel
 from numpy.typing import NDArray
 
 from actr3d.camera.eye import names_of
-from actr3d.camera.kernel.layout import BACKGROUND, BOX, HFIELD, MESH, PLANE, SDF, UNSEEN
+from actr3d.camera.kernel.dtypes import BACKGROUND, BOX, HFIELD, MESH, PLANE, SDF, UNSEEN
 from actr3d.camera.kernel.polyhedra import HFIELD_EXTRA_CORNERS
 from actr3d.camera.kernel.scene import Geoms, Topology
 from actr3d.camera.parameters import CameraParameters

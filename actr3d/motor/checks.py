@@ -8,7 +8,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 from actr3d.errors import did_you_mean
-from actr3d.saying import warn_at
+from actr3d.warnings import warn_at
 
 _CHECKED: WeakSet[type] = WeakSet()
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from actr3d.actr.loading.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError
-from actr3d.saying import is_library
+from actr3d.warnings import is_library
 
 PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "purelib", "platlib")})
 """The folders of Python's own modules and of installed packages."""

@@ -10,8 +10,8 @@ from actr3d.actr.kernel.tree import subtree
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import rules_of
 from actr3d.errors import PlanError, did_you_mean
-from actr3d.saying import warn_at
 from actr3d.sgoms.units import PlanningUnit
+from actr3d.warnings import warn_at
 
 
 def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:

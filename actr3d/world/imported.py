@@ -15,7 +15,7 @@ from mujoco import MjSpec
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import Files, Folder, digest, resolved
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported

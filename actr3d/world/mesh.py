@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, MeshError
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import Files, Folder, digest
 from actr3d.world.convex_decomposition import convex_parts
 from actr3d.world.mesh_loading import Triangles, read_triangles

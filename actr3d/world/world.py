@@ -117,7 +117,7 @@ class World:
             WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is none.
         """
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise WorldError(f"the physics goes on by a whole number of steps (got {steps!r})")
+            raise WorldError(f"World.step: must be a whole number of steps (got {steps!r})")
         commands = [body.motion for body in self.bodies.values() if body.motion]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
         parts = self._with_commands(steps, commands) if commands else self._substepping.steps(steps)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 
 def display(root: Any, engine: str | None = None, **args: Any) -> None:  # noqa: ARG001 - as models call it

@@ -12,7 +12,7 @@ from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.tracing import traceable
 from actr3d.actr.kernel.tree import children_of, path_within
 from actr3d.errors import GridError, did_you_mean
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 COMPASS = ((0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1))
 """The steps (x, y) to the eight neighbours, clockwise from north; y grows downwards, as the lines of a map do."""

@@ -25,8 +25,8 @@ from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.actr.kernel.tree import path_of
 from actr3d.clock import seconds
 from actr3d.errors import ChunkError, did_you_mean
-from actr3d.saying import warn_modeller
 from actr3d.trace import Trace
+from actr3d.warnings import warn_modeller
 
 
 class Memory(WithParameters, Model):

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from actr3d.actr.chunks.chunk import Slot, as_text
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 
 class PartialMemory(Protocol):

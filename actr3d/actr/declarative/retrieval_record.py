@@ -13,7 +13,7 @@ from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.declarative.chunk_query import ChunkSearch, PlainSearch
 from actr3d.actr.kernel.noise import total
 from actr3d.actr.kernel.tracing import chunk_text, traceable
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 Row = tuple[Chunk, tuple[float, ...], float, float]
 """A candidate in memory: a plain tuple because there may be thousands: (chunk, parts, partial, activation)."""

@@ -12,7 +12,7 @@ from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.errors import ChunkError
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 
 class DMSpreading(MemorySubModule):

@@ -29,9 +29,9 @@ from actr3d.actr.kernel.source_code import for_python_actr
 from actr3d.actr.kernel.tracing import UNWATCHED, traceable
 from actr3d.actr.kernel.tree import TreeNode, forget_place, keep_path, lineage, note_move, path_of, subtree, top_of
 from actr3d.errors import SchedulerError
-from actr3d.saying import warn_modeller
 from actr3d.trace import Trace, top_path
 from actr3d.values import COLLECTIONS
+from actr3d.warnings import warn_modeller
 
 BEFORE_FIRST_RUN: list[Callable[[Model], object]] = []
 """Called with a top model that is about to run for the first time; `actr3d.actr` adds the checks of models here."""

@@ -10,7 +10,7 @@ from typing import Any, Concatenate, ParamSpec, TypeVar
 from weakref import WeakKeyDictionary
 
 from actr3d.errors import ParameterError, did_you_mean
-from actr3d.saying import warn_modeller
+from actr3d.warnings import warn_modeller
 
 P = ParamSpec("P")
 Self = TypeVar("Self")

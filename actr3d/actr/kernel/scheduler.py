@@ -14,8 +14,8 @@ from actr3d.actr.kernel.log import LOG
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
 from actr3d.errors import SchedulerError, did_you_mean
-from actr3d.saying import warn_at_frame, warn_modeller
 from actr3d.trace import Trace
+from actr3d.warnings import warn_at_frame, warn_modeller
 
 NEVER = 1 << 62
 """A time that never comes [us]."""

@@ -17,7 +17,7 @@ from actr3d.actr.kernel.source_code import SOURCE, source_of, syntax_tree
 from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.errors import ModelWarning
-from actr3d.saying import warn_at
+from actr3d.warnings import warn_at
 
 
 def is_modellers(klass: type) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 from actr3d.actr.chunks.pattern import Condition
 from actr3d.actr.procedural.production import Production
-from actr3d.saying import warn_at
+from actr3d.warnings import warn_at
 
 Thing = tuple[str, Any, Any]
 """A slot ("slot", buffer, key) or a variable ("variable", name, None)."""

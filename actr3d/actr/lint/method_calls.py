@@ -21,7 +21,7 @@ from actr3d.actr.lint.slot_names import GIVERS, READERS, slip_of, slots_in, text
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.procedural.production import Production
 from actr3d.errors import PatternException, did_you_mean
-from actr3d.saying import warn_at
+from actr3d.warnings import warn_at
 
 _VARIABLE = re.compile(r"(?<!\w)\?(\w+)")
 

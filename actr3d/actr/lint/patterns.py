@@ -14,7 +14,7 @@ from actr3d.actr.lint.slot_names import vocabulary
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.safe_reading import UNKNOWN, plain_value
 from actr3d.errors import did_you_mean
-from actr3d.saying import warn_at
+from actr3d.warnings import warn_at
 
 SURE = 0.74
 """The similarity to another name (0 to 1) from which a name counts as misspelt."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from actr3d.camera.kernel.dtypes import NEGLIGIBLE, SLIVER, Array, Record, Records
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import NEGLIGIBLE, SLIVER, Array, Record, Records
 from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.screen import screen_part
 

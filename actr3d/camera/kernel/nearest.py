@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from actr3d.camera.kernel.dtypes import LINE, Record, Records
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import LINE, Record, Records
 from actr3d.camera.kernel.pieces import nearness, root_of
 
 HALVINGS = 5

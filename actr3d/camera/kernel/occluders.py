@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import Array, Record, Records
 
 MOST_OCCLUDERS = 8
 LARGE = 0.02

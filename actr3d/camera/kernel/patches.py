@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
 from actr3d.camera.kernel.pieces import bound, nearness, sort_values, summit
 from actr3d.camera.kernel.roots import add_roots
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from actr3d.camera.kernel.dtypes import Array
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import Array
 
 
 @compiled

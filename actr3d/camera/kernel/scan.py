@@ -7,17 +7,17 @@ from collections.abc import Callable
 from functools import cache
 from typing import TypeAlias
 
-from actr3d.camera.kernel.envelope import Row, trace_row
+from actr3d.camera.kernel.active_rows import bring_up
+from actr3d.camera.kernel.dtypes import BACKGROUND, FAR_SIDE, Array, Record, Records
 from actr3d.camera.kernel.extents import finish
 from actr3d.camera.kernel.faces import add_face
 from actr3d.camera.kernel.jit import compiled, kept, sources_digest, zero
-from actr3d.camera.kernel.layout import BACKGROUND, FAR_SIDE, Array, Record, Records
+from actr3d.camera.kernel.lower_envelope import Row, trace_row
 from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import Geoms, Scene, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent
-from actr3d.camera.kernel.waiting import bring_up
 
 MOST_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""

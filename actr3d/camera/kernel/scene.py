@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from actr3d.camera.kernel.active_rows import ActiveRows, enter, room_for_active_rows, send_away
+from actr3d.camera.kernel.dtypes import BOX, HFIELD, MESH, NUMBER, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
 from actr3d.camera.kernel.faces import face_rows
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BOX, HFIELD, MESH, NUMBER, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
 from actr3d.camera.kernel.occluders import LARGE, MOST_OCCLUDERS, hidden, offer
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
 from actr3d.camera.kernel.screen import in_view
 from actr3d.camera.kernel.solids import add_patches, reach_of
-from actr3d.camera.kernel.waiting import Waiting, enter, room_for_waiting, send_away
 
 
 class Geoms(NamedTuple):
@@ -67,7 +67,7 @@ class Scene(NamedTuple):
     """The corners of one geom in its frame [m]."""
     corners: Array
     """All corners in the eye's frame [m]."""
-    surfaces: Waiting
+    surfaces: ActiveRows
     """The patches, then the faces, by their rows; the active ones are ordered from left to right as on the row above.
 
     A face's number here is its own number plus the length of `patches`.
@@ -88,7 +88,7 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
         patches=np.zeros(patches, PATCH),
         local=np.zeros((max(8, corners), 3)),
         corners=np.zeros((corners, 3)),
-        surfaces=room_for_waiting(patches + faces, rows),
+        surfaces=room_for_active_rows(patches + faces, rows),
         aside=np.zeros(patches + faces, NUMBER),
     )
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from actr3d.camera.kernel.dtypes import Array, Record
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import Array, Record
 
 
 @compiled

@@ -1,4 +1,4 @@
-"""The constraints on a model of people who pass apertures: those that need no bar, by their numbers in human-data.
+"""The constraints on a model of people who pass apertures: those without a hand-held bar, by their numbers in human-data.
 
 Agents, not trials, are the unit of analysis: means of agents are compared.
 """

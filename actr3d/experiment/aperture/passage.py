@@ -22,21 +22,21 @@ TURNED = math.radians(1)
 
 @dataclass(frozen=True, kw_only=True)
 class PassageResult:
-    """The result of a walk to an aperture. Distances are from the body's axis to the middle plane of the wall, positive before it."""
+    """The result of a walk to an aperture. Distances are those of the body's axis from the middle plane of the wall, positive in front."""
 
     outcome: Literal["passed", "declined", "stopped"]
-    """Whether all of the body passed; the run ended before it set out; or neither."""
+    """`passed`: all of the body did; `declined`: the run ended before the body set out; `stopped`: neither."""
     peak_angle_deg: float | None
     """The greatest angle between the shoulder line and the wall while walking [degrees, 0 to 90]; None if it did not set out."""
     wall_angle_deg: float | None
     """The same when the axis reached the wall; None if it did not."""
     logged_angle_deg: float | None
-    """Torso plus clavicle, as joints, at that moment [degrees]: the value that the original model logged (human-data); plus the
-    stance, if the body can turn it."""
+    """The sum of the joint angles of torso and clavicle at that moment [degrees], which the original model logged (human-data); plus
+    that of the stance, if the body has one."""
     onset_distance_m: float | None
     """Distance from the wall at which the shoulders began to turn; None if they did not."""
     onset_time_s: float | None
-    """Time of that."""
+    """The time at which they began to turn [s]."""
     contacts: int
     """Number of contacts of a part of the body with an object."""
     max_force_n: float
@@ -143,13 +143,13 @@ class Passage:
             self._samples.insert(number, self._sample(x, y, end - ago, ago))
 
     def _sample(self, x: float, y: float, time: float, ago: float) -> _Sample:
-        """Returns what is to be known of a moment.
+        """Returns the sample of a moment.
 
         Args:
-            x: Where the body's axis is [m].
+            x: The position of the body's axis [m].
             y: The same.
-            time: When [s].
-            ago: How much further the joints have gone already [s].
+            time: The time of the geometry [s].
+            ago: By how much the joints are ahead of the geometry [s].
         """
         forward, left = self._ahead
         before = (self._wall.position[0] - x) * forward + (self._wall.position[1] - y) * left

@@ -8,8 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import TypeAlias
 
+from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.camera.kernel.jit import compiled, kept, sources_digest
-from actr3d.camera.kernel.layout import Array, Record, Records
 from actr3d.camera.kernel.screen import row_tangent, tangent_at
 from actr3d.vision.kernel.gaps import find_gaps, link_gaps
 from actr3d.vision.kernel.openings import set_openings

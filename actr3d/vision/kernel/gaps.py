@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import Array, Record, Records
 from actr3d.camera.kernel.screen import row_tangent
 
 NARROWEST = 1e-6

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.crossings import add_crossings, may_cover
+from actr3d.camera.kernel.dtypes import BACKGROUND, NEGLIGIBLE, NUMBER, PIECE, SAME_DEPTH, Array, Record, Records
 from actr3d.camera.kernel.extents import EDGES_AT_ONCE, end_row, goes_on, without_sliver
 from actr3d.camera.kernel.jit import compiled, zero
-from actr3d.camera.kernel.layout import BACKGROUND, NEGLIGIBLE, NUMBER, PIECE, SAME_DEPTH, Array, Record, Records
 from actr3d.camera.kernel.nearest import STRETCHES, forget, note
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from actr3d.camera.kernel.dtypes import NUMBER, Array
 from actr3d.camera.kernel.jit import compiled
-from actr3d.camera.kernel.layout import NUMBER, Array
 
 
-class Waiting(NamedTuple):
+class ActiveRows(NamedTuple):
     """Numbered items, indexed by the row they begin on; finds the items of a row without checking all others."""
 
     starting: Array
@@ -23,9 +23,9 @@ class Waiting(NamedTuple):
     """The items on the current row."""
 
 
-def room_for_waiting(things: int, rows: int) -> Waiting:
+def room_for_active_rows(things: int, rows: int) -> ActiveRows:
     """Returns the arrays for a given number of items and rows."""
-    return Waiting(
+    return ActiveRows(
         starting=np.zeros(rows, np.int64),
         following=np.zeros(things, np.int64),
         ending=np.zeros(things, np.int64),
@@ -34,32 +34,32 @@ def room_for_waiting(things: int, rows: int) -> Waiting:
 
 
 @compiled
-def send_away(waiting: Waiting) -> None:
+def send_away(active: ActiveRows) -> None:
     """Removes all items."""
-    for row in range(len(waiting.starting)):
-        waiting.starting[row] = -1
+    for row in range(len(active.starting)):
+        active.starting[row] = -1
 
 
 @compiled
-def enter(waiting: Waiting, thing: int, first: int, last: int) -> None:
+def enter(active: ActiveRows, thing: int, first: int, last: int) -> None:
     """Adds an item from its first to its last row; does nothing if there are no rows."""
     if first <= last:
-        waiting.following[thing] = waiting.starting[first]
-        waiting.starting[first] = thing
-        waiting.ending[thing] = last
+        active.following[thing] = active.starting[first]
+        active.starting[first] = thing
+        active.ending[thing] = last
 
 
 @compiled
-def bring_up(waiting: Waiting, row: int, present: int) -> int:
+def bring_up(active: ActiveRows, row: int, present: int) -> int:
     """Updates the active items from the row above to this row; returns their number."""
     kept = 0
     for i in range(present):
-        if waiting.ending[waiting.present[i]] >= row:
-            waiting.present[kept] = waiting.present[i]
+        if active.ending[active.present[i]] >= row:
+            active.present[kept] = active.present[i]
             kept += 1
-    thing = waiting.starting[row]
+    thing = active.starting[row]
     while thing >= 0:
-        waiting.present[kept] = thing
+        active.present[kept] = thing
         kept += 1
-        thing = waiting.following[thing]
+        thing = active.following[thing]
     return kept
