@@ -337,19 +337,3 @@ def test_what_it_cannot_see_is_named() -> None:
       </worldbody></mujoco>"""
     with pytest.warns(ModelWarning, match="the Geometric Camera does not see flex 'sheet': give what should be seen a geom"):
         GeometricCamera(mujoco.MjModel.from_xml_string(text), site="eye")
-
-
-def test_a_cache_that_refers_to_types_of_a_former_version_is_discarded(tmp_path: Path) -> None:
-    (tmp_path / "adding.py").write_text(
-        "import importlib, sys\n"
-        "from actr3d.camera.kernel.jit import kept\n"
-        "add = kept(lambda pair: pair.a + pair.b)\n"
-        "print(add(importlib.import_module(sys.argv[1]).Pair(1, 2)))\n"
-    )
-    for name in ("former", "renamed", "renamed"):
-        for file in (*tmp_path.glob("former.py"), *tmp_path.glob("renamed.py")):
-            file.unlink()
-        (tmp_path / f"{name}.py").write_text("from typing import NamedTuple\n\n\nclass Pair(NamedTuple):\n    a: int\n    b: int\n")
-        run = subprocess.run([sys.executable, "-B", "adding.py", name], cwd=tmp_path, capture_output=True, text=True)
-        assert (run.stdout, run.stderr) == ("3\n", "")
-    assert [*tmp_path.rglob("*.nbi")]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
-from pickle import UnpicklingError
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
@@ -27,19 +26,9 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 def kept(function: Callable[P, R]) -> Callable[P, R]:
     """Returns the function compiled, and cached on disk for the next process if a cache folder is writable."""
     try:
-        made = _njit(cache=True, **OPTIONS)(function)
+        return _njit(cache=True, **OPTIONS)(function)
     except RuntimeError:  # no writable cache folder
         return _njit(**OPTIONS)(function)
-    _discard_unreadable(made)
-    return made
-
-
-def _discard_unreadable(made: Any) -> None:
-    """Empties a function's cache that refers to types which no longer exist, as after an upgrade: numba raises an error at each call."""
-    try:
-        made._cache._cache_file._load_index()  # numba has no public name for it
-    except (ImportError, AttributeError, EOFError, UnpicklingError):
-        made._cache.flush()
 
 
 def sources_digest(*folders: Path) -> int:
