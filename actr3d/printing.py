@@ -13,11 +13,11 @@ from typing import Any, Self, TextIO, cast
 class _Lines(io.BufferedIOBase):
     """Receives UTF-8 bytes, and passes on whole lines of text; closing it has no effect."""
 
-    def __init__(self, take: Callable[[str], None]) -> None:
+    def __init__(self, take: Callable[[str], None], number: int = 1) -> None:
         self._take = take
+        self._number = number
         self._rest = b""
-
-    name = "<stdout>"
+        self.name = "<stdout>" if number == 1 else "<stderr>"
 
     def writable(self) -> bool:
         return True
@@ -29,7 +29,7 @@ class _Lines(io.BufferedIOBase):
         return len(data)
 
     def fileno(self) -> int:
-        return 1
+        return self._number
 
     def close(self) -> None:
         """Does nothing: a wrapper that a model creates and drops would otherwise close this stream."""
@@ -46,14 +46,15 @@ class _Lines(io.BufferedIOBase):
 
 
 class ModelOutput(io.TextIOWrapper):
-    """A `sys.stdout` that passes on what a model prints line by line, including output through `.buffer`.
+    """A `sys.stdout` or `sys.stderr` that passes on what a model writes line by line, including output through `.buffer`.
 
     Args:
         take: Called with each line.
+        number: The file descriptor that it stands for.
     """
 
-    def __init__(self, take: Callable[[str], None]) -> None:
-        self.lines = _Lines(take)
+    def __init__(self, take: Callable[[str], None], number: int = 1) -> None:
+        self.lines = _Lines(take, number)
         super().__init__(self.lines, encoding="utf-8", errors="surrogatepass", newline="\n", write_through=True)
 
     def reconfigure(self, **options: Any) -> None:

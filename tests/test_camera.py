@@ -285,6 +285,23 @@ def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> N
         assert subprocess.run(run, check=True, capture_output=True, text=True, env=environment).stdout == f"3 {cache}\n"
 
 
+def test_a_cache_that_cannot_be_read_any_more_is_not_read(tmp_path: Path) -> None:
+    lines = ["import sys", "from actr3d.camera.kernel import jit"]
+    lines += ["jit.sources_digest = lambda *folders: int(sys.argv[2])", "shape = __import__(sys.argv[1])"]
+    lines += ["def first(size): return size.width", "print(jit.kept(first)(shape.Size(2)))"]
+    (tmp_path / "sizes.py").write_text("\n".join(lines))
+
+    def run(module: str, digest: int) -> str:
+        (tmp_path / f"{module}.py").write_text("from typing import NamedTuple\nclass Size(NamedTuple):\n    width: int\n")
+        command = [sys.executable, str(tmp_path / "sizes.py"), module, str(digest)]
+        output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        (tmp_path / f"{module}.py").unlink()
+        return output
+
+    assert run("old", 1) == "2\n"  # the cache has a type of a module that is gone then
+    assert run("new", 2) == "2\n"
+
+
 def test_old_code_is_not_used_after_any_file_has_changed(tmp_path: Path) -> None:
     for path in Path(jit.__file__).parent.glob("*.py"):
         shutil.copy(path, tmp_path)

@@ -76,7 +76,7 @@ def test_a_negative_strength_of_association_counts_nothing_and_warns_in_the_mode
     agent = fan_agent()
     agent.spreading.strength = 1.0
     agent.goal.set("a:in")
-    with pytest.warns(ModelWarning, match="the fan of 'in' is so large") as caught:
+    with pytest.warns(ModelWarning, match="the fan of 'in' is large enough to inhibit") as caught:
         assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0
     assert [warning.filename for warning in caught] == [__file__]
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0  # said once

@@ -11,7 +11,7 @@ import msgspec
 
 from workbench.worker.link import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
-from workbench.worker.messages import At, FromWorker, Notice, Over, Start, Where, notice
+from workbench.worker.messages import MOST_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
 from workbench.worker.workers import LOST, PRINTED, Worker
 
 SILENT = 1.0
@@ -20,9 +20,6 @@ SPEECHLESS = 2.5
 """A worker that does not answer for this long after its last message [s] is busy in compiled code, which blocks its whole process."""
 LAST_WORDS = 1.0
 """How long messages of a worker are still read after it has ended [s]."""
-MOST_PRINTED = 200
-"""How many lines that a worker prints other than by its model's `print` are shown; the rest is dropped."""
-
 
 _MEANINGS = {
     "SIGKILL": ", which it sent itself, or another program did, or the system for want of memory",

@@ -235,7 +235,7 @@ def _compared(recorded: Recorded, beside: Beside, trouble: str) -> Comparison:
 def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]:
     """Returns the facts that running a recording again cannot check, and says so of those that it has."""
     then, now = recorded.facts, beside.facts
-    from_code = then["kind"] == "program" or bool(then.get("built"))
+    from_code = then["kind"] == "program" or bool(now.get("built"))
     told, silent = set(UNCHECKED), set(CHECKED_BEFORE)
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         told |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})

@@ -328,3 +328,45 @@ def test_what_copies_of_the_process_print_arrives(desk: Desk, tmp_path: Path, en
     texts = [notice["text"] for notice in talk.notices]
     assert not [text for text in texts if "Exception ignored" in text]
     assert [text.partition(":")[0] for text in texts if "Error:" in text] == told
+
+
+WRITES = """
+import sys
+from actr3d.actr import *
+
+class Mind(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('count 1')
+    def count(goal='count ?n!6'):
+        print('out', n)
+        print('err', n, file=sys.stderr)
+        goal.set(f'count {int(n) + 1}')
+    def end(goal='count 6'):
+        sys.stderr.write('unfinished')
+        self.stop()
+
+Mind().run()
+"""
+
+
+def test_lines_on_standard_error_are_told_once_at_the_moment_when_they_are_written(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, WRITES)
+    talk.say("run")
+    talk.until("ended")
+    talk.wait_for_notice("unfinished")
+
+    def told() -> list[tuple[str, int]]:
+        return [(notice["text"], notice["events"]) for notice in talk.notices if notice["level"] == "info"]
+
+    printed = {event[3]["text"]: number for number, event in enumerate(talk.events) if event[2] == "output"}
+    assert [text for text, _ in told()] == ["err 1", "err 2", "err 3", "err 4", "err 5", "unfinished"]
+    for n, (_, events) in enumerate(told()[:5], 1):
+        assert printed[f"out {n}"] < events
+        assert n == 5 or events <= printed[f"out {n + 1}"]
+    first = told()
+    talk.say("seek", time=0.12)
+    talk.until("paused", time=0.12)
+    talk.say("run")
+    talk.until("ended")
+    assert told() == first

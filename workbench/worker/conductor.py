@@ -12,6 +12,7 @@ import msgspec
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import Actr3dError
+from actr3d.printing import ModelOutput
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
@@ -52,6 +53,8 @@ class Conductor:
         self.leaving = False
         """Whether the worker must end."""
         self.run: Conducted
+        self.errors: ModelOutput | None = None
+        """The model's standard error."""
         link.busy = self.show_busy
         self._sent = 0
         """Number of events that the server has been sent."""
@@ -63,6 +66,8 @@ class Conductor:
         """Number of events that have been compared with the recorded ones."""
         self._telling = threading.Lock()
         """Held by the thread that sends events to the server."""
+        self._reached = 0
+        """The time that the run had reached when it went back [us]: until then it repeats itself."""
         self._seen = 0
         """Number of events that have been checked against the stop conditions."""
         self._shown = 0.0
@@ -89,6 +94,11 @@ class Conductor:
     def relives(self) -> bool:
         """Whether the run repeats a recorded one and still agrees with it."""
         return self._foreknown is not None
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the run, after going back, has not yet come to where it was."""
+        return self._reached > 0 and self.run.clock < self._reached
 
     def embodied(self) -> None:
         """Records that the run has a body: it goes in real time unless a speed was chosen."""
@@ -146,11 +156,19 @@ class Conductor:
 
     def end(self, status: Status, reason: str) -> None:
         """Records the end of the run; the reason names the stop condition that was not met, if any."""
+        self._finish_errors()
         trace = self.run.trace
         news = trace.since(self._seen) if trace is not None and self.watch.of_events else []
         missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # the condition may be met at the very end
         self.status, self.reason = status, whole(f"{reason}; {missed}" if missed else reason)
         self._halt()
+
+    def _finish_errors(self) -> None:
+        """Sends a last line of standard error without a line break."""
+        if self.errors is not None and self.run.clock <= self._reached and self._reached > 0:
+            self.errors.lines.forget()  # it was sent when the run was here before
+        elif self.errors is not None:
+            self.errors.finish()
 
     def went_back(self) -> None:
         """Records that the run is now at another time, whose events were all known."""
@@ -168,8 +186,10 @@ class Conductor:
         """
         with self._telling:
             self._foreknown = None
-            if changed is not None and self.status == "paused":
-                self.reason = changed
+            if changed is not None:
+                self._reached = 0
+                if self.status == "paused":
+                    self.reason = changed
             if changed is not None or events < self._sent:
                 self._sent = min(self._sent, events)
                 self.link.cut(Cut(events=events), events)
@@ -223,6 +243,7 @@ class Conductor:
             case say.Explain() | say.Rows() | say.Look() | say.Body() | say.Events() | say.Curves():
                 return self.run.answer(said)
             case _:
+                self._reached = max(self._reached, self.run.clock)
                 self.run.do(said)
                 self.show()
         return None
@@ -327,6 +348,7 @@ class Conductor:
         if not self.link.left:  # a forked copy of the process has nothing to send
             with suppress(Exception):  # there may be no run yet
                 if ends:
+                    self._finish_errors()
                     self.run.finish_output()
                 self.run.flush()
             self.show_busy()

@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.actr.loading.source_text import compile_source
+from actr3d.printing import ModelOutput
 from actr3d.running.declared import check_build
 from actr3d.running.last_words import before_the_end, end_at_once
 from actr3d.values import to_json
@@ -23,7 +24,7 @@ from workbench.loader import listing_of
 from workbench.worker.conductor import Conductor
 from workbench.worker.link import Link
 from workbench.worker.memory import watch_memory
-from workbench.worker.messages import Over, Reply, notice
+from workbench.worker.messages import MOST_PRINTED, Over, Reply, notice
 from workbench.worker.orphans import adopt
 from workbench.worker.trouble import notice_of
 
@@ -43,6 +44,8 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     os.register_at_fork(after_in_child=link.leave)
     os.register_at_fork(after_in_child=_PAST_PRINT.open)
     conductor = Conductor(link)
+    errors = conductor.errors = sys.stderr = sys.__stderr__ = _errors(link, conductor)  # type: ignore[misc]
+    os.register_at_fork(after_in_child=errors.lines.forget)
     warnings.simplefilter("default")
     warnings.showwarning = _told_to(link)
     try:
@@ -54,13 +57,31 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
         if link.left:
             _leave_copy(error)
         link.post(notice_of(error))
+    errors.finish()
     link.post(Over())
     link.flush()
     with suppress(OSError):
         wire.shutdown(socket.SHUT_WR)
-    with suppress(OSError, ValueError):
-        sys.stderr.flush()
     end_at_once(0)  # threads left behind by the model must not keep the process alive
+
+
+def _errors(link: Link, conductor: Conductor) -> ModelOutput:
+    """Returns a `sys.stderr` whose lines are notices at the moment of the run at which they are written; each is sent once."""
+    count = 0
+
+    def take(line: str) -> None:
+        nonlocal count
+        if link.left:  # a forked copy of the process sends nothing; its output goes the way of other processes
+            with suppress(OSError):
+                os.write(2, f"{line}\n".encode(errors="replace"))
+        elif line.strip() and not conductor.repeats:
+            count += 1
+            if count <= MOST_PRINTED:
+                link.post(notice("info", line.rstrip()))
+            elif count == MOST_PRINTED + 1:
+                link.post(notice("warning", "the model writes much more to its standard error; that is left out"))
+
+    return ModelOutput(take, 2)
 
 
 def _leave_copy(error: BaseException) -> NoReturn:

@@ -23,8 +23,17 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     return _njit(no_cpython_wrapper=True, forceinline=True, **OPTIONS)(function)
 
 
-def kept(function: Callable[P, R]) -> Callable[P, R]:
-    """Returns the function compiled, and cached on disk for the next process if a cache folder is writable."""
+def kept(function: Callable[P, R], *folders: Path) -> Callable[P, R]:
+    """Returns the function compiled, and cached on disk for the next process if a cache folder is writable.
+
+    Numba's cache checks only the file of the function itself, cannot even be read where a module of the old code is gone, and is
+    found by the function's name. So the name says of which sources it was compiled.
+
+    Args:
+        function: A function that calls compiled functions.
+        folders: The folders of these functions' sources, beside this package.
+    """
+    function.__qualname__ += f"-{sources_digest(*folders):x}"
     try:
         return _njit(cache=True, **OPTIONS)(function)
     except RuntimeError:  # no writable cache folder
@@ -32,10 +41,7 @@ def kept(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def sources_digest(*folders: Path) -> int:
-    """Returns a digest of all files of this package, and of other folders whose functions use it.
-
-    Numba's cache checks only the file of the cached function itself, and would keep using outdated code of the other files.
-    """
+    """Returns a digest of all files of this package, and of other folders whose functions use it."""
     digest = sha256()
     for folder in (Path(__file__).parent, *folders):
         for path in sorted(folder.glob("*.py")):

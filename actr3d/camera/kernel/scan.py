@@ -11,7 +11,7 @@ from actr3d.camera.kernel.active_rows import bring_up
 from actr3d.camera.kernel.dtypes import BACKGROUND, FAR_SIDE, Array, Record, Records
 from actr3d.camera.kernel.extents import finish
 from actr3d.camera.kernel.faces import add_face
-from actr3d.camera.kernel.jit import compiled, kept, sources_digest, zero
+from actr3d.camera.kernel.jit import compiled, kept, zero
 from actr3d.camera.kernel.lower_envelope import Row, trace_row
 from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
@@ -33,29 +33,22 @@ def scan() -> Scan:
     topology, work arrays for the scene and for a row, the labels of objects, and the output array of extents. It returns the number
     of extents, or `-1 - geom` if the pose of a geom is not finite.
     """
-    return _scan_of(sources_digest())
+    return kept(_scan)
 
 
-def _scan_of(digest: int) -> Scan:
-    # Numba caches the compiled function under the values of its closure, so that a change in any file is detected.
-    @kept
-    def look(
-        eye: Array,
-        place: Array,
-        turn: Array,
-        optics: Array,
-        geoms: Geoms,
-        topology: Topology,
-        scene: Scene,
-        row: Row,
-        labels: Array,
-        extents: Records,
-    ) -> int:
-        if digest == 0:
-            return 0
-        return _look(eye, place, turn, optics[0], geoms, topology, scene, row, labels, extents)
-
-    return look
+def _scan(
+    eye: Array,
+    place: Array,
+    turn: Array,
+    optics: Array,
+    geoms: Geoms,
+    topology: Topology,
+    scene: Scene,
+    row: Row,
+    labels: Array,
+    extents: Records,
+) -> int:
+    return _look(eye, place, turn, optics[0], geoms, topology, scene, row, labels, extents)
 
 
 @compiled

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
-from actr3d.camera.kernel.jit import compiled, kept, sources_digest
+from actr3d.camera.kernel.jit import compiled, kept
 from actr3d.camera.kernel.screen import row_tangent, tangent_at
 from actr3d.vision.kernel.gaps import find_gaps, link_gaps
 from actr3d.vision.kernel.openings import set_openings
@@ -27,7 +27,7 @@ def gaps() -> Gaps:
     opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings; those
     without room are not written.
     """
-    return _gaps_of(_digest())
+    return kept(_gaps, Path(__file__).parent)
 
 
 @cache
@@ -35,24 +35,13 @@ def surfaces() -> Surfaces:
     """Returns the function that finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
     and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
     """
-    return _surfaces_of(_digest())
+    return kept(_surfaces, Path(__file__).parent)
 
 
-def _digest() -> int:
-    return sources_digest(Path(__file__).parent)
-
-
-def _gaps_of(digest: int) -> Gaps:
-    # Numba keeps the compiled function under the values it encloses, so that a change in any file is seen.
-    @kept
-    def find(
-        extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
-    ) -> tuple[int, int]:
-        if digest == 0:
-            return 0, 0
-        return _find(extents, optics[0], axes, step, apart, points, gaps, openings)
-
-    return find
+def _gaps(
+    extents: Records, optics: Array, axes: Array, step: float, apart: float, points: Array, gaps: Records, openings: Records
+) -> tuple[int, int]:
+    return _find(extents, optics[0], axes, step, apart, points, gaps, openings)
 
 
 @compiled
@@ -69,15 +58,9 @@ def _find(
     return count, there
 
 
-def _surfaces_of(digest: int) -> Surfaces:
-    @kept
-    def find(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
-        if digest == 0:
-            return 0
-        set_points(extents, optics[0], axes, points)
-        return set_surfaces(extents, points, bearing, surfaces)
-
-    return find
+def _surfaces(extents: Records, optics: Array, axes: Array, bearing: float, points: Array, surfaces: Records) -> int:
+    set_points(extents, optics[0], axes, points)
+    return set_surfaces(extents, points, bearing, surfaces)
 
 
 @compiled
