@@ -12,13 +12,14 @@ import pytest
 
 from actr3d.camera import CameraParameters
 from actr3d.simulation import Simulation
-from actr3d.world import Car, Floor, Scene
+from actr3d.world import Car, Floor, Mannequin, Scene, World
 from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
 from workbench import protocol as say
 from workbench.look import Look
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay
+from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.palette import channels, label_colours, palette
 
@@ -251,3 +252,12 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
         assert Look().told()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
     finally:
         del OVERLAYS["heights"]
+
+
+def test_labels_keep_clear_of_the_head_and_not_only_of_the_eye() -> None:
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
+    drawn = Drawn(None, None, world.mj_model, {"bodies": {"walker": {"eye": world.bodies["walker"].eye}}})
+    ((x, y, z, radius),) = Frustum(drawn).heads(world.mj_data)
+    head = world.mj_model.geom("walker_head").id
+    assert [x, y, z] == pytest.approx(world.mj_data.geom_xpos[head], abs=1e-3)
+    assert radius == pytest.approx(world.mj_model.geom_rbound[head], abs=1e-3)

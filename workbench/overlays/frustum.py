@@ -13,6 +13,8 @@ from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 
 SCALE = 0.6
 """Length of the drawn pyramid [m]."""
+LEAST_HEAD = 0.05
+"""Minimum radius of a head [m]; what is smaller is an eyeball or the like."""
 COLOUR = (91, 127, 166)
 
 
@@ -82,11 +84,16 @@ class Frustum(Overlay):
 
 
 def _head(model: MjModel, site: int) -> int | None:
-    """Returns the largest visible geom of the body part that carries an eye, or of the nearest parent with one; None if there is none."""
+    """Returns the visible geom nearest to an eye that is large enough for a head, on its body part or a part that carries it.
+
+    Returns None if there is none.
+    """
+    data = MjData(model)
+    mujoco.mj_kinematics(model, data)
     body = int(model.site_bodyid[site]) if site >= 0 else 0
     while body > 0:
-        own = np.flatnonzero((model.geom_bodyid == body) & (model.geom_rgba[:, 3] > 0))
+        own = np.flatnonzero((model.geom_bodyid == body) & (model.geom_rgba[:, 3] > 0) & (model.geom_rbound >= LEAST_HEAD))
         if own.size:
-            return int(own[np.argmax(model.geom_rbound[own])])
+            return int(own[np.argmin(np.linalg.norm(data.geom_xpos[own] - data.site_xpos[site], axis=1))])
         body = int(model.body_parentid[body])
     return None
