@@ -42,6 +42,34 @@ const OWN = {
   "ArrowLeft ArrowRight ArrowUp ArrowDown Home End PageUp PageDown": "[role=tab], [role=separator], [role=slider], [type=range], [type=radio]",
 };
 
+const SLIDER = "[role=slider], [type=range]"; // keeps its own keys after use by pointer too
+
+// After use by pointer, the keys belong to the page again: not to the tab or button that has the focus from a click. A select element
+// would capture all letters.
+let byPointer = false;
+const pointed = new WeakSet(); // the elements that have the focus by pointer
+addEventListener("pointerdown", ({ target }) => {
+  byPointer = true;
+  if (document.activeElement.contains(target)) pointed.add(document.activeElement);
+}, true);
+addEventListener("keydown", () => (byPointer = false), true);
+addEventListener("focusin", ({ target, relatedTarget }) => {
+  if (relatedTarget?.closest("dialog") && !target.closest("dialog")) return; // a closed dialog gives the focus back
+  if (byPointer) pointed.add(target);
+  else pointed.delete(target);
+});
+addEventListener("change", ({ target }) => byPointer && target.tagName === "SELECT" && target.blur());
+
+/** Returns whether the element handles a key itself. */
+function isOwn(element, { code }) {
+  return Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(code) && element?.closest(where));
+}
+
+/** Returns whether the page handles a key instead of the element that has the focus by pointer. */
+function isTaken(element, event) {
+  return pointed.has(element) && !element.matches(SLIDER) && isOwn(element, event);
+}
+
 /** Runs the action of a key; returns whether it is bound and enabled. */
 function press(event) {
   const mod = isMac ? event.metaKey : event.ctrlKey;
@@ -52,7 +80,7 @@ function press(event) {
   if (document.querySelector("dialog[open]")) return false;
   if (!mod && isWriting(document.activeElement)) return false;
   const focused = document.activeElement?.checkVisibility() ? document.activeElement : null; // for a moment it may lie in a dialog that was just closed
-  if (!mod && Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(event.code) && focused?.closest(where))) return false;
+  if (!mod && isOwn(focused, event) && !isTaken(focused, event)) return false;
   event.preventDefault();
   bound.work();
   return true;
@@ -83,11 +111,14 @@ function handOn(event) {
   inner?.document?.dispatchEvent(new inner.KeyboardEvent(type, { key, code }));
 }
 
-// A select element keeps the focus after a choice by mouse, and would capture all letters.
-let byMouse = false;
-addEventListener("pointerdown", () => (byMouse = true), true);
-addEventListener("keydown", () => (byMouse = false), true);
-addEventListener("change", ({ target }) => byMouse && target.tagName === "SELECT" && target.blur());
+/** Runs the action of a key before the element with the focus by pointer gets it. */
+function pressFirst(event) {
+  const { activeElement } = document;
+  if (!isTaken(activeElement, event) || !press(event)) return;
+  event.stopImmediatePropagation();
+  activeElement.blur(); // otherwise some browsers press a button when Space is released
+}
 
+addEventListener("keydown", pressFirst, true);
 addEventListener("keydown", (event) => press(event) || handOn(event));
 addEventListener("keyup", handOn);

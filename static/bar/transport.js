@@ -4,9 +4,9 @@ import { html } from "../vendor/preact.js";
 import { bindKey, keyText } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { settable } from "../parts/settable.js";
-import { order } from "../server.js";
+import { order, say } from "../server.js";
 import { isOver } from "../standing.js";
-import { running, session, state } from "../store.js";
+import { alive, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { bindFaster, speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
@@ -20,10 +20,17 @@ function isDone() {
   return isOver.value || !session.value?.alive;
 }
 
+/** Whether a new run is under way, while the page still shows the previous one. */
+function isRestarting() {
+  const { loading, alive: lives, kind } = session.value ?? {};
+  return kind !== undefined && Boolean(loading || (lives && !alive.value));
+}
+
 /** Runs or pauses; restarts a run that is over. */
 function toggle() {
   if (isIdle("run")) return;
-  if (running.value) order({ type: "pause" });
+  if (isRestarting()) say({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
+  else if (running.value) order({ type: "pause" });
   else if (isDone() && session.value.recorded !== null && session.value.alive) runAgain();
   else if (isDone()) order({ type: "restart", run: true });
   else orderThere({ type: "run" });
@@ -48,7 +55,7 @@ const BUTTONS = [
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
   if (!session.value) return true;
-  if (id === "run") return loading;
+  if (id === "run") return loading && !isRestarting();
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;
   return ["step", "cycle", "until"].includes(id) && isDone();
@@ -86,8 +93,8 @@ function changeSpeed(by) {
 bindFaster(() => changeSpeed(1));
 
 export function Transport() {
-  const goes = running.value;
-  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading ? "Run again" : "Run";
+  const goes = running.value && !isRestarting();
+  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading && !isRestarting() ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
     <button id="run" class="primary" disabled=${isIdle("run")} title="${text} (Space)" onClick=${toggle}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}

@@ -110,20 +110,23 @@ function Body() {
   `;
 }
 
-/** Asks until when to run, and runs until then; asks again if that is not possible. */
+/** Asks until when to run, and runs until then; stays open, with the reason, if that is not possible. */
 export async function runUntil() {
   const actions = [{ text: "Cancel", value: false }, { text: "Run until then", value: true, kind: "primary" }];
   problem.value = null;
   if (kind.value === "contact" && !bodies().length) kind.value = "time";
-  while (await dialog({ title: "Run until", body: html`<${Body} />`, actions })) {
+  let closed = false;
+  async function check() {
     problem.value = missing() || null;
-    if (problem.value) continue;
+    if (problem.value) return false;
     try {
       await sayThere(wanted());
-      return;
     } catch (error) {
-      if (isLeft(error)) return;
-      problem.value = error.message;
+      if (!isLeft(error) && !closed) problem.value = error.message;
+      return isLeft(error);
     }
+    return true;
   }
+  await dialog({ title: "Run until", body: html`<${Body} />`, actions, check });
+  closed = true;
 }

@@ -1,15 +1,18 @@
 // Dialogs, based on the browser's own: they hold the focus, and Escape closes them.
 
-import { html, signal, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 
 const open = signal(null);
+/** The dialog whose entries are being checked; null for none. */
+const checking = signal(null);
 
 /** Shows a dialog: `title`, `body` (made by `html`) and `actions` [{text, kind, value}]. Returns the value of the chosen action;
  * null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
- * with choices [{value, text}], {text, choice}. */
-export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined }) {
+ * with choices [{value, text}], {text, choice}. With `check` it stays open until that function has checked the result of an action and
+ * returned true; the function shows itself what is wrong. */
+export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined, check = undefined }) {
   open.peek()?.resolve(null); // a new dialog replaces the open one
-  return new Promise((resolve) => (open.value = { title, body, actions, ask, resolve }));
+  return new Promise((resolve) => (open.value = { title, body, actions, ask, check, resolve }));
 }
 
 /** Asks for confirmation; returns whether the user agrees. */
@@ -35,10 +38,24 @@ export function Dialogs() {
     const { activeElement } = document;
     if (activeElement.matches("input:not([type=radio], [type=checkbox])")) activeElement.select(); // typing replaces the selected text
   }, [shown]);
+  const isChecking = shown !== null && checking.value === shown;
+  useEffect(() => {
+    // A button loses the focus when it is disabled.
+    const wrong = isChecking || box.current?.contains(document.activeElement) ? null : box.current?.querySelector("[aria-invalid=true]");
+    wrong?.focus();
+    wrong?.select();
+  }, [isChecking]);
   if (!shown) return null;
 
-  function done(value) {
+  async function done(value) {
+    if (value && isChecking) return;
     const result = shown.ask && value ? written() : value;
+    if (value && shown.check) {
+      checking.value = shown;
+      const fine = await shown.check(result);
+      if (checking.peek() === shown) checking.value = null;
+      if (!fine || open.peek() !== shown) return;
+    }
     open.value = null;
     shown.resolve(result);
   }
@@ -69,7 +86,7 @@ export function Dialogs() {
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
     )}
     <footer>
-      ${shown.actions.map(({ text, value, kind }) => html`<button class=${kind ?? ""} onClick=${() => done(value)}>${text}</button>`)}
+      ${shown.actions.map(({ text, value, kind }) => html`<button class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? "checking …" : text}</button>`)}
     </footer>
   </dialog>`;
 }

@@ -1,6 +1,7 @@
 // The stretch of time that the timeline shows: the whole run, the present, or the user's choice.
 
-import { signal } from "../vendor/preact.js";
+import { session } from "../store.js";
+import { effect, signal } from "../vendor/preact.js";
 
 const LADDER = [1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, 10];
 const LEAST = 0.02; // the shortest visible stretch [s]
@@ -37,6 +38,11 @@ export function settle(present, furthest, running) {
 export function fit() {
   mode.value = "fit";
 }
+
+// Another model is shown as a whole at first.
+effect(() => {
+  if (session.value === null) fit();
+});
 
 function choose(from, to, present, furthest) {
   const end = fitEnd(furthest);

@@ -186,6 +186,65 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
     expect(page.get_by_role("button", name="Theme: light")).to_be_visible()
 
 
+def test_a_zoom_is_kept_for_the_next_run_of_a_model_and_another_model_is_shown_as_a_whole(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    fit = page.get_by_role("button", name="Fit")
+    page.keyboard.press("Space")
+    shows(page, "#status", "ended")
+    page.keyboard.press("z")
+    expect(fit).to_have_attribute("aria-pressed", "false")
+    page.keyboard.press("r")
+    shows(page, "#status", "at its start")
+    expect(fit).to_have_attribute("aria-pressed", "false")
+    choose(page, "doorway.py")
+    expect(fit).to_have_attribute("aria-pressed", "true")
+
+
+RUN = """async () => {
+  const { alive, session } = await import("/static/store.js");
+  return alive.value ? session.value.run : null;
+}"""
+"""Tells which run is shown; null until it has said where it stands."""
+
+
+def test_after_a_click_the_keys_belong_to_the_page_and_after_a_key_to_what_has_the_focus(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    console, about = (page.get_by_role("tab", name=name) for name in ("Console", "About"))
+    console.click()
+    page.keyboard.press("Space")
+    shows(page, "#status", "ended")
+    console.click()
+    page.keyboard.press("Home")
+    shows(page, "#time", "0.00 s")
+    expect(console).to_have_attribute("aria-selected", "true")
+    console.press("Home")  # it is focused without the pointer, as by Tab
+    expect(about).to_have_attribute("aria-selected", "true")
+    page.click("#restart")
+    before = page.evaluate(RUN)
+    until(page, lambda: page.evaluate(RUN) not in (None, before) and page.locator("#status").inner_text() == "paused: at its start")
+    run = page.evaluate(RUN)
+    page.keyboard.press("Space")
+    shows(page, "#status", "ended")
+    assert page.evaluate(RUN) == run  # it has run, and was not started again
+    page.get_by_role("button", name="Help").click()
+    expect(page.get_by_role("dialog")).to_have_count(1)
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    page.keyboard.press("Space")  # not Help again, which has the focus back
+    until(page, lambda: page.evaluate(ENDED) not in (None, run))
+    page.get_by_role("button", name="Help").focus()
+    page.keyboard.press("Shift+Tab")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("dialog")).to_contain_text("Manual of ACT-R 3D")
+    page.keyboard.press("Escape")
+    page.locator("#aperture").click()
+    page.keyboard.press("Home")  # is the slider's own key
+    expect(page.locator("#aperture")).to_have_value(page.locator("#aperture").get_attribute("min") or "")
+
+
 def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")
@@ -198,7 +257,8 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     after = int(bar.get_attribute("aria-valuenow") or 0)
     assert after < before
     open_tab(page, "Runs")
-    page.get_by_role("tab", name="Runs").press("ArrowRight")
+    for key in ("Shift+Tab", "Tab", "ArrowRight"):
+        page.keyboard.press(key)
     expect(page.get_by_role("tab", name="Console")).to_have_attribute("aria-selected", "true")
     page.get_by_role("button", name="Theme: system").click()
     page.get_by_role("button", name="Theme: light").click()

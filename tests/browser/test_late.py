@@ -15,6 +15,13 @@ from tests.browser.looking import choose, drawn, open_tab, shows, until
 from tests.server.serving import Served
 
 CODE = ".code .cm-content"
+SLOW = """
+import time
+
+time.sleep(1.5)
+"""
+"""Added to a model that is to take its time to load."""
+LOADING = """async () => (await import("/static/store.js")).session.value?.loading"""
 
 
 class Wire:
@@ -440,3 +447,35 @@ def test_nothing_is_asked_of_a_new_run_before_its_own_first_state_is_there(pages
         }"""
     )
     assert told == [False, True, True, False]
+
+
+def test_the_dialog_of_run_until_stays_open_until_the_server_has_checked(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    page.locator("body").press("u")
+    production = page.get_by_label("Production", exact=True)
+    with wire.holding():
+        production.fill("trun")
+        page.get_by_role("button", name="Run until then").click()
+        expect(page.get_by_role("dialog").get_by_role("button", name="checking …")).to_be_disabled()
+        expect(production).to_be_visible()
+    expect(page.get_by_role("alert")).to_have_text("no production 'trun'; did you mean 'turn'?")
+    expect(production).to_be_focused()
+    production.fill("look")
+    with wire.holding():
+        production.press("Enter")
+        expect(page.get_by_role("dialog").get_by_role("button", name="checking …")).to_be_disabled()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    shows(page, "#status", "look fired")
+
+
+def test_run_while_a_restart_is_under_way_runs_the_new_run(pages: Callable[..., Page], workbench: Served) -> None:
+    source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
+    (workbench.folder / "slow.py").write_text(source + SLOW, encoding="utf-8")
+    page = pages("slow.py")
+    shows(page, "#status", "at its start")
+    page.locator("body").press("r")
+    page.wait_for_function(LOADING)
+    page.keyboard.press("Space")
+    shows(page, "#status", "ended")
