@@ -160,6 +160,8 @@ class Telling:
     def part(self, feed: Feed) -> None:
         """Removes a browser that has left."""
         self.feeds.remove(feed)
+        if feed.name == self._controlled_by:
+            self._controlled_by = ""
         self._changed(facts=True)
 
     def tell(self, notice: Notice, start: Start | None = None) -> None:

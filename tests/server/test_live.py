@@ -278,12 +278,14 @@ def test_two_pages_see_the_same_and_say_who_controls(server: Served) -> None:
         told = await heard(other, lambda message: "replies" in message)
         assert told["replies"][0]["id"] == 5
         assert told["replies"][0]["result"][0]["productions"][0]["name"] == "turn"
+        told = json.loads(server.get(f"/api/sessions/{name}").text)
+        assert told["session"]["controlled_by"].startswith("page ")
         await one.close()
+        await heard(other, lambda message: message.get("session", {}).get("controlled_by") == "")  # nobody controls who is not there
         again = await attached(server, name)
         first = json.loads(await again.recv())
         assert first["state"]["tick"] == 30
         assert first["events"]["first"] == 0
-        assert first["session"]["controlled_by"].startswith("page ")
         known = len(first["events"]["list"])
         await again.close()
         last = await attached(server, name, run=first["run"], epoch=first["epoch"], events=known)

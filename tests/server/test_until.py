@@ -24,6 +24,7 @@ COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
         ({"buffer": "walker.goal", "pattern": "a:b c"}, "'c' without a slot's name after the named slot 'a' in pattern 'a:b c'"),
         ({"buffer": "walker.goal", "pattern": "a:"}, "no value for slot 'a' in pattern 'a:'"),
         ({"buffer": "gaol", "pattern": "pass"}, "no buffer 'gaol'; did you mean 'goal'?"),
+        ({"buffer": "nosuch", "pattern": "pass"}, "no buffer 'nosuch'; there are: felt, goal, seen"),
         ({"contact": "waker"}, "no body 'waker'; did you mean 'walker'?"),
     ],
 )

@@ -67,7 +67,7 @@ class Names:
             return
         near = did_you_mean(name, short) or did_you_mean(name, known)
         if near or what not in self.growing:
-            raise Actr3dError(f"no {what} '{name}'{near or _there_are(known)}")
+            raise Actr3dError(f"no {what} '{name}'{near or _there_are(short if len(short) == len(known) else known)}")
 
     def check_new(self, productions: Iterable[str], before: Iterable[str]) -> None:
         """Checks that productions of these names exist, except those that were named before.
