@@ -10,12 +10,12 @@
   const MOST_HEARD = 64;
   window.scene = {
     told: {},
-    heard: [], // the data of the newest moments; some of them are not drawn yet
+    heard: [], // the data of the newest moments, with the stage of their scene; some of them are not drawn yet
     view: "follow",
     onview: null,
     tell(name, value) {
       this.told[name] = value;
-      if (name === "now") this.heard = [...this.heard, value].slice(-MOST_HEARD);
+      if (name === "now") this.heard = [...this.heard, { ...value, stage: this.told.stage }].slice(-MOST_HEARD);
     },
     /** Moves the camera to the start of a view, also if it is that view already. */
     choose(view) {

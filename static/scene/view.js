@@ -30,8 +30,7 @@ const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Labels();
 const cutaway = new Cutaway(viewer);
-const { told } = given;
-let { stage } = told;
+let { stage } = given.told;
 let shaded = null;
 let leftOut = false;
 
@@ -54,32 +53,80 @@ function room() {
 
 camera.room = room;
 
-/** Returns the data of the moment at which the shapes are drawn: viser moves them some pictures after the data have arrived (`Moments`
- * in `workbench/viser_server.py`). */
-function drawnNow() {
-  let number = Infinity; // as long as there are no shapes
+/** Returns the number of the moment at which the shapes are drawn; null as long as there are no shapes. */
+function drawnNumber() {
+  let number = null;
   viewer.nodeRefFromName["/moment"]?.traverse((object) => {
     if (object.instancesCount) number = object.getPositionAt(0).x;
   });
+  return number;
+}
+
+/** Returns the data of the moment at which the shapes are drawn: viser moves them some pictures after the data have arrived (`Moments`
+ * in `workbench/viser_server.py`). */
+function drawnNow() {
+  const number = drawnNumber() ?? Infinity;
   const later = given.heard.findIndex(({ moment }) => moment > number);
   given.heard.splice(0, (later < 0 ? given.heard.length : Math.max(later, 1)) - 1);
   return given.heard[0];
 }
 
 function choose() {
-  camera.choose(given.view, told.stage, drawnNow());
+  if (isWhole()) camera.choose(given.view, stage, drawnNow());
+  else waiting = true;
 }
+
+const PATIENCE = 5000; // a new scene is shown after this time [ms], whatever is missing
+let since = null; // when a new scene was first incomplete [ms]
+let waiting = false; // whether a view was chosen meanwhile
+
+/** Returns whether all shapes of the newest scene are there: viser removes those of the former scene at once, and reads new ones one
+ * by one. */
+function isWhole() {
+  const first = given.heard.find((now) => now.stage === given.told.stage);
+  if (first === undefined) return false;
+  if (stage === given.told.stage) return true;
+  const number = drawnNumber();
+  if (number === null || number < first.moment) return false;
+  return Object.entries(window.__viserSceneTree.getState()).every(([name, node]) => {
+    if (!/Glb/.test(node?.message.type)) return true;
+    let shapes = 0;
+    viewer.nodeRefFromName[name]?.traverse((object) => (shapes += object.isMesh ? (object.instancesCount ?? 1) : 0));
+    return shapes > 0;
+  });
+}
+
+/** Keeps the last picture of the former scene until all shapes of a new one are there. */
+function keepFormer(renderer) {
+  const { render } = renderer;
+  renderer.render = (scene, seenBy) => {
+    if (scene === viewer.scene && seenBy === viewer.camera && !isWhole()) {
+      since ??= performance.now();
+      if (performance.now() - since < PATIENCE) {
+        viewer.requestRender();
+        return;
+      }
+    }
+    since = null;
+    render.call(renderer, scene, seenBy);
+  };
+}
+
+let kept = false;
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (seenBy !== viewer.camera) return;
   if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
-  if (told.stage !== stage) {
-    // Another scene: if its stage differs, the camera returns to the start of its view.
-    const same = JSON.stringify({ ...told.stage, grounds: 0 }) === JSON.stringify({ ...stage, grounds: 0 });
-    stage = told.stage;
-    if (!same) choose();
-  }
+  if (!kept) keepFormer(renderer);
+  kept = true;
   const now = drawnNow();
+  if (now.stage !== stage) {
+    // Another scene: if its stage differs, the camera returns to the start of its view.
+    const same = JSON.stringify({ ...now.stage, grounds: 0 }) === JSON.stringify({ ...stage, grounds: 0 });
+    ({ stage } = now);
+    if (!same || waiting) camera.choose(given.view, stage, now);
+    waiting = false;
+  }
   given.shown = now;
   camera.follow(stage, now);
   leaveOut();

@@ -300,6 +300,44 @@ def watched(page: Page, frame: Frame, act: Callable[[], None], travelled: float)
     assert np.abs(drawn_at - [one["shown"] for one in told]).max() < 1e-3
 
 
+WATCH_RESTART = """() => {
+    const viewer = window.__viserMutable, root = viewer.nodeRefFromName[""], place = viewer.camera.position.clone();
+    window.watched = [];
+    viewer.scene.onAfterRender = (renderer, scene, camera) => {
+        if (camera !== viewer.camera) return;
+        const { body } = window.scene.shown, { middle } = window.scene.told.stage;
+        let off = 100, shapes = 0;
+        scene.traverse((object) => {
+            for (let n = 0; n < (object.getPositionAt ? object.instancesCount : 0); n++) {
+                shapes += 1;
+                off = Math.min(off, Math.hypot(...object.getPositionAt(n).toArray().map((x, axis) => x - body[axis])));
+            }
+        });
+        place.set(...body.map((x, axis) => x + middle[axis])).applyMatrix4(root.matrixWorld).project(camera);
+        window.watched.push({ off, shapes, x: body[0], at: Math.max(Math.abs(place.x), Math.abs(place.y)) });
+    };
+}"""
+"""Notes of each picture how far the next shape is from where the body is said to be, and how many shapes there are."""
+
+
+def test_no_picture_mixes_two_runs(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    page.click("#run")
+    shows(page, "#status", "ended")
+    until(page, lambda: frame.evaluate("() => window.scene.told.now.moment === window.scene.shown.moment"))
+    frame.evaluate(WATCH_RESTART)
+    page.click("#restart")
+    shows(page, "#time", "t = 0.00 s")
+    until(page, lambda: frame.evaluate("() => window.watched.length > 3 && Math.abs(window.watched.at(-1).x) < 0.01"))
+    page.wait_for_timeout(1500)
+    told = frame.evaluate("() => window.watched")
+    assert max(one["off"] for one in told) < 1e-3, told
+    assert len({one["shapes"] for one in told}) == 1, told
+    assert max(one["at"] for one in told) < 0.05, told
+
+
 def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)
