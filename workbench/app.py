@@ -17,13 +17,13 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
-from workbench import page, recording_routes, routes
 from workbench import protocol as say
+from workbench import recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
-from workbench.keeping import Keeping
 from workbench.loader import sendable
 from workbench.recordings import Recordings
+from workbench.retention import Keeping
 from workbench.sessions import Sessions
 from workbench.shipped import manual, static
 from workbench.viser_bridge import Bridge
@@ -70,7 +70,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.state.pages = 0
     app.include_router(routes.router)
     app.include_router(recording_routes.router)
-    app.include_router(page.router)
+    app.include_router(sockets.router)
     app.mount("/static", StaticFiles(directory=static()), name="static")
     app.mount("/manual", _manual(), name="manual")
     app.add_exception_handler(Actr3dError, _refused)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from workbench.keeping import stamp, written
+from workbench.retention import stamp, written
 
 MOST = 20
 """How many of the newest branches of one run are kept; a branch that a user has renamed does not count."""

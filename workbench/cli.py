@@ -15,8 +15,8 @@ from functools import partial
 from pathlib import Path
 
 from workbench.auth import LOOPBACK, Gate, Token
-from workbench.keeping import MOST as KEPT
-from workbench.keeping import MOST_MEGABYTES, Keeping
+from workbench.retention import MOST as KEPT
+from workbench.retention import MOST_MEGABYTES, Keeping
 from workbench.shipped import models_folder
 from workbench.worker.spawn import MEMORY, spawn
 
@@ -82,7 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     zygote = spawn()  # it loads at the same time as the server
     try:
         from workbench.app import make_app
-        from workbench.serving import serve
+        from workbench.server import serve
 
         keeping = Keeping(number=options.recordings, megabytes=options.recordings_size)
         started = partial(_tell, folder, f"http://{host}:{port}", gate.token, not options.no_browser)

@@ -115,7 +115,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
 @form("comparison")
 def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -> None:
     """Writes the differences of two recordings as JSON; see `compare`."""
-    from workbench.comparing import compare
+    from workbench.recording_diff import compare
 
     to.write_text(to_json(compare(first, second, kinds)), encoding="utf-8")
 

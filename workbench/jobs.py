@@ -8,10 +8,10 @@ from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager, suppress
 
 from actr3d.errors import Actr3dError
-from workbench.attendant import Attendant, subject_of
-from workbench.feed import MOST_NOTICES
+from workbench.client_feed import MOST_NOTICES
 from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
 from workbench.worker.workers import Worker, Workers
+from workbench.worker_monitor import WorkerMonitor, subject_of
 
 PATIENCE = 120.0
 """A worker that comes no further for so long is given up [s]."""
@@ -121,7 +121,7 @@ async def doing(workers: Workers, start: Start, job: Job | None = None, memory: 
     noted = job or Job()
     noted.subject = subject_of(start)
     worker = await workers.launch(memory)
-    serving = asyncio.create_task(Attendant(worker, start, noted).serve())
+    serving = asyncio.create_task(WorkerMonitor(worker, start, noted).serve())
     try:
         yield noted
     finally:

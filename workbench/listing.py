@@ -11,8 +11,8 @@ import msgspec
 
 from workbench.jobs import Job, doing
 from workbench.readers import MEMORY
+from workbench.recording_index import Summary, unreadable
 from workbench.recordings import NoSuchRecordingError, Recordings
-from workbench.summaries import Summary, unreadable
 from workbench.worker.messages import Reply, Start
 from workbench.worker.workers import Workers
 

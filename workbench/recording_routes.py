@@ -14,11 +14,11 @@ from pydantic import Field
 
 from actr3d.values import to_json
 from workbench import protocol as say
-from workbench.keeping import stands_alone
 from workbench.listing import MOST as MOST_LISTED
 from workbench.loader import sendable
 from workbench.open_file import OpenFile, gone
 from workbench.readers import while_wanted
+from workbench.retention import stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
 

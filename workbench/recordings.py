@@ -10,7 +10,7 @@ from pathlib import Path
 
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.files import OWN
-from workbench.keeping import Keeping, begun, erase, stamp, stands_alone, superfluous
+from workbench.retention import Keeping, begun, erase, stamp, stands_alone, superfluous
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 

@@ -16,12 +16,12 @@ from mujoco import MjData, MjModel
 from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
 from workbench.curves import INTEGRATION
-from workbench.look import Look
 from workbench.overlays import OVERLAYS, Drawn, Overlay
 from workbench.overlays.features import Features
 from workbench.overlays.frustum import Frustum
-from workbench.panel import Panel
-from workbench.stage import Stage
+from workbench.scene_framing import Stage
+from workbench.view_settings import Look
+from workbench.viser_panel import Panel
 from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, start_viser, tell
 from workbench.worker.messages import Facts, State
 

@@ -13,15 +13,15 @@ import msgspec
 
 from actr3d.errors import Actr3dError
 from workbench import protocol as say
-from workbench.attempt import Attempt, Wanted, start_of
-from workbench.attendant import Attendant
-from workbench.feed import MOST_NOTICES, EventLog, Feed, Raw
-from workbench.keeping import erase, never_begun
-from workbench.look import Look
-from workbench.summaries import begun
-from workbench.waiting import Waiting
+from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
+from workbench.pending_requests import Waiting
+from workbench.recording_index import begun
+from workbench.retention import erase, never_begun
+from workbench.run_request import Attempt, Wanted, start_of
+from workbench.view_settings import Look
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
+from workbench.worker_monitor import WorkerMonitor
 
 Watcher = Callable[[Facts | State | Look | None], None]
 
@@ -118,7 +118,7 @@ class Session:
             start = start_of(self.path, wanted, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
             attempt = Attempt(start, await self._workers.launch())
-            self._keep(Attendant(attempt.worker, start, self).serve())
+            self._keep(WorkerMonitor(attempt.worker, start, self).serve())
             if start.attempt <= self._given_up:  # stopped in the meantime
                 self._asked.add(attempt.worker)
                 attempt.worker.kill()

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import Actr3dError
-from workbench.attempt import Relived, Wanted
 from workbench.beginnings import Beginning, parsed
 from workbench.files import ModelFolder
 from workbench.jobs import doing
@@ -15,6 +14,7 @@ from workbench.listing import Listing
 from workbench.readers import Readers
 from workbench.recordings import Recordings
 from workbench.rerunning import Reruns
+from workbench.run_request import Relived, Wanted
 from workbench.scene_view import SceneView
 from workbench.session import Session
 from workbench.worker.messages import Start

@@ -19,7 +19,7 @@ from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
 from actr3d.world.world import World
 from tests.browser.looking import PATIENCE, drawn, shows, until
 from tests.server.serving import Served
-from workbench.stage import Stage
+from workbench.scene_framing import Stage
 
 pytestmark = pytest.mark.scene
 

@@ -14,10 +14,10 @@ from tests.server.asking import COOKIE, GATE, HOST, Answer, call
 from workbench import protocol as say
 from workbench.app import make_app
 from workbench.files import ModelFolder
+from workbench.recording_index import Summary
 from workbench.recordings import Recordings
 from workbench.session import Session
 from workbench.sessions import Sessions
-from workbench.summaries import Summary
 from workbench.worker.workers import Workers
 
 T = TypeVar("T")

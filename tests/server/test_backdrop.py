@@ -14,7 +14,7 @@ from mujoco import MjData
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall
 from actr3d.world.world import World
 from workbench.backdrop import Outlines, Shades
-from workbench.stage import Stage
+from workbench.scene_framing import Stage
 from workbench.viser_server import start_viser, tell
 
 

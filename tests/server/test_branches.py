@@ -10,8 +10,8 @@ from actr3d.recording import Recorded
 from tests.server.desk import Desk, RefusedError, Talk
 from tests.server.test_curves import PUSHED
 from workbench import branches
-from workbench.keeping import is_unnamed
-from workbench.summaries import summary_json
+from workbench.recording_index import summary_json
+from workbench.retention import is_unnamed
 
 STOPPED = PUSHED.replace(
     """        goal.set("on")

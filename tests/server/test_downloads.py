@@ -29,8 +29,8 @@ from tests.server.test_runs import firing, written
 from workbench.app import make_app
 from workbench.csv_files import state_columns
 from workbench.curves import INTEGRATION
-from workbench.keeping import stands_alone
 from workbench.readers import Readers, ReadingError
+from workbench.retention import stands_alone
 
 
 @pytest.fixture(autouse=True)

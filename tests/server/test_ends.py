@@ -149,7 +149,7 @@ def test_it_is_interrupted_while_it_starts(tmp_path: Path, after: float) -> None
             process.kill()
     # Python itself may not be there yet, which it says in its own words.
     assert process.returncode in (0, 130, -signal.SIGINT, 1)
-    assert "Traceback" not in complaints or "workbench/serving.py" not in complaints
+    assert "Traceback" not in complaints or "workbench/server.py" not in complaints
 
 
 def _interruptible() -> None:

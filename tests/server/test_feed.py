@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from workbench import feed as feeds
-from workbench.feed import EventLog, Feed
+from workbench import client_feed as feeds
+from workbench.client_feed import EventLog, Feed
 
 
 class Shown:

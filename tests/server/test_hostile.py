@@ -14,9 +14,9 @@ import pytest
 from actr3d.values import plain, to_json
 from tests.server.desk import PATIENCE, Desk
 from tests.server.test_worker import gone, of, runs_again
-from workbench.worker.bounds import LARGEST, bounded_json, cut
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import whole
+from workbench.worker.truncation import LARGEST, bounded_json, cut
 
 
 def number_in(mark: Path) -> int:

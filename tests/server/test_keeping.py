@@ -11,8 +11,8 @@ import pytest
 from actr3d.errors import RecordingError
 from tests.server.desk import Desk
 from workbench.files import OWN
-from workbench.keeping import Keeping, is_unnamed
 from workbench.recordings import NoSuchRecordingError, Recordings
+from workbench.retention import Keeping, is_unnamed
 
 
 @pytest.fixture
@@ -120,8 +120,8 @@ def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) 
 
 
 def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:
-    from workbench.feed import EventLog
-    from workbench.keeping import never_begun
+    from workbench.client_feed import EventLog
+    from workbench.retention import never_begun
 
     talk = desk.begin(tmp_path, "x = 1\n", record=True)
     state = talk.session.state

@@ -92,7 +92,7 @@ def test_a_models_folder_that_cannot_be_had_is_named(tmp_path: Path, named: str,
 
 
 def test_the_server_answers_before_it_has_loaded_what_only_runs_and_their_views_need() -> None:
-    text = "import sys, workbench.cli, workbench.app, workbench.serving; print(*{name.partition('.')[0] for name in sys.modules})"
+    text = "import sys, workbench.cli, workbench.app, workbench.server; print(*{name.partition('.')[0] for name in sys.modules})"
     loaded = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True).stdout.split()
     assert not {"numba", "scipy", "viser", "mjviser", "trimesh"} & set(loaded)
     assert "fastapi" in loaded

@@ -17,11 +17,11 @@ from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
 from workbench import protocol as say
-from workbench.look import Look
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.palette import channels, label_colours, palette
+from workbench.view_settings import Look
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor

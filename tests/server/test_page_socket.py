@@ -15,7 +15,7 @@ import websockets
 from tests.server.serving import Served, served
 from tests.server.test_live import attached, heard, opened
 from workbench import protocol as say
-from workbench.page import MOST_PAGES
+from workbench.sockets import MOST_PAGES
 
 
 @pytest.fixture(scope="module")

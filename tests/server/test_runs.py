@@ -14,8 +14,8 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded, Recording
 from actr3d.trace import TraceEvent
 from tests.server.desk import Desk
-from workbench.comparing import CONTEXT, compare
-from workbench.summaries import Summary
+from workbench.recording_diff import CONTEXT, compare
+from workbench.recording_index import Summary
 
 MODELS = Path(__file__).parents[2] / "models"
 APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")

@@ -11,9 +11,10 @@ import uvicorn
 import websockets
 
 from tests.server.asking import GATE, TOKEN
-from workbench import auth, serving
+from workbench import auth
+from workbench import server as workbench_server
 from workbench.auth import Guard, Receive, Scope, Send
-from workbench.serving import config_of
+from workbench.server import config_of
 
 SHORT = 0.3
 LATE = 5 * SHORT
@@ -103,7 +104,7 @@ async def talk(listening: socket.socket) -> list[bytes]:
 
 
 def test_who_does_not_say_what_is_wanted_is_sent_away_and_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(serving, "REQUEST_TIME", SHORT)
+    monkeypatch.setattr(workbench_server, "REQUEST_TIME", SHORT)
     monkeypatch.setattr(auth, "BODY_TIME", SHORT)
     with socket.create_server(("127.0.0.1", 0)) as listening:
         heard = asyncio.run(talk(listening))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from workbench import page
+from workbench import sockets
 from workbench.shipped import static
 
 VENDOR = static() / "vendor"
@@ -75,11 +75,11 @@ def test_a_new_file_of_the_folder_is_a_panel(tmp_path: Path, monkeypatch: pytest
     (tmp_path / "panels").mkdir()
     for name in ("my-own.js", "buffers.js", "buffers.css"):
         (tmp_path / "panels" / name).touch()
-    monkeypatch.setattr(page, "static", lambda: tmp_path)
-    text = bytes(page.panels().body).decode()
+    monkeypatch.setattr(sockets, "static", lambda: tmp_path)
+    text = bytes(sockets.panels().body).decode()
     assert re.findall(r'^import \* as (\w+) from "(.+)";$', text, re.MULTILINE) == [
         ("panel0", "./panels/buffers.js"),
         ("panel1", "./panels/my-own.js"),
     ]
     assert "PANELS = [panel0, panel1].flatMap" in text
-    assert bytes(page.panel_styles().body).decode() == '@import url("panels/buffers.css");\n'
+    assert bytes(sockets.panel_styles().body).decode() == '@import url("panels/buffers.css");\n'

@@ -34,7 +34,7 @@ agent.run(10)
 """
 
 
-WIRES = "import gc, workbench.worker.link as l; links = [o for o in gc.get_objects() if type(o) is l.Link];"
+WIRES = "import gc, workbench.worker.channel as l; links = [o for o in gc.get_objects() if type(o) is l.Channel];"
 """Finds what a model has no business with."""
 
 

@@ -20,7 +20,7 @@ from actr3d.world.compiled import from_text, loaded
 from workbench.curves import stride
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
-from workbench.stage import Stage
+from workbench.scene_framing import Stage
 
 RATE = 30
 """About this many frames per second of simulated time are stored; the page interpolates between them."""
@@ -44,9 +44,9 @@ def write_replay(path: Path, to: Path) -> None:
     """
     with Recorded(path) as recorded:
         facts = _facts(recorded)
-        told = {**facts, "palette": palette(), "events": _events(recorded), "scene": _scene(recorded)}
+        content = {**facts, "palette": palette(), "events": _events(recorded), "scene": _scene(recorded)}
     # No text from a model can close the HTML element that contains it.
-    data = msgspec.json.encode(told).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
     page = (folder / "page.html").read_text(encoding="utf-8")
     parts = {"TITLE": html.escape(str(facts["title"])), "DATA": data, "STYLE": _read(folder, "style.css"), "SCRIPT": _scripts(folder)}

@@ -10,8 +10,8 @@ from typing import Any
 from actr3d.clock import seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
-from workbench.worker.bounds import event_json
 from workbench.worker.messages import Notice, notice
+from workbench.worker.truncation import event_json
 
 MOST_EVENTS = 50_000
 """Maximum number of events that are shown before the run reaches them; the server keeps as many in memory."""

@@ -48,8 +48,8 @@ def _watch(most: int) -> None:
 
 def peak() -> int:
     """Returns the peak memory use of this process [bytes]."""
-    told = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return told if sys.platform == "darwin" else 1024 * told
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else 1024 * peak
 
 
 def _reserved() -> int:

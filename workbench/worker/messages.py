@@ -16,10 +16,10 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_fiel
 
 def whole(text: str, most: int = 10_000) -> str:
     """Returns a text that can be sent: unpaired surrogates are escaped, and the middle of a long text is removed."""
-    told = str(text)
-    if len(told) > most:
-        told = f"{told[: most // 2]}\n… ({len(told) - most:,} more characters) …\n{told[-(most // 2) :]}"
-    return told.encode("utf-8", "backslashreplace").decode("utf-8")
+    kept = str(text)
+    if len(kept) > most:
+        kept = f"{kept[: most // 2]}\n… ({len(kept) - most:,} more characters) …\n{kept[-(most // 2) :]}"
+    return kept.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def digest_of(text: str) -> str:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import actr3d.running.building  # pyright: ignore[reportUnusedImport] # noqa: F401
-import workbench.worker.built  # pyright: ignore[reportUnusedImport]
-import workbench.worker.entry  # pyright: ignore[reportUnusedImport]
-import workbench.worker.program  # pyright: ignore[reportUnusedImport] # noqa: F401
 from actr3d.camera import glance
 from actr3d.world import Floor, Mannequin, Scene, World
 

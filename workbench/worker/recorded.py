@@ -12,8 +12,8 @@ from actr3d.recording import Recorded
 from actr3d.running.replay import replay
 from actr3d.values import to_json
 from workbench.forms import FORMS
-from workbench.summaries import summary_json
-from workbench.worker.link import Link
+from workbench.recording_index import summary_json
+from workbench.worker.channel import Channel
 from workbench.worker.memory import relieve
 from workbench.worker.messages import Reply, Share, whole
 
@@ -27,29 +27,29 @@ ROOM = 10
 """The limit is also this multiple of the recordings' size: text tables are larger than numbers and compressed text."""
 
 
-def replay_again(link: Link) -> None:
+def replay_again(channel: Channel) -> None:
     """Runs a recording again; replies whether every byte agrees (None if that is unknown), and with the text of the comparison."""
-    path = Path(link.start.path)
-    told = 0.0
+    path = Path(channel.start.path)
+    sent = 0.0
 
     def progress(share: float) -> None:
-        nonlocal told
-        if share >= told + STEP:
-            told = share
-            link.post(Share(done=share))
+        nonlocal sent
+        if share >= sent + STEP:
+            sent = share
+            channel.post(Share(done=share))
 
     try:
         with Recorded(path) as recorded:
-            comparison = replay(recorded, trust=True, progress=progress, within=Path(link.start.to))  # the server has checked the trust
+            comparison = replay(recorded, trust=True, progress=progress, within=Path(channel.start.to))  # the server has checked the trust
         found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
         found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"'{path}'", "it")}
-    link.post(Reply(id=0, result=to_json(found).encode()))
+    channel.post(Reply(id=0, result=to_json(found).encode()))
 
 
-def make(link: Link) -> None:
+def make(channel: Channel) -> None:
     """Makes a file from recordings; replies with its size [bytes], or with the reason why it cannot be made."""
-    start = link.start
+    start = channel.start
     paths, to = [Path(path) for path in start.recordings], Path(start.to)
 
     def made() -> bytes:
@@ -59,13 +59,13 @@ def make(link: Link) -> None:
         FORMS[start.form](*paths, to, **start.settings)
         return str(to.stat().st_size).encode()
 
-    link.post(_answer(0, made, paths))
+    channel.post(_answer(0, made, paths))
 
 
-def summarize(link: Link) -> None:
+def summarize(channel: Channel) -> None:
     """Replies with the summary of each recording, in order."""
-    for number, path in enumerate(map(Path, link.start.recordings)):
-        link.post(_answer(number, lambda path=path: summary_json(path), [path]))
+    for number, path in enumerate(map(Path, channel.start.recordings)):
+        channel.post(_answer(number, lambda path=path: summary_json(path), [path]))
 
 
 def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:

@@ -24,11 +24,11 @@ from workbench import protocol as say
 from workbench.curves import Curves, stretch
 from workbench.loader import Parameter
 from workbench.overlays import OVERLAYS, Observed
-from workbench.worker.answers import answer
 from workbench.worker.past import Past
+from workbench.worker.queries import answer
+from workbench.worker.stop_conditions import Touches
 from workbench.worker.tops import Top
 from workbench.worker.walked import Walked
-from workbench.worker.watch import Touches
 from workbench.worker.widths import widths
 
 

@@ -33,14 +33,14 @@ class Zygote:
 
 def spawn() -> Zygote:
     """Starts the process, which then loads in the background."""
-    ours, theirs = socket.socketpair()
+    own_end, its_end = socket.socketpair()
     # A fixed hash seed gives all workers the same order of sets, as in `actr3d run`; numpy's threads would
     # not survive a fork, and are of no use here.
     environment = {**os.environ, "PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", "workbench.worker.zygote", str(theirs.fileno())]
+    command = [sys.executable, "-m", "workbench.worker.zygote", str(its_end.fileno())]
     # In a session of its own, it is not interrupted when a user interrupts the server.
-    fds = [theirs.fileno()]
+    fds = [its_end.fileno()]
     process = subprocess.Popen(command, pass_fds=fds, env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
-    theirs.close()
-    ours.setblocking(False)
-    return Zygote(process=process, control=ours)
+    its_end.close()
+    own_end.setblocking(False)
+    return Zygote(process=process, control=own_end)

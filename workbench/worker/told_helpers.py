@@ -8,7 +8,7 @@ from pathlib import Path
 
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
-from workbench.worker.link import Link
+from workbench.worker.channel import Channel
 from workbench.worker.messages import Loaded, digest_of
 
 
@@ -16,13 +16,13 @@ class ToldHelpers(HelperTexts):
     """Keeps the texts of helper modules, and reports each to the server.
 
     Args:
-        link: The connection to the server.
+        channel: The connection to the server.
         known: The modules loaded in an earlier run, which are used even if the files have changed.
     """
 
-    def __init__(self, link: Link, known: Mapping[str, Sequence[str]]) -> None:
+    def __init__(self, channel: Channel, known: Mapping[str, Sequence[str]]) -> None:
         super().__init__(known)
-        self._link = link
+        self._link = channel
 
     def keep(self, name: str, file: str, folder: Path | None, text: str) -> None:
         """Stores the text of a module that is about to run, and reports it."""
@@ -31,16 +31,16 @@ class ToldHelpers(HelperTexts):
 
 
 @contextmanager
-def helpers_of(link: Link, known: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
+def helpers_of(channel: Channel, known: Mapping[str, Sequence[str]]) -> Generator[HelperTexts]:
     """Yields the helper modules of a run: only those in its recording for a repeated run, otherwise those in its folder.
 
     Args:
-        link: The connection to the server.
+        channel: The connection to the server.
         known: The modules loaded in an earlier run, which are used even if the files have changed.
     """
-    start = link.start
+    start = channel.start
     if start.recorded is None:
-        yield ToldHelpers(link, known)
+        yield ToldHelpers(channel, known)
     else:
         with sealed(start.path, start.source, known) as texts:
             yield texts

@@ -28,13 +28,13 @@ class Top(NamedTuple):
         """Returns the name of the part at a path."""
         return path if not self.prefix else self.prefix if path == "top" else f"{self.prefix}.{path}"
 
-    def named(self, told: Any) -> Any:
+    def named(self, answer: Any) -> Any:
         """Returns an answer in plain values in which the paths of parts are replaced by their names."""
         if not self.prefix:
-            return told
-        if isinstance(told, dict):
-            entries: list[tuple[str, Any]] = list(told.items())  # pyright: ignore[reportUnknownArgumentType,reportUnknownVariableType]
+            return answer
+        if isinstance(answer, dict):
+            entries: list[tuple[str, Any]] = list(answer.items())  # pyright: ignore[reportUnknownArgumentType,reportUnknownVariableType]
             return {key: self.name(value) if key in PATHS and isinstance(value, str) else self.named(value) for key, value in entries}
-        if isinstance(told, (list, tuple)):
-            return [self.named(one) for one in told]  # pyright: ignore[reportUnknownVariableType]
-        return told
+        if isinstance(answer, (list, tuple)):
+            return [self.named(one) for one in answer]  # pyright: ignore[reportUnknownVariableType]
+        return answer

@@ -140,18 +140,18 @@ class Workers:
         Raises:
             OSError: If the system has no more processes or files, or no more workers can be started.
         """
-        ours, theirs = socket.socketpair()
+        own_end, its_end = socket.socketpair()
         reading, writing = os.pipe()
         # The caller may be cancelled; the new process is registered all the same, and ends when its connection is closed.
-        birth = asyncio.create_task(self._birth(theirs, writing, self.memory if memory is None else memory))
+        birth = asyncio.create_task(self._birth(its_end, writing, self.memory if memory is None else memory))
         try:
             pid = await asyncio.shield(birth)
         except BaseException:
-            ours.close()
+            own_end.close()
             os.close(reading)
             raise
-        ours.setblocking(False)
-        reader, writer = await asyncio.open_connection(sock=ours, limit=1 << 20)
+        own_end.setblocking(False)
+        reader, writer = await asyncio.open_connection(sock=own_end, limit=1 << 20)
         worker = Worker(pid, reader, writer, await _stream(reading))
         self._alive[pid] = worker
         if pid in self._early:

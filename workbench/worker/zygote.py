@@ -95,7 +95,7 @@ def _answer(control: socket.socket, *what: int) -> None:
 
 def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int], memory: int) -> int:
     """Forks a worker and returns its process id; does not return in the worker."""
-    from workbench.worker.entry import main as work
+    from workbench.worker.main import main as work
 
     pid = os.fork()
     if pid == 0:

@@ -16,7 +16,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from actr3d.errors import Actr3dError
 from workbench import protocol as say
-from workbench.feed import Feed, Raw
+from workbench.client_feed import Feed, Raw
 from workbench.sessions import Sessions
 from workbench.shipped import static
 from workbench.viser_bridge import POLICY, Bridge, page

@@ -25,7 +25,7 @@ def told_of(error: BaseException) -> str:
         text = str(error) if isinstance(error, Actr3dError) else complaint(error, _HERE).message
         return whole(text) or type(error).__name__
     except MemoryError:
-        return f"{type(error).__name__}, and not enough memory is left to tell more"
+        return f"{type(error).__name__}, and not enough memory is left to say more"
 
 
 def notice_of(error: BaseException) -> Notice:
@@ -33,8 +33,8 @@ def notice_of(error: BaseException) -> Notice:
     if isinstance(error, MemoryError):
         relieve()
     try:
-        told = complaint(error, _HERE)
-        text = told_of(error).removeprefix(f"{told.file}:{told.line}: ")  # the notice has the position in separate fields
-        return notice("error", text, told.file, told.line, told.text)
+        report = complaint(error, _HERE)
+        text = told_of(error).removeprefix(f"{report.file}:{report.line}: ")  # the notice has the position in separate fields
+        return notice("error", text, report.file, report.line, report.text)
     except MemoryError:
         return notice("error", told_of(error))

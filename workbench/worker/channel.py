@@ -40,21 +40,22 @@ from workbench.worker.messages import (
 )
 
 WIRE_LOST = 88
-"""With this exit code a worker ends whose model has closed the wire to the server, or put something else in its place."""
+"""The exit code of a worker whose model has closed the connection to the server, or has replaced it."""
 MOST_EVENTS = 50_000
-"""So many events may wait to be sent; beyond that the oldest are left out, and the numbers tell so."""
+"""The maximum number of events that wait to be sent; beyond it the oldest are left out, which the numbers show."""
 MOST_BYTES = 50_000_000
-"""And no more than so many bytes of them."""
+"""The maximum size of these events [bytes]."""
 AT_ONCE = 2_000
-"""So many events go in one message."""
+"""The maximum number of events in one message."""
 MOST_TOLD = 1_000
-"""So many things that a run has to say wait to be sent; then warnings are left out."""
+"""The maximum number of messages that wait to be sent; beyond it warnings are left out."""
 
 
-class Link:
-    """Carries messages to the server and commands from it. Only the newest state is sent; everything else in order. A reply comes
-    after the state that was there to be shown before it: who is told that something is done has seen what has come of it, and
-    who is told where a run is busy is not told after it, by that state, that it goes on.
+class Channel:
+    """Carries messages to the server and commands from it.
+
+    Only the newest state is sent; everything else is sent in order. A reply is sent after the state that was waiting before it, so
+    that a page that learns of the end of a command has its effect already.
 
     Args:
         wire: The socket to the server.
@@ -66,7 +67,7 @@ class Link:
         self._messages: deque[Message] = deque()
         self._events: deque[bytes] = deque()
         self._size = 0
-        """How many bytes they have."""
+        """Their size [bytes]."""
         self._first = 0
         """The number of the first event that waits."""
         self._state: State | None = None
@@ -74,20 +75,20 @@ class Link:
         self._sending = False
         self._main = threading.main_thread().ident
         self.events: Callable[[], int] | None = None
-        """Returns how many events the run has had, so that notices can say after which one they came."""
+        """Returns the number of events of the run, which notices carry as their place among them."""
         self.busy: Callable[[], None] | None = None
-        """Shows what has happened in a run that says nothing of itself."""
+        """Sends the events of a run that sends none itself, because it is busy."""
         self.left = False
-        """Whether this is a copy of the process, which has nothing to do with the server."""
+        """Whether this is a forked copy of the process, which sends the server nothing."""
         self._identity = _identity(wire)
         self.start: Start = self._read_start()
         threading.Thread(target=self._read, name="reader", daemon=True).start()
         threading.Thread(target=self._write, name="writer", daemon=True).start()
 
-    # -- what comes
+    # -- receiving
 
     def receive(self, timeout: float | None = None) -> Do | Draw | Leave | None:
-        """Returns the next command; waits for it for so long [s], or for ever. None where there is none by then."""
+        """Returns the next command; None if none arrives within the timeout [s]. Without a timeout, it waits."""
         if self.left:
             _end_copy()
         try:
@@ -122,7 +123,7 @@ class Link:
             except OSError:
                 message = None
             if message is None:
-                end_at_once(0)  # the server is gone; nobody is left to be told anything
+                end_at_once(0)  # the server is gone
             if isinstance(message, Where):
                 if self.busy is not None:
                     self.busy()
@@ -131,7 +132,7 @@ class Link:
                 self.inbox.put(message)
 
     def _where(self) -> At:
-        """Returns where the main thread is, in the modeller's own lines."""
+        """Returns the position of the main thread in the modeller's own files."""
         frame: FrameType | None = sys._current_frames().get(self._main or 0)
         lines: list[traceback.FrameSummary] = [] if frame is None else list(traceback.extract_stack(frame))
         folder = self.start.folder + os.sep
@@ -139,14 +140,14 @@ class Link:
         return At(file=whole(own[-1].filename), line=own[-1].lineno, function=whole(own[-1].name)) if own else At(file=None, line=None)
 
     def _check_wire(self) -> None:
-        """Ends the process where the model has closed the wire: what the model has opened meanwhile may have its number."""
+        """Ends the process if the model has closed the connection: its number may belong to another file of the model by now."""
         if _identity(self._wire) != self._identity:
             end_at_once(WIRE_LOST)
 
-    # -- what goes
+    # -- sending
 
     def post(self, message: Message) -> None:
-        """Sends a message, after all that came before it; but no notice where very many wait already."""
+        """Sends a message after all earlier ones; a notice is left out if very many messages wait."""
         if isinstance(message, Notice) and self.events is not None:
             message = msgspec.structs.replace(message, events=self.events())
         with self._something:
@@ -160,14 +161,14 @@ class Link:
             self._something.notify()
 
     def show(self, state: State, first: int, events: Sequence[bytes]) -> None:
-        """Sends new events, whose first has this number, and the newest state, which takes the place of one that still waits."""
+        """Sends new events, the first of which has this number, and the newest state, which replaces one that still waits."""
         with self._something:
             self._add(first, events)
             self._state = state
             self._something.notify()
 
-    def tell(self, first: int, events: Sequence[bytes]) -> None:
-        """Sends new events, whose first has this number, where there is no new state."""
+    def send_events(self, first: int, events: Sequence[bytes]) -> None:
+        """Sends new events, the first of which has this number, without a state."""
         with self._something:
             self._add(first, events)
             self._something.notify()
@@ -182,7 +183,7 @@ class Link:
             self._first += 1
 
     def cut(self, message: Message, events: int) -> None:
-        """Takes back events from a number on, as the message tells."""
+        """Withdraws events from a number on, and sends the message that says so."""
         with self._something:
             while self._events and self._first + len(self._events) > events:
                 self._size -= len(self._events.pop())
@@ -196,17 +197,17 @@ class Link:
         return self._state is None and not self._messages and not self._sending
 
     def leave(self) -> None:
-        """Lets go of the wire, in a copy of the process that the model has made."""
+        """Closes the connection in a copy of the process that the model has forked."""
         if not self.left:  # else it is a copy of a copy
             self.left = True
             self._something = threading.Condition()  # another thread of the model's process may have held it
-            ours = _identity(self._wire) == self._identity
+            is_same = _identity(self._wire) == self._identity
             number = self._wire.detach()
-            if ours:
+            if is_same:
                 os.close(number)
 
     def flush(self, timeout: float = 2.0) -> None:
-        """Waits until everything is sent, but not for ever."""
+        """Waits until everything is sent, at most for the timeout [s]."""
         if self.left:
             _end_copy()
         end = perf_counter() + timeout
@@ -245,14 +246,14 @@ class Link:
 
 
 def _end_copy() -> NoReturn:
-    """Ends a copy of the process that the model has made: the run goes on in one only."""
+    """Ends a copy of the process that the model has forked: the run continues in one process only."""
     with suppress(OSError, ValueError):
         sys.stdout.flush()
     end_at_once(0)
 
 
 def _identity(wire: socket.socket) -> tuple[int, int] | None:
-    """Returns what tells an open file from others; None where it is closed."""
+    """Returns what identifies an open file; None if it is closed."""
     try:
         status = os.fstat(wire.fileno())
     except OSError:
@@ -261,7 +262,7 @@ def _identity(wire: socket.socket) -> tuple[int, int] | None:
 
 
 def _bounded(message: Message) -> bytes:
-    """Returns a message as it goes over the wire, or in place of one that is too long another that says so."""
+    """Returns a message in the form in which it is sent; a message that is too long is replaced by one that says so."""
     if isinstance(message, Reply) and len(message.result) > LONGEST_ANSWER:
         return framed(Reply(id=message.id, error=f"the answer is too long ({len(message.result):,} bytes); ask for less"))
     data = framed(message)

@@ -21,12 +21,12 @@ from actr3d.running.declared import check_build
 from actr3d.running.last_words import before_the_end, end_at_once
 from actr3d.values import to_json
 from workbench.loader import listing_of
-from workbench.worker.conductor import Conductor
-from workbench.worker.link import Link
+from workbench.worker.channel import Channel
+from workbench.worker.error_report import notice_of
 from workbench.worker.memory import watch_memory
 from workbench.worker.messages import MOST_PRINTED, Over, Reply, notice
 from workbench.worker.orphans import adopt
-from workbench.worker.trouble import notice_of
+from workbench.worker.run_controller import RunController
 
 
 def main(wire: socket.socket, output: int, memory: int) -> None:
@@ -40,46 +40,46 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     _settle(output)
     adopt()
     watch_memory(memory)
-    link = Link(wire)
-    os.register_at_fork(after_in_child=link.leave)
+    channel = Channel(wire)
+    os.register_at_fork(after_in_child=channel.leave)
     os.register_at_fork(after_in_child=_PAST_PRINT.open)
-    conductor = Conductor(link)
-    errors = conductor.errors = sys.stderr = sys.__stderr__ = _errors(link, conductor)  # type: ignore[misc]
+    controller = RunController(channel)
+    errors = controller.errors = sys.stderr = sys.__stderr__ = _errors(channel, controller)  # type: ignore[misc]
     os.register_at_fork(after_in_child=errors.lines.forget)
     warnings.simplefilter("default")
-    warnings.showwarning = _told_to(link)
+    warnings.showwarning = _told_to(channel)
     try:
-        with before_the_end(conductor.say_all):
-            _run(link, conductor)
+        with before_the_end(controller.say_all):
+            _run(channel, controller)
     except EndOfRun:
         pass
     except BaseException as error:  # noqa: BLE001 - a model may also end with SystemExit
-        if link.left:
+        if channel.left:
             _leave_copy(error)
-        link.post(notice_of(error))
+        channel.post(notice_of(error))
     errors.finish()
-    link.post(Over())
-    link.flush()
+    channel.post(Over())
+    channel.flush()
     with suppress(OSError):
         wire.shutdown(socket.SHUT_WR)
     end_at_once(0)  # threads left behind by the model must not keep the process alive
 
 
-def _errors(link: Link, conductor: Conductor) -> ModelOutput:
+def _errors(channel: Channel, controller: RunController) -> ModelOutput:
     """Returns a `sys.stderr` whose lines are notices at the moment of the run at which they are written; each is sent once."""
     count = 0
 
     def take(line: str) -> None:
         nonlocal count
-        if link.left:  # a forked copy of the process sends nothing; its output goes the way of other processes
+        if channel.left:  # a forked copy of the process sends nothing; its output goes the way of other processes
             with suppress(OSError):
                 os.write(2, f"{line}\n".encode(errors="replace"))
-        elif line.strip() and not conductor.repeats:
+        elif line.strip() and not controller.repeats:
             count += 1
             if count <= MOST_PRINTED:
-                link.post(notice("info", line.rstrip()))
+                channel.post(notice("info", line.rstrip()))
             elif count == MOST_PRINTED + 1:
-                link.post(notice("warning", "the model writes much more to its standard error; that is left out"))
+                channel.post(notice("warning", "the model writes much more to its standard error; that is left out"))
 
     return ModelOutput(take, 2)
 
@@ -96,29 +96,29 @@ def _leave_copy(error: BaseException) -> NoReturn:
     end_at_once(0 if code is None else code & 0xFF if isinstance(code, int) else 1)
 
 
-def _run(link: Link, conductor: Conductor) -> None:
-    start = link.start
+def _run(channel: Channel, controller: RunController) -> None:
+    start = channel.start
     if start.job in ("replay", "make", "list"):
         from workbench.worker import recorded
 
-        {"replay": recorded.replay_again, "make": recorded.make, "list": recorded.summarize}[start.job](link)
+        {"replay": recorded.replay_again, "make": recorded.make, "list": recorded.summarize}[start.job](channel)
         return
     compile_source(start.source, start.path)  # errors in the text are reported before anything else
     check_build(start.source, start.path)
     listing = listing_of(start.source, start.path)
     if start.job == "check":
-        from workbench.worker.built import check
+        from workbench.worker.simulation_run import check
 
         result = check(start.source, start.path, Path(start.folder)) if listing.kind == "simulation" else {}
-        link.post(Reply(id=0, result=to_json(result).encode()))
+        channel.post(Reply(id=0, result=to_json(result).encode()))
     elif listing.kind == "simulation":
-        from workbench.worker.built import BuiltRun
+        from workbench.worker.simulation_run import SimulationRun
 
-        BuiltRun(conductor, listing).play()
+        SimulationRun(controller, listing).play()
     else:
-        from workbench.worker.program import ProgramRun
+        from workbench.worker.program_run import ProgramRun
 
-        ProgramRun(conductor, listing).play()
+        ProgramRun(controller, listing).play()
 
 
 def _settle(output: int) -> None:
@@ -180,10 +180,10 @@ class _PastPrint(io.RawIOBase):
 _PAST_PRINT = _PastPrint()
 
 
-def _told_to(link: Link) -> Any:
+def _told_to(channel: Channel) -> Any:
     """Returns a replacement for `warnings.showwarning` that sends warnings to the server."""
 
     def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:
-        link.post(notice("warning", str(message), filename, lineno))
+        channel.post(notice("warning", str(message), filename, lineno))
 
     return show

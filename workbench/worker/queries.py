@@ -46,18 +46,18 @@ def _explain(question: say.Explain, tops: Sequence[Top]) -> list[dict[str, Any]]
     if question.agent is not None and question.agent not in agents:
         raise _unknown("agent", question.agent, agents)
     asked = list(agents.values()) if question.agent is None else [agents[question.agent]]
-    told: list[dict[str, Any]] = []
+    explained: list[dict[str, Any]] = []
     for top, agent in asked:
         explanation = agent.explain(question.at)
         reasons = [reason for reason in explanation.productions if question.production in (None, reason.name)]
         plain = plain_answer(explanation)
         plain["productions"] = [{**plain_answer(reason), "seen": reason.seen, "text": str(reason)} for reason in reasons]
         plain["retrievals"] = [{**plain_answer(reason), "text": str(reason)} for reason in explanation.retrievals]
-        told.append(top.named(plain))
-    if question.production is not None and not any(one["productions"] for one in told):
+        explained.append(top.named(plain))
+    if question.production is not None and not any(one["productions"] for one in explained):
         known = [production.name for _, agent in asked for production in agent._productions]
         raise _unknown("production", question.production, known)
-    return told
+    return explained
 
 
 def _agents(model: Model) -> Iterator[ProductionSystem]:

@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.actr.kernel.run_limits import fresh_seed
 from actr3d.actr.loading.source_text import read_source
 from workbench.files import ModelFolder
-from workbench.texts import Texts
+from workbench.source_versions import Texts
 from workbench.worker.messages import Start, digest_of
 from workbench.worker.workers import Worker
 

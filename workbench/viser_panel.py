@@ -7,8 +7,8 @@ from functools import partial
 from typing import Any
 
 from workbench import protocol as say
-from workbench.look import Look
 from workbench.overlays import OVERLAYS
+from workbench.view_settings import Look
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": say.Run, "pause": say.Pause, "step": say.Step, "back": say.Back}

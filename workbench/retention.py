@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 
 from actr3d.recording.opening import COMPANIONS
-from workbench.feed import EventLog
+from workbench.client_feed import EventLog
 from workbench.worker.messages import State
 
 MOST = 500

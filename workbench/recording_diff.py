@@ -14,7 +14,7 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from workbench.loader import listing_of
-from workbench.summaries import UNREADABLE
+from workbench.recording_index import UNREADABLE
 
 CONTEXT = 8
 """How many events are returned before the first difference, and after it from each recording."""
@@ -44,13 +44,13 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
     """
     try:
         with Recorded(first) as one, Recorded(second) as other:
-            ours, theirs = _told(one.facts), _told(other.facts)
-            different = {name: [ours.get(name), theirs.get(name)] for name in {**ours, **theirs} if ours.get(name) != theirs.get(name)}
+            left, right = _settings_of(one.facts), _settings_of(other.facts)
+            different = {name: [left.get(name), right.get(name)] for name in {**left, **right} if left.get(name) != right.get(name)}
             agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
             return {
                 "parameters": different,
                 "changed": [_changed(one), _changed(other)],
-                "text": _changes(_source(one.facts), _source(other.facts)) if ours["model"] == theirs["model"] else [],
+                "text": _changes(_source(one.facts), _source(other.facts)) if left["model"] == right["model"] else [],
                 "same_events": agreeing,
                 "whole": whole,
                 "difference": difference,
@@ -61,7 +61,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
         raise RecordingError(f"one of the recordings is damaged: {type(error).__name__}: {error}") from None
 
 
-def _told(facts: dict[str, Any]) -> dict[str, Any]:
+def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
     """Returns the settings, the seed and the model name that the user chose for a run."""
     return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
 
@@ -72,12 +72,12 @@ def _changed(recorded: Recorded) -> dict[str, list[list[Any]]]:
     period = recorded.facts.get("period_us", 0)
     found: dict[str, list[list[Any]]] = {}
     for command in recorded.commands():
-        word, told = command.data["command"], command.data["data"]
-        values, named = told["values"], told["named"]
+        word, said = command.data["command"], command.data["data"]
+        values, named = said["values"], said["named"]
         aperture = named.get("name", word) if word == "aperture" else None
         for name, change in live.items():
             before = list(change.before)
-            meant = (change.word, change.body, before) == (word, told["body"], values[: len(before)]) and aperture in (None, "aperture")
+            meant = (change.word, change.body, before) == (word, said["body"], values[: len(before)]) and aperture in (None, "aperture")
             if meant and len(values) > len(before):
                 found.setdefault(name, []).append([seconds(command.tick * period), values[len(before)]])
                 break
@@ -91,13 +91,13 @@ def _source(facts: dict[str, Any]) -> str:
     return facts.get("sources", {}).get(facts.get("file", ""), "")
 
 
-def _changes(ours: str, theirs: str) -> list[str]:
+def _changes(left: str, right: str) -> list[str]:
     """Returns a unified diff of two texts, like `diff -u`."""
-    if ours == theirs:
+    if left == right:
         return []
-    if len(ours) + len(theirs) > MOST_TEXT:
+    if len(left) + len(right) > MOST_TEXT:
         return ["the texts are too long to be compared line by line"]
-    lines = difflib.unified_diff(ours.splitlines(), theirs.splitlines(), "first", "second", n=2, lineterm="")
+    lines = difflib.unified_diff(left.splitlines(), right.splitlines(), "first", "second", n=2, lineterm="")
     found = list(islice(lines, MOST_LINES + 1))
     return [*found[:MOST_LINES], "and more"] if len(found) > MOST_LINES else found
 
@@ -107,14 +107,14 @@ def _changes(ours: str, theirs: str) -> list[str]:
 
 def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> tuple[int, dict[str, Any] | None, bool]:
     """Returns how many events agree, the first difference, and False if the comparison stopped at the maximum number."""
-    ours, theirs = _events(one, kinds), _events(other, kinds)
+    left, right = _events(one, kinds), _events(other, kinds)
     before: deque[TraceEvent] = deque(maxlen=CONTEXT)
     number = -1
-    for number, (mine, its) in enumerate(zip_longest(ours, theirs)):
+    for number, (mine, its) in enumerate(zip_longest(left, right)):
         if number == MOST_COMPARED:
             return number, None, False
         if mine != its and not (mine is not None and its is not None and _alike(mine, its)):
-            after = [[list(event) for event in islice(events, CONTEXT)] for events in (ours, theirs)]
+            after = [[list(event) for event in islice(events, CONTEXT)] for events in (left, right)]
             difference = {
                 "number": number,
                 "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
@@ -153,9 +153,9 @@ def _what(mine: TraceEvent | None, its: TraceEvent | None) -> list[list[Any]]:
 def _differing(name: str, one: Any, other: Any) -> Iterator[list[Any]]:
     """Yields the innermost values in which two values differ, with the path to each."""
     if isinstance(one, dict) and isinstance(other, dict):
-        ours, theirs = cast("dict[str, Any]", one), cast("dict[str, Any]", other)
-        for key in {**ours, **theirs}:
-            yield from _differing(f"{name}.{key}" if name else key, ours.get(key), theirs.get(key))
+        left, right = cast("dict[str, Any]", one), cast("dict[str, Any]", other)
+        for key in {**left, **right}:
+            yield from _differing(f"{name}.{key}" if name else key, left.get(key), right.get(key))
     elif isinstance(one, list) and isinstance(other, list) and len(cast("list[Any]", one)) == len(cast("list[Any]", other)):
         for number, (mine, its) in enumerate(zip(cast("list[Any]", one), cast("list[Any]", other), strict=True)):
             yield from _differing(f"{name}.{number}", mine, its)

@@ -16,15 +16,15 @@ from actr3d.printing import ModelOutput
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench import protocol as say
-from workbench.worker.bounds import bounded_json, event_json
-from workbench.worker.conducted import Conducted
+from workbench.worker.channel import Channel
+from workbench.worker.controlled_run import ControlledRun
+from workbench.worker.error_report import told_of
 from workbench.worker.foreknown import Foreknown, difference_notice
-from workbench.worker.link import Link
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.names import check_until, lost_breakpoints
 from workbench.worker.pacer import Pacer
-from workbench.worker.trouble import told_of
-from workbench.worker.watch import Watch
+from workbench.worker.stop_conditions import Watch
+from workbench.worker.truncation import bounded_json, event_json
 
 SHOWN = 1 / 30
 """Interval at which the state of a running run is sent [s]. Chosen here: pages can easily draw at this rate."""
@@ -36,26 +36,26 @@ class Leaving(EndOfRun):
     """Ends a run because the worker must end; a model's `except Exception` does not catch it."""
 
 
-class Conductor:
+class RunController:
     """Decides when a run continues and when it waits, carries out users' commands in between, and sends its state and events.
 
     Args:
-        link: The connection to the server.
+        channel: The connection to the server.
     """
 
-    def __init__(self, link: Link) -> None:
-        start = link.start
-        self.link = link
+    def __init__(self, channel: Channel) -> None:
+        start = channel.start
+        self.channel = channel
         self.status: Status = "running" if start.run else "paused"
         self.reason = "" if start.run else "at its start"
         self.watch = Watch(breakpoints=frozenset(start.breakpoints))
         self.pacer = Pacer(start.factor)
         self.leaving = False
         """Whether the worker must end."""
-        self.run: Conducted
+        self.run: ControlledRun
         self.errors: ModelOutput | None = None
         """The model's standard error."""
-        link.busy = self.show_busy
+        channel.busy = self.show_busy
         self._sent = 0
         """Number of events that the server has been sent."""
         self._last: State | None = None
@@ -64,7 +64,7 @@ class Conductor:
         """The recorded run that this run repeats; None if there is none, or this run differs from it."""
         self._compared = 0
         """Number of events that have been compared with the recorded ones."""
-        self._telling = threading.Lock()
+        self._sending = threading.Lock()
         """Held by the thread that sends events to the server."""
         self._reached = 0
         """The time that the run had reached when it went back [us]: until then it repeats itself."""
@@ -74,20 +74,20 @@ class Conductor:
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
-    def conduct(self, run: Conducted) -> None:
+    def conduct(self, run: ControlledRun) -> None:
         """Sets the run to control; its names are known by now."""
         self.run = run
-        self.link.events = self._count
+        self.channel.events = self._count
         if self.watch.breakpoints:  # without breakpoints, no names need to be collected
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
-                self.link.post(lost)
+                self.channel.post(lost)
 
     def know(self, foreknown: Foreknown) -> None:
         """Sends all events of a recorded run before this run, which repeats it, has reached them."""
-        with self._telling:
+        with self._sending:
             self._foreknown = foreknown
             self._sent = foreknown.count
-            self.link.tell(foreknown.first, foreknown.events)
+            self.channel.send_events(foreknown.first, foreknown.events)
             foreknown.events = []
 
     @property
@@ -102,7 +102,7 @@ class Conductor:
 
     def embodied(self) -> None:
         """Records that the run has a body: it goes in real time unless a speed was chosen."""
-        if self.link.start.real_time:
+        if self.channel.start.real_time:
             self.pacer.set(1.0)
 
     def _count(self) -> int:
@@ -123,7 +123,7 @@ class Conductor:
             self.pause(self.watch.goal_reason)
         while True:
             held = self.status != "running"
-            message = self.link.receive(None if held else 0)
+            message = self.channel.receive(None if held else 0)
             if message is None:
                 return
             self._hear(message)
@@ -134,7 +134,7 @@ class Conductor:
         """Waits until a moment of the run [us] is due; returns False if a command arrived in the meantime."""
         while (early := self.pacer.early(self.run.clock, clock)) > 0:
             self.show_if_due()
-            message = self.link.receive(min(early, SHOWN))
+            message = self.channel.receive(min(early, SHOWN))
             if message is not None:
                 self._hear(message)
                 return False
@@ -184,7 +184,7 @@ class Conductor:
             events: Number of events up to this moment.
             changed: What happened to the later part of the run; None if there was none.
         """
-        with self._telling:
+        with self._sending:
             self._foreknown = None
             if changed is not None:
                 self._reached = 0
@@ -192,7 +192,7 @@ class Conductor:
                     self.reason = changed
             if changed is not None or events < self._sent:
                 self._sent = min(self._sent, events)
-                self.link.cut(Cut(events=events), events)
+                self.channel.cut(Cut(events=events), events)
 
     # -- commands from users
 
@@ -207,12 +207,12 @@ class Conductor:
         try:
             result = self._do(say.ANYTHING.validate_json(message.say))
         except EndOfRun:
-            self.link.post(Reply(id=message.id))
+            self.channel.post(Reply(id=message.id))
             raise
         except Exception as error:  # noqa: BLE001 - any error is reported to the sender
-            self.link.post(Reply(id=message.id, error=told_of(error)))
+            self.channel.post(Reply(id=message.id, error=told_of(error)))
             return
-        self.link.post(Reply(id=message.id, result=to_json(result).encode()))
+        self.channel.post(Reply(id=message.id, result=to_json(result).encode()))
 
     def _do(self, said: Any) -> Any:
         match said:
@@ -252,7 +252,7 @@ class Conductor:
         wanted = said.model_dump(exclude={"type"}, exclude_none=True)
         if not wanted.keys() - {"pattern"}:
             raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
-        start, names = self.link.start, self.run.names()
+        start, names = self.channel.start, self.run.names()
         check_until(said, names, (start.source, *(text for _, text in start.helpers.values())), start.folder)
         goal = None if said.time is None else round(said.time * MICROSECONDS)
         if goal is not None and goal <= self.run.clock:
@@ -297,7 +297,7 @@ class Conductor:
         """Sends the state at regular intervals while the run is going on."""
         now = perf_counter()
         due = HURRIED if self.pacer.factor is None else SHOWN
-        if now - self._shown >= due and self.status == "running" and self.link.idle:
+        if now - self._shown >= due and self.status == "running" and self.channel.idle:
             self.show()
 
     def show(self) -> None:
@@ -322,7 +322,7 @@ class Conductor:
             physics=physics,
             drawn=run.drawn(self._drawn) if self._drawn else {},
         )
-        with self._telling:
+        with self._sending:
             self._tell(state, trace)
 
     def show_busy(self) -> None:
@@ -331,7 +331,7 @@ class Conductor:
         Only events and the time are sent: the parts may be changing at this moment.
         """
         # The model may be in an inconsistent state, and this thread must go on in any case.
-        with suppress(Exception), self._telling:
+        with suppress(Exception), self._sending:
             trace, last = self.run.trace, self._last
             if last is None or trace is None or self.status != "running" or len(trace) <= self._sent:
                 return
@@ -345,14 +345,14 @@ class Conductor:
         Args:
             ends: Whether it surely ends: then a line without a line break is sent, too.
         """
-        if not self.link.left:  # a forked copy of the process has nothing to send
+        if not self.channel.left:  # a forked copy of the process has nothing to send
             with suppress(Exception):  # there may be no run yet
                 if ends:
                     self._finish_errors()
                     self.run.finish_output()
                 self.run.flush()
             self.show_busy()
-            self.link.flush()
+            self.channel.flush()
 
     def _tell(self, state: State, trace: Trace | None) -> None:
         """Sends the server a state, and the events up to it that it does not have yet."""
@@ -361,7 +361,7 @@ class Conductor:
         if self._foreknown is not None and trace is not None and on_its_thread:
             state = self._compare(self._foreknown, state, trace)
         news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
-        self.link.show(state, self._sent, [event_json(event) for event in news])
+        self.channel.show(state, self._sent, [event_json(event) for event in news])
         self._sent, self._last = max(self._sent, count), state
 
     def _compare(self, foreknown: Foreknown, state: State, trace: Trace) -> State:
@@ -375,8 +375,8 @@ class Conductor:
         self._foreknown = None
         self.run.forget_ahead()
         self._sent = state.events if found is None else found
-        self.link.cut(Cut(events=self._sent), self._sent)
-        self.link.post(difference_notice(state.time, None if found is None else events[found - self._compared]))
+        self.channel.cut(Cut(events=self._sent), self._sent)
+        self.channel.post(difference_notice(state.time, None if found is None else events[found - self._compared]))
         return msgspec.structs.replace(state, furthest=state.time)
 
     def _halt(self) -> None:

@@ -26,35 +26,35 @@ from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import Listing
-from workbench.worker.conductor import Conductor
+from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.messages import Branched, Facts
 from workbench.worker.names import Names, names_of
+from workbench.worker.run_controller import RunController
 from workbench.worker.shown import Shown
+from workbench.worker.stop_conditions import Touches
 from workbench.worker.told_helpers import helpers_of
 from workbench.worker.tops import Top
-from workbench.worker.trouble import UNFORESEEN, notice_of, told_of
-from workbench.worker.watch import Touches
 
 BLOCK = 0.008
-"""For about so long [s] the run goes on before it looks whether a user has said something."""
+"""How long the run continues before it checks for commands of users [s], approximately."""
 MOST_TICKS = 64
-"""And for no more ticks than these."""
+"""The maximum number of ticks before it checks."""
 ENDINGS = {"stop": "the model called stop()", "done": "no mind has anything left to do"}
 
 
-class BuiltRun:
-    """Runs a simulation as a conductor says.
+class SimulationRun:
+    """Runs a simulation under a controller.
 
     Args:
-        conductor: Says when it goes on.
+        controller: Decides when it continues.
         listing: What the model's text says of itself.
     """
 
-    def __init__(self, conductor: Conductor, listing: Listing) -> None:
-        self._conductor = conductor
+    def __init__(self, controller: RunController, listing: Listing) -> None:
+        self._controller = controller
         self._listing = listing
-        self._start = conductor.link.start
+        self._start = controller.channel.start
         self._recording: Recording | None = None
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
@@ -73,27 +73,27 @@ class BuiltRun:
         """
         start = self._start
         limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
-        held = helpers_of(self._conductor.link, start.helpers)
+        held = helpers_of(self._controller.channel, start.helpers)
         with limits, suppress(EndOfRun), shared_random(limits.program_seed), held as helpers, BuiltOutput() as output:
             simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder), helpers)
             output.lead_to(simulation)
             self._simulation, self._shown = simulation, Shown(simulation)
             self._prepare(limits, parameters, helpers)
             if simulation.world.bodies:
-                self._conductor.embodied()
+                self._controller.embodied()
             try:
-                self._conductor.link.post(self._facts(limits, parameters))
-                self._conductor.conduct(self)
+                self._controller.channel.post(self._facts(limits, parameters))
+                self._controller.conduct(self)
                 if self._foreknown is not None:
-                    self._conductor.know(self._foreknown)
-                self._conductor.show()
-                self._conductor.link.flush()  # whatever the model does next, that it was built is known
+                    self._controller.know(self._foreknown)
+                self._controller.show()
+                self._controller.channel.flush()  # whatever the model does next, that it was built is known
                 while True:
-                    self._conductor.attend()
+                    self._controller.attend()
                     self._go_on()
             finally:
                 if self._recording is not None:
-                    if self._conductor.leaving:
+                    if self._controller.leaving:
                         self._recording.leave()
                     self._recording.close()
 
@@ -123,7 +123,7 @@ class BuiltRun:
 
     def _go_on(self) -> None:
         """Goes on by a few ticks."""
-        conductor, simulation = self._conductor, self._simulation
+        controller, simulation = self._controller, self._simulation
         first, last = simulation.ticks, simulation.ticks + self._allowance()
         begin, over = perf_counter(), None
         try:
@@ -133,40 +133,40 @@ class BuiltRun:
             if over is not None:
                 self._conclude()
         except UNFORESEEN as error:
-            if conductor.link.left:
+            if controller.channel.left:
                 raise  # in a copy of the process that the model has made, which ends with it
-            conductor.link.post(notice_of(error))
+            controller.channel.post(notice_of(error))
             self._tell_failure(failure(error))
-            conductor.end("failed", told_of(error))
+            controller.end("failed", told_of(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
-        conductor.passed()
+        controller.passed()
         if over is None:
-            conductor.pace(self.clock)
+            controller.pace(self.clock)
             return
         self._end = simulation.ticks, over
         if self._recording is not None:
             self._recording.fact("ended", {"by": over})
-        conductor.end("ended", ENDINGS[over])
+        controller.end("ended", ENDINGS[over])
 
     def _conclude(self) -> None:
-        """Tells the result, and what was printed last; in the order of a replay."""
+        """Records the result, then the last output, in the order of a replay."""
         self._simulation.conclude()
         self._simulation.event_log.stdout.finish()
 
     def _allowance(self) -> int:
         """Returns how many ticks to go before looking again what users want."""
-        conductor = self._conductor
-        if conductor.watch.fine:
+        controller = self._controller
+        if controller.watch.fine:
             return 1
         most = min(MOST_TICKS, int(BLOCK / self._tick_time)) if self._tick_time > 0 else 1
-        if conductor.pacer.factor is not None:
-            most = min(most, int(conductor.pacer.factor * BLOCK * MICROSECONDS / self.period))
-        if conductor.watch.goal is not None:
-            most = min(most, -(-(conductor.watch.goal - self.clock) // self.period))
+        if controller.pacer.factor is not None:
+            most = min(most, int(controller.pacer.factor * BLOCK * MICROSECONDS / self.period))
+        if controller.watch.goal is not None:
+            most = min(most, -(-(controller.watch.goal - self.clock) // self.period))
         return max(1, most)
 
-    # -- what the conductor asks
+    # -- calls from the controller
 
     @property
     def clock(self) -> int:
@@ -215,13 +215,13 @@ class BuiltRun:
                 raise SimulationError(f"'{command.type}' is nothing that is said to a run")
 
     def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None, *, drop: bool) -> None:
-        if self._conductor.status == "ended":
+        if self._controller.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or begin again")
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
         ahead = self.furthest > self.clock
         at, until = seconds(self.clock), seconds(self.furthest)
-        relived = Path(self._start.recorded) if self._start.recorded is not None and self._conductor.relives else None
+        relived = Path(self._start.recorded) if self._start.recorded is not None and self._controller.relives else None
         branch = self._keep_branch(at, until, drop=drop) if ahead and relived is None else None
         try:
             self._simulation.command(word, *values, body=body, **named)
@@ -231,7 +231,7 @@ class BuiltRun:
             raise
         kept = branch or (relived if ahead else None)  # what is lived through again is kept by its own recording
         if kept is not None:
-            self._conductor.link.post(Branched(recording=kept.stem, at=at, until=until))
+            self._controller.channel.post(Branched(recording=kept.stem, at=at, until=until))
         if branch is not None:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
@@ -242,7 +242,7 @@ class BuiltRun:
             if self._recording is not None:
                 self._recording.fact("ended", None)
         kept_as = "the rest was lost" if kept is None else "a branch was kept" if branch else "the recording keeps the rest"
-        self._conductor.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
+        self._controller.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
 
     def _keep_branch(self, at: float, until: float, *, drop: bool) -> Path | None:
         """Keeps the run as recorded so far, before something is changed in its past. Returns the file; None where it may be lost.
@@ -276,10 +276,10 @@ class BuiltRun:
     def _seek(self, tick: int) -> None:
         self._simulation.seek(seconds(tick * self.period))
         if self._end is None or tick != self._end[0]:
-            self._conductor.went_back()
+            self._controller.went_back()
             return
         self._conclude()
-        self._conductor.end("ended", ENDINGS[self._end[1]])
+        self._controller.end("ended", ENDINGS[self._end[1]])
 
     def finish_output(self) -> None:
         """Traces an unfinished line."""
@@ -301,7 +301,7 @@ class BuiltRun:
         """Returns what is asked.
 
         Raises:
-            Exception: Says why it cannot be told.
+            Exception: If there is none; its text says why.
         """
         return self._shown.answer(question)
 
@@ -319,10 +319,10 @@ class BuiltRun:
 
     def parts(self) -> dict[str, dict[str, Any]]:
         """Returns what all parts of all minds are like."""
-        told: dict[str, dict[str, Any]] = {}
+        parts: dict[str, dict[str, Any]] = {}
         for mind in self._simulation.minds.values():
-            told |= snapshot_of(mind)
-        return told
+            parts |= snapshot_of(mind)
+        return parts
 
     def names(self) -> Names:
         """Returns at what it can be stopped."""

@@ -14,8 +14,8 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
-from workbench.keeping import begun, size_of
 from workbench.loader import Parameter, listing_of
+from workbench.retention import begun, size_of
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
 UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, *_WRONG)
@@ -73,10 +73,10 @@ def summary_json(path: Path) -> bytes:
     except UNREADABLE as error:
         reason = str(error) if isinstance(error, (RecordingError, OSError)) else f"it is damaged ({type(error).__name__}: {error})"
         found = unreadable(path, reason.replace(f"'{path}'", "it"))
-    told = to_json(vars(found)).encode()
-    if len(told) > MOST_TEXT:
+    summary = to_json(vars(found)).encode()
+    if len(summary) > MOST_TEXT:
         return to_json(vars(unreadable(path, "what it tells of its run is too long to be listed"))).encode()
-    return msgspec.json.encode(msgspec.json.decode(told, type=Summary))
+    return msgspec.json.encode(msgspec.json.decode(summary, type=Summary))
 
 
 def unreadable(path: Path, reason: str) -> Summary:
@@ -110,8 +110,8 @@ def _read(recorded: Recorded, size: int) -> Summary:
 
 
 def _result(events: list[Event]) -> dict[str, Any] | None:
-    told = next((data for _, _, kind, data in reversed(events) if kind == "result"), None)
-    return None if told is None else dict(msgspec.json.decode(told))
+    result = next((data for _, _, kind, data in reversed(events) if kind == "result"), None)
+    return None if result is None else dict(msgspec.json.decode(result))
 
 
 def _different(parameters: dict[str, Any], source: str) -> tuple[str, ...]:

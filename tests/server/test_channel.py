@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from workbench.worker.link import Link
+from workbench.worker.channel import Channel
 from workbench.worker.messages import At, News, Notice, Reply, Start, State, framed
 
 
@@ -27,22 +27,22 @@ def state(tick: int) -> State:
     )
 
 
-def rests(_: Link) -> None:
+def rests(_: Channel) -> None:
     """Is what a thread of the link does here."""
 
 
 @pytest.fixture
-def link(monkeypatch: pytest.MonkeyPatch) -> Link:
+def link(monkeypatch: pytest.MonkeyPatch) -> Channel:
     """A link that sends nothing yet, so that all waits in its order."""
-    monkeypatch.setattr(Link, "_read", rests)
-    monkeypatch.setattr(Link, "_write", rests)
+    monkeypatch.setattr(Channel, "_read", rests)
+    monkeypatch.setattr(Channel, "_write", rests)
     server, worker = socket.socketpair()
     server.sendall(framed(Start(path="model.py", source="", folder=".")))
     with server, worker:
-        return Link(worker)
+        return Channel(worker)
 
 
-def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Link) -> None:
+def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Channel) -> None:
     link.show(state(1), 0, [b"1"])
     link.show(state(2), 1, [b"2"])
     assert not link.idle
@@ -55,7 +55,7 @@ def test_a_reply_comes_after_the_state_that_shows_what_was_done(link: Link) -> N
     assert list(link._messages)[2:] == [Reply(id=7), Reply(id=8), Notice(level="info", text="said")]
 
 
-def test_where_a_run_is_busy_comes_after_what_has_happened_up_to_there(link: Link) -> None:
+def test_where_a_run_is_busy_comes_after_what_has_happened_up_to_there(link: Channel) -> None:
     link.show(state(1), 0, [b"1"])
     link.post(At(file="model.py", line=3))
     assert list(link._messages) == [News(first=0, events=[b"1"]), state(1), At(file="model.py", line=3)]

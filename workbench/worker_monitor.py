@@ -9,7 +9,7 @@ from typing import Protocol
 
 import msgspec
 
-from workbench.worker.link import WIRE_LOST
+from workbench.worker.channel import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import MOST_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
 from workbench.worker.workers import LOST, PRINTED, Worker
@@ -52,7 +52,7 @@ class Told(Protocol):
         ...
 
 
-class Attendant:
+class WorkerMonitor:
     """Monitors one worker until it has ended.
 
     Args:

@@ -26,24 +26,24 @@ from actr3d.values import to_json
 from workbench import protocol as say
 from workbench.curves import joined
 from workbench.loader import Listing
-from workbench.worker.answers import answer
-from workbench.worker.conductor import Conductor, Leaving
+from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, names_of_program
+from workbench.worker.queries import answer
 from workbench.worker.recorded_once import RecordedOnce
+from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
+from workbench.worker.stop_conditions import Touches
 from workbench.worker.told_helpers import helpers_of
 from workbench.worker.tops import Top
-from workbench.worker.trouble import UNFORESEEN, notice_of, told_of
-from workbench.worker.watch import Touches
 
 PERIOD = 10_000
-"""What a step is [us]: as long as a tick of a simulation."""
+"""The length of a step [us]: that of a tick of a simulation."""
 MOST_RUNS = 8
-"""So many of the models that a program makes one after the other are kept and shown, the latest ones."""
+"""How many of the models that a program makes are shown: the latest ones."""
 MOST_SIMULATIONS = 4
-"""Of so many of its simulations the past is kept."""
+"""How many of its simulations keep their past."""
 
 
 class _Again(EndOfRun):
@@ -51,16 +51,16 @@ class _Again(EndOfRun):
 
 
 class ProgramRun:
-    """Runs a program as a conductor says; its time is that of all its runs, one after the other.
+    """Runs a program under a controller; its time is that of all its runs, one after the other.
 
     Args:
-        conductor: Says when it goes on.
+        controller: Decides when it continues.
         listing: What the model's text says of itself.
     """
 
-    def __init__(self, conductor: Conductor, listing: Listing) -> None:
-        start = conductor.link.start
-        self._conductor = conductor
+    def __init__(self, controller: RunController, listing: Listing) -> None:
+        start = controller.channel.start
+        self._controller = controller
         self._listing = listing
         self._source = with_values(start.source, start.settings)
         self._seed = fresh_seed() if start.seed is None else start.seed
@@ -70,12 +70,12 @@ class ProgramRun:
         self._clock: int = 0
         self._furthest: int = 0
         self._rush: int | None = None
-        """Up to where it goes without being shown or held [us]."""
+        """The time up to which it runs without being shown or paused [us]."""
         self._again = False
         self._introduced = False
-        """Whether the server has been told that the run has begun."""
+        """Whether the server knows that the run has begun."""
         self._begun = 0
-        """How many simulations have begun."""
+        """The number of simulations that have begun."""
         self._simulations: list[tuple[Shown, int]] = []
         """The latest of them, and when each began [us]."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MOST_RUNS)
@@ -95,60 +95,60 @@ class ProgramRun:
 
     def play(self) -> None:
         """Runs it, and again where a user goes back, until the worker is to leave."""
-        start, conductor = self._conductor.link.start, self._conductor
+        start, controller = self._controller.channel.start, self._controller
         if not self._listing.simulates:
             self._introduce()
         try:
             if start.record is not None:
                 self._recording = Recording(start.record, program_facts(start.path, self._source, self._seed, None))
-            while not conductor.leaving:
+            while not controller.leaving:
                 self._run_once()
                 with suppress(_Again):
-                    while not (self._again or conductor.leaving):
-                        conductor.attend()
+                    while not (self._again or controller.leaving):
+                        controller.attend()
         except Leaving:
             pass
         finally:
             if self._recording is not None:
-                if conductor.leaving:
+                if controller.leaving:
                     self._recording.leave()
                 self._recording.close()
 
     def _foresee(self) -> None:
         """Shows all of the recorded run that is lived through again, where it is one."""
-        recorded = self._conductor.link.start.recorded
+        recorded = self._controller.channel.start.recorded
         if recorded is not None:
             foreknown = Foreknown(Path(recorded))
             self._furthest = max(self._furthest, foreknown.time)
-            self._conductor.know(foreknown)
+            self._controller.know(foreknown)
 
     def _introduce(self) -> None:
-        """Lets the server know that the run has begun: a program that makes a simulation once that stands at its start."""
+        """Informs the server that the run has begun; for a program that makes a simulation, once this simulation is at its start."""
         if not self._introduced:
             self._introduced = True
             self._tell_facts()
-            self._conductor.conduct(self)
+            self._controller.conduct(self)
             if self._shown is not None and self._shown.simulation.world.bodies:
-                self._conductor.embodied()
+                self._controller.embodied()
             self._foresee()
             if self._listing.simulates:
-                self._conductor.show()
-                self._conductor.link.flush()  # whatever the program does next, that it has begun is known
+                self._controller.show()
+                self._controller.channel.flush()  # whatever the program does next, that it has begun is known
 
     def _tell_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
-        parameters = to_json({**known, **self._conductor.link.start.settings}).encode()
+        parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world = self._scene_now()
         period = seconds(self.period)
         facts = Facts(kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model)
-        self._conductor.link.post(facts)
+        self._controller.channel.post(facts)
 
     def _scene_now(self) -> tuple[bytes | None, bytes]:
         return (None, b"null") if self._shown is None else (self._shown.mj_model, to_json(self._shown.world()).encode())
 
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
-        conductor = self._conductor
+        controller = self._controller
         self._again = False
         self._clock = self._begun = self._runs = 0
         self._held.clear()
@@ -159,11 +159,11 @@ class ProgramRun:
         if self._recording is not None:
             limits.recorder = again = RecordedOnce(self._recording, lambda: self._left)
             trace.listen(again.event)
-        if not self._listing.simulates:  # else it goes on to where its simulation stands at its start
+        if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
         exited: SystemExit | None = None
         try:
-            with helpers_of(conductor.link, self._helpers) as helpers, ProgramOutput(limits) as output:
+            with helpers_of(controller.channel, self._helpers) as helpers, ProgramOutput(limits) as output:
                 self._output = output
                 helpers.heard = self._keep_helpers
                 if not self._again:
@@ -173,12 +173,12 @@ class ProgramRun:
         except _Again:
             return
         except UNFORESEEN as error:
-            if conductor.link.left:
+            if controller.channel.left:
                 raise  # in a copy of the process that the model has made, which ends with it
             if self._left:
                 return
             self._introduce()
-            conductor.link.post(notice_of(error))
+            controller.channel.post(notice_of(error))
             if self._recording is not None:
                 self._recording.fact("failed", failure(error))
             self._end("failed", told_of(error))
@@ -191,28 +191,28 @@ class ProgramRun:
             self._end("ended", "the program is over")
         else:
             self._introduce()
-            conductor.link.post(notice_of(exited))
+            controller.channel.post(notice_of(exited))
             self._end("failed", told_of(exited))
 
     def _hold_at_start(self) -> None:
         """Waits before the program begins, where nothing says that it is to go on."""
-        conductor = self._conductor
+        controller = self._controller
         if self._rush == 0:
             self._rush = None
-            conductor.went_back()
+            controller.went_back()
         if self._rush is None:
-            conductor.show()
-            conductor.link.flush()  # whatever the program does next, that it has begun is known
+            controller.show()
+            controller.channel.flush()  # whatever the program does next, that it has begun is known
             with suppress(_Again):
-                conductor.attend()
+                controller.attend()
 
     def _run_text(self, limits: RunLimits, helpers: HelperTexts) -> SystemExit | None:
         """Runs the program; returns with what it has ended itself, if it has."""
-        start = self._conductor.link.start
+        start = self._controller.channel.start
         try:
             run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
         except SystemExit as end:
-            if self._conductor.link.left:
+            if self._controller.channel.left:
                 raise
             return end
         return None
@@ -220,13 +220,13 @@ class ProgramRun:
     @property
     def _left(self) -> bool:
         """Whether it did not come to its end by itself."""
-        return self._again or self._conductor.leaving
+        return self._again or self._controller.leaving
 
     def _end(self, status: Any, reason: str) -> None:
         self._rush = None
         self._introduce()
         self._furthest = max(self._furthest, self._clock)
-        self._conductor.end(status, reason)
+        self._controller.end(status, reason)
 
     def _keep_helpers(self, loaded: Mapping[str, Sequence[str]]) -> None:
         new = {name: text for name, text in loaded.items() if name not in self._helpers}
@@ -235,8 +235,8 @@ class ProgramRun:
             self._recording.fact("helpers", self._helpers)
 
     def _pass(self, begin: int, end: int) -> None:
-        """Lets time pass of a model without a body, as fast as the conductor says; holds the program up meanwhile."""
-        conductor = self._conductor
+        """Paces a model without a body: delays the program until the controller lets it continue."""
+        controller = self._controller
         self._introduce()
         self._hold_models()
         to = self._clock + end - begin
@@ -247,23 +247,23 @@ class ProgramRun:
                     self._clock = to
                     return
                 self._clock, self._rush = self._rush, None
-                conductor.went_back()
-            conductor.attend()
+                controller.went_back()
+            controller.attend()
             if self._again or self._rush is not None:
                 continue
-            goal = conductor.watch.goal
+            goal = controller.watch.goal
             stop = to if goal is None else min(to, goal)
-            if not conductor.pace(stop):
+            if not controller.pace(stop):
                 continue
             self._clock = stop
             self._furthest = max(self._furthest, stop)
-            conductor.show_if_due()
+            controller.show_if_due()
             if stop == to:
                 return
 
     def _tick(self, simulation: Simulation, passed: int) -> None:
         """Takes note that a simulation has ticked, or is about to begin; holds the program up until it may go on."""
-        conductor = self._conductor
+        controller = self._controller
         self._show(simulation)
         self._hold_models()
         self._introduce()
@@ -273,15 +273,15 @@ class ProgramRun:
             return
         self._furthest = max(self._furthest, self._clock)
         if self._rush is None:
-            conductor.passed()
+            controller.passed()
         while True:
             if self._rush is not None:
                 if self._clock < self._rush:
                     return
                 self._rush = None
-                conductor.went_back()
-            conductor.attend()
-            if self._rush is None and conductor.pace(self._clock):
+                controller.went_back()
+            controller.attend()
+            if self._rush is None and controller.pace(self._clock):
                 return
 
     def _check_left(self) -> None:
@@ -290,7 +290,7 @@ class ProgramRun:
         Raises:
             EndOfRun: If it is to be left.
         """
-        if self._conductor.leaving:
+        if self._controller.leaving:
             raise Leaving
         if self._again:
             raise _Again
@@ -310,7 +310,7 @@ class ProgramRun:
                 self._kept.pop(next(number for number in self._kept if number != self._begun))
             self._simulations = [*self._simulations, (shown, self._clock)][-MOST_SIMULATIONS:]
 
-    # -- what the conductor asks
+    # -- calls from the controller
 
     @property
     def clock(self) -> int:
@@ -350,9 +350,9 @@ class ProgramRun:
             )
         if to > self._furthest:
             raise SimulationError(f"the run has come to {seconds(self._furthest):g} s only; run it on instead")
-        over = self._conductor.status in ("ended", "failed")
+        over = self._controller.status in ("ended", "failed")
         self._rush = to
-        self._conductor.status = "running"
+        self._controller.status = "running"
         if over or to < self._clock:
             self._again = True
             raise _Again
@@ -372,10 +372,10 @@ class ProgramRun:
         self._furthest = self._clock
 
     def answer(self, question: Any) -> Any:
-        """Returns what is asked.
+        """Returns the answer to a question.
 
         Raises:
-            Exception: Says why it cannot be told.
+            Exception: If there is none; its text says why.
         """
         match question:
             case say.Curves():
@@ -386,7 +386,7 @@ class ProgramRun:
                 return answer(question, self.trace, list(self._tops()))
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
-        """Returns the state of the physics, and how wide apertures are; before that the server is told of a scene that is another one."""
+        """Returns the state of the physics, and the widths of apertures [m]; first informs the server if the scene is another one."""
         if self._shown is not self._scene_of:
             self._scene_of = self._shown
             if self._scene_now() != self._scene:
@@ -394,24 +394,24 @@ class ProgramRun:
         return (None, {}) if self._shown is None else self._shown.scene()
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns what overlays show of the present, by kind."""
+        """Returns the current data of overlays, by kind."""
         return {} if self._shown is None else self._shown.drawn(kinds)
 
     def result(self) -> dict[str, Any] | None:
-        """Returns what was measured of the simulation that is shown, if anything was."""
+        """Returns the measured result of the simulation that is shown, if any."""
         return None if self._shown is None else self._shown.result()
 
     def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns what all parts of its latest models are like."""
-        told: dict[str, dict[str, Any]] = {}
+        """Returns the current state of all parts of its latest models."""
+        parts: dict[str, dict[str, Any]] = {}
         for top in self._tops():
-            told |= {top.name(path): part for path, part in snapshot_of(top.model).items()}
-        return told
+            parts |= {top.name(path): part for path, part in snapshot_of(top.model).items()}
+        return parts
 
     def names(self) -> Names:
-        """Returns at what it can be stopped."""
+        """Returns the names at which the run can be stopped."""
         bodies = () if self._shown is None else self._shown.simulation.world.bodies
-        return names_of_program(self._tops(), bodies, self._listing, self._source, Path(self._conductor.link.start.folder))
+        return names_of_program(self._tops(), bodies, self._listing, self._source, Path(self._controller.channel.start.folder))
 
     def touches(self) -> Touches:
         """Returns what touches a body now, the ground left out."""

@@ -1,4 +1,4 @@
-"""Defines what a conductor needs of a run, whether it is a simulation or a program."""
+"""Defines what a controller needs of a run, whether it is a simulation or a program."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import Any, Protocol
 
 from actr3d.trace import Trace
 from workbench.worker.names import Names
-from workbench.worker.watch import Touches
+from workbench.worker.stop_conditions import Touches
 
 
-class Conducted(Protocol):
-    """A run that a conductor controls."""
+class ControlledRun(Protocol):
+    """A run that a controller controls."""
 
     @property
     def clock(self) -> int:
