@@ -240,6 +240,9 @@ def test_after_a_click_the_keys_belong_to_the_page_and_after_a_key_to_what_has_t
     page.keyboard.press("Space")
     expect(page.get_by_role("dialog")).to_contain_text("Manual of ACT-R 3D")
     page.keyboard.press("Escape")
+    before = page.evaluate(RUN)
+    page.click("#restart")
+    until(page, lambda: page.evaluate(RUN) not in (None, before) and page.locator("#status").inner_text() == "paused: at its start")
     page.locator("#aperture").click()
     page.keyboard.press("Home")  # is the slider's own key
     expect(page.locator("#aperture")).to_have_value(page.locator("#aperture").get_attribute("min") or "")
