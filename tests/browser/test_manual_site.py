@@ -17,7 +17,7 @@ from starlette.applications import Starlette
 from starlette.routing import Mount
 from starlette.staticfiles import StaticFiles
 
-from tests.browser.looking import open_tab
+from tests.browser.looking import open_tab, until
 from workbench.auth import Gate, Guard, Token
 from workbench.cli import _listen as listen  # pyright: ignore[reportPrivateUsage] # the socket that the command opens
 from workbench.shipped import static
@@ -85,8 +85,16 @@ def test_the_manual_can_be_read_and_searched_offline(opened: Callable[..., tuple
     page.goto(f"{manual}/")
     expect(page.locator("h1")).to_have_text(re.compile("ACT-R 3D"))
     expect(page.locator("body")).to_have_attribute("data-md-color-scheme", {"light": "default", "dark": "slate"}[theme])
-    page.get_by_role("textbox", name="Search").fill("base-level")
-    expect(page.locator(".md-search-result__item").first).to_be_visible()
+    found = page.locator(".md-search-result__item")
+
+    def search() -> bool:  # what is typed before the search has loaded is not searched for
+        page.get_by_role("textbox", name="Search").fill("")
+        page.get_by_role("textbox", name="Search").fill("base-level")
+        page.wait_for_timeout(2000)
+        return found.count() > 0
+
+    until(page, search)
+    expect(found.first).to_be_visible()
     page.goto(f"{manual}/models/counting/")
     expect(page.locator("svg.run")).to_be_visible()
     assert complaints == []
