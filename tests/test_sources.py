@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 import sys
 import traceback
 from pathlib import Path
@@ -295,3 +296,35 @@ def test_names_of_tests_stay_live_in_classes_written_in_functions() -> None:
 
     Agent().run(0.1)
     assert seen == ["init"]
+
+
+THREADS = """
+import gc, sys, threading, time
+from pathlib import Path
+from actr3d.actr.kernel.source_code import parse
+
+text = Path(sys.argv[1]).read_text(encoding="utf-8")
+failures = []
+
+def work():
+    for _ in range(12):
+        try:
+            parse(text)
+        except SystemError as error:
+            failures.append(error)
+
+gc.set_threshold(2000)
+gc.callbacks.append(lambda phase, info: time.sleep(2e-4))  # lets other threads run in the middle of a tree
+threads = [threading.Thread(target=work) for _ in range(4)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(len(failures))
+"""
+
+
+def test_several_threads_can_parse_at_once() -> None:
+    model = Path(__file__).parents[1] / "models" / "aperture_passage.py"
+    done = subprocess.run([sys.executable, "-c", THREADS, str(model)], check=True, capture_output=True, text=True)
+    assert done.stdout == "0\n"

@@ -9,6 +9,7 @@ from typing import Any
 from markdown_it import MarkdownIt
 from markdown_it.tree import SyntaxTreeNode
 
+from actr3d.actr.kernel.source_code import parse
 from actr3d.errors import ConfigurationError
 from workbench.loader import Listing, listing_of
 
@@ -115,7 +116,7 @@ def _is_tight(item: SyntaxTreeNode) -> bool:
 def _settings_in(code: str, listing: Listing) -> dict[str, Any] | None:
     """Returns the parameter values in code such as `width = 0.5, speed = 2`; None if the code is anything else."""
     try:
-        call = ast.parse(f"_({code})", mode="eval").body
+        call = parse(f"_({code})", mode="eval").body
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return None
     if not isinstance(call, ast.Call) or not call.keywords or call.args or not isinstance(call.func, ast.Name):

@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
-from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.kernel.source_code import parse, syntax_tree
 from actr3d.actr.loading.source_text import compile_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
@@ -173,7 +173,7 @@ def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str
     """Returns a parameter completed with its declared type."""
     if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
         try:
-            return _declared(parameter, ast.parse(annotation.value, mode="eval").body, constants)
+            return _declared(parameter, parse(annotation.value, mode="eval").body, constants)
         except (SyntaxError, ValueError):  # for example while it is being typed
             return replace(parameter, takes=sendable(annotation.value))
     if isinstance(annotation, ast.BinOp) and isinstance(annotation.op, ast.BitOr):

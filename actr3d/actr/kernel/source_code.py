@@ -9,7 +9,8 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from threading import Lock
+from typing import Any, Literal
 
 from actr3d.actr.kernel.log import LOG
 
@@ -46,13 +47,32 @@ def drop_lines(filenames: Iterable[FileName]) -> None:
         linecache.cache.pop(filename, None)
 
 
+_PARSING = Lock()
+
+
+def parse(text: str, mode: Literal["exec", "eval"] = "exec") -> Any:
+    """Returns the syntax tree of a text, as `ast.parse`, in one thread at a time.
+
+    In several threads at once, `ast.parse` of Python 3.11 counts the depths of all of them as one and may raise a SystemError
+    (https://github.com/python/cpython/issues/106905).
+
+    Raises:
+        SyntaxError: If the text is not Python.
+        ValueError: If it has a NUL character.
+        RecursionError: If it is nested too deeply.
+        MemoryError: The same, for other texts.
+    """
+    with _PARSING:
+        return ast.parse(text, mode=mode)
+
+
 @lru_cache(maxsize=64)
 def syntax_tree(text: str) -> ast.Module:
     """Parses a file's text; returns an empty tree if it is no longer Python (the file has changed since it was loaded)."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the compiler has issued all warnings about the file
-            return ast.parse(text)
+            return parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ast.Module([], [])
 

@@ -11,6 +11,7 @@ from typing import Any, cast
 
 from actr3d.actr.kernel import log as logs
 from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.kernel.source_code import parse
 from actr3d.actr.loading.model_file import run_text
 from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.errors import ParameterError, did_you_mean
@@ -25,7 +26,7 @@ def parameters(source: str) -> dict[str, ast.Assign]:
         SyntaxError: If the text is not Python.
     """
     found: dict[str, ast.Assign] = {}
-    for node in ast.parse(source).body:
+    for node in parse(source).body:
         if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
             found[node.targets[0].id] = node
         elif not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)) and not (
