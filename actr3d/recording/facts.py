@@ -38,7 +38,7 @@ def _flag(value: Any) -> bool:
 
 
 def _true(value: Any) -> bool:
-    return value is True
+    return value is True or value is None
 
 
 def _run_kind(value: Any) -> bool:
@@ -107,7 +107,7 @@ _KINDS = {
     "world": _DICT,
     "ended": _Kind('{"by": a text}, or null', _ended),
     "failed": _Kind("a text, or null", _failed),
-    "whole": _Kind("true", _true),
+    "whole": _Kind("true, or null", _true),
     "branched": _Kind("a number from 0 on, or null", _time),
 }
 """Facts that this library or the workbench reads; what others are, whoever writes them knows."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.camera import Stand, View
+if TYPE_CHECKING:
+    from actr3d.camera import Stand, View
 
 Places = NDArray[np.float64]
 """Points in the world [m], `(..., 3)`."""

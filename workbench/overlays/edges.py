@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mujoco import MjData
 
-from actr3d.camera import CameraParameters, glance, stand_of
-from actr3d.world.body import Body
 from workbench.overlays.contours import contours_of, into_world
 from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
 from workbench.palette import label_colours
+
+if TYPE_CHECKING:
+    from actr3d.camera import CameraParameters
+    from actr3d.world.body import Body
 
 NEARER = 0.995
 """Edges are drawn at this fraction of their distance to the eye, so that the surfaces on which they lie do not hide them."""
@@ -44,6 +46,8 @@ class Edges(Overlay):
 
 
 def _edges(body: Body, eyesight: CameraParameters) -> dict[str, bytes]:
+    from actr3d.camera import glance, stand_of
+
     lines, labels = contours_of(glance(body, eyesight))
     places = into_world(NEARER * lines, stand_of(body, body.physics.mj_data))
     return {"lines": places.astype(np.float32).tobytes(), "labels": np.array(labels, dtype=np.int64).tobytes()}

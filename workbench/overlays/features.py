@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from itertools import groupby, islice
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mujoco import MjData
 
-from actr3d.actr.kernel.model import Model
-from actr3d.camera import View
-from actr3d.vision import Feature, Obstacle, Opening, Sighting, sightings
-from actr3d.world.body import Body
 from workbench.overlays.contours import Places, into_world, points_of
 from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
+
+if TYPE_CHECKING:
+    from actr3d.actr.kernel.model import Model
+    from actr3d.camera import View
+    from actr3d.vision import Feature, Opening, Sighting
+    from actr3d.world.body import Body
 
 MOST_LABELS = 24
 """Maximum number of labels."""
@@ -68,6 +70,8 @@ class Features(Overlay):
 
 def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
     """Returns the features found in an agent's last searches: `text`, `place`, `lines`, and whether the agent has `chosen` it."""
+    from actr3d.vision import sightings
+
     drawn: list[dict[str, Any]] = []
     for _, search in groupby(sightings(agent, body), key=lambda one: (one.module, one.bottom_up)):
         found = list(islice(search, MOST))
@@ -81,6 +85,8 @@ def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
 
 def _text(feature: Feature) -> str:
     """Returns a label with the measured values; sizes below one metre are in centimetres."""
+    from actr3d.vision import Opening
+
     width, distance = getattr(feature, "width", None), f"{feature.distance:.1f} m away"
     if not isinstance(width, (int, float)) or not math.isfinite(width):
         return f"{feature.called()} {distance}"
@@ -98,6 +104,8 @@ def _outline(sighting: Sighting, points: Places) -> Places:
         sighting: The feature as it was seen.
         points: The points of its view, from `points_of`.
     """
+    from actr3d.vision import Obstacle, Opening
+
     upper_left, upper_right, lower_right, lower_left = np.array(sighting.corners)
     if isinstance(sighting.feature, Obstacle):
         lower, upper = (lower_left + lower_right) / 2, (upper_left + upper_right) / 2

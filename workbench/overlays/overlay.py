@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from mujoco import MjData, MjModel
 
-from actr3d.camera import CameraParameters
-from actr3d.simulation import Simulation
+if TYPE_CHECKING:
+    from actr3d.camera import CameraParameters
+    from actr3d.simulation import Simulation
 
 OVERLAYS: dict[str, type[Overlay]] = {}
 """All overlays by name, in the order of the menu."""

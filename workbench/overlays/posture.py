@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
 from mujoco import MjData
 
-from actr3d.world.body import Body
 from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
 
 SLIGHT = 1e-3
 """A part counts as arrived if its position [m] and axes differ by less than this in total."""

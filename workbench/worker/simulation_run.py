@@ -147,6 +147,7 @@ class SimulationRun:
         self._end = simulation.ticks, over
         if self._recording is not None:
             self._recording.fact("ended", {"by": over})
+            self._recording.fact("whole", True)
         controller.end("ended", ENDINGS[over])
 
     def _conclude(self) -> None:
@@ -241,6 +242,7 @@ class SimulationRun:
             self._end = None
             if self._recording is not None:
                 self._recording.fact("ended", None)
+                self._recording.fact("whole", None)
         kept_as = "the rest was lost" if kept is None else "a branch was kept" if branch else "the recording keeps the rest"
         self._controller.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
 
