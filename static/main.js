@@ -11,7 +11,7 @@ const faults = new Set();
 function fault(text) {
   if (faults.has(text) || faults.size >= MOST_FAULTS) return;
   faults.add(text);
-  const more = faults.size === MOST_FAULTS ? " There may be more, which are not told. Load the page again: the run goes on." : "";
+  const more = faults.size === MOST_FAULTS ? " There may be more, which are not shown. Reload the page; the run continues." : "";
   complain(`The page has a fault: ${text}${more}`);
 }
 

@@ -1,6 +1,6 @@
 // Communicates with the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
-import { rest } from "./rest.js";
+import { frameBudget } from "./frame_budget.js";
 import { complain, connected, events, forget, hurried, known, opening, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
@@ -14,16 +14,16 @@ const waiting = new Map();
 const held = []; // updates that wait to be drawn
 let timer = 0;
 
-/** Calls the REST interface; returns the response, or throws an Error with the reason, with `status` and `told`. An AbortSignal
+/** Calls the REST interface; returns the response, or throws an Error with the reason, with `status` and `body`. An AbortSignal
  * cancels the call. */
 export async function call(method, path, body, signal) {
   // Every change is sent as JSON with a custom header, which no form of another site can send.
   const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
   const response = await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
   const text = await response.text();
-  const told = parsed(text);
-  if (!response.ok) throw refusal(response, told);
-  return told;
+  const answer = parsed(text);
+  if (!response.ok) throw refusal(response, answer);
+  return answer;
 }
 
 /** Fetches a whole file; returns it as a Blob, or throws an Error with the reason. `progress` is called with the number of bytes
@@ -50,7 +50,7 @@ async function answerOf(path, options) {
   try {
     return await fetch(path, options);
   } catch {
-    throw Object.assign(new Error("the workbench does not answer; is it still running?"), { status: 0, told: null });
+    throw Object.assign(new Error("the workbench does not answer; is it still running?"), { status: 0, body: null });
   }
 }
 
@@ -63,9 +63,9 @@ function parsed(text) {
 }
 
 /** Returns the Error for a response that gives the reason of a failure. */
-function refusal(response, told) {
-  const reason = typeof told.error === "string" ? told.error : JSON.stringify(told.detail ?? told);
-  return Object.assign(new Error(reason), { status: response.status, told });
+function refusal(response, body) {
+  const reason = typeof body.error === "string" ? body.error : JSON.stringify(body.detail ?? body);
+  return Object.assign(new Error(reason), { status: response.status, body });
 }
 
 /** Called when the user chooses something that takes a while to show; returns a function that checks whether it is still wanted:
@@ -170,7 +170,7 @@ function connect() {
 /** Applies the received updates as soon as drawing is allowed. */
 function updateSoon() {
   if (timer) return;
-  const { left } = rest;
+  const { left } = frameBudget;
   if (left === 0) update();
   else timer = setTimeout(again, left);
 }
@@ -184,9 +184,9 @@ function update() {
   clearTimeout(timer);
   timer = 0;
   const messages = held.splice(0);
-  rest.drawing();
+  frameBudget.drawing();
   take(messages);
-  rest.hurried = hurried.peek();
+  frameBudget.hurried = hurried.peek();
   for (const { replies = [] } of messages) {
     for (const reply of replies) {
       const { resolve, reject } = waiting.get(reply.id) ?? {};

@@ -1,16 +1,16 @@
 // The page's data, as signals, updated by the websocket. A panel that reads a signal is drawn again when it changes.
 
-import { remembered } from "./remembered.js";
+import { remembered } from "./local_storage.js";
 import { batch, computed, signal } from "./vendor/preact.js";
 
 const MOST_EVENTS = 200_000;
 const MOST_NOTICES = 500;
 
-/** The facts about the session and its run (`Telling.facts_json`); null before there is one. */
+/** The facts about the session and its run (`Session.facts_json`); null before there is one. */
 export const session = signal(null);
 /** The name of this browser among the viewers; empty if not known yet. */
 export const me = signal("");
-/** The newest state: status, time, speed, apertures, parts (`Telling.state_json`); null before the first. */
+/** The newest state: status, time, speed, apertures, parts (`Session.state_json`); null before the first. */
 export const state = signal(null);
 /** The events of the run in order, each [time in us, source, kind, data]; also those after the current moment of a run that went
  * back. `first` is the number of the first, `missing` how many were dropped before it. The list grows in place. */
@@ -62,7 +62,7 @@ function takeOne(message) {
   if (message.events) events.value = withEvents(events.value, message.events);
   if (message.notices) {
     const numbers = new Set(notices.value.map((notice) => notice.number));
-    tell(message.notices.filter((notice) => !numbers.has(notice.number)));
+    addNotices(message.notices.filter((notice) => !numbers.has(notice.number)));
   }
 }
 
@@ -83,8 +83,8 @@ function withEvents({ list, first, missing }, news) {
   return { list, first, missing, cut: news.cut !== undefined };
 }
 
-function tell(told) {
-  notices.value = [...notices.value, ...told].slice(-MOST_NOTICES);
+function addNotices(added) {
+  notices.value = [...notices.value, ...added].slice(-MOST_NOTICES);
 }
 
 let ownNotices = 0;
@@ -92,7 +92,7 @@ let ownNotices = 0;
 /** Shows the user a problem found by the page itself. */
 export function complain(text, level = "error") {
   ownNotices -= 1;
-  tell([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
+  addNotices([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
 }
 
 // -- what the user has seen or cleared

@@ -1,7 +1,7 @@
 // Light or dark: by the system's setting, or as the user has chosen.
 
 import { computed, effect, signal } from "./vendor/preact.js";
-import { remembered } from "./remembered.js";
+import { remembered } from "./local_storage.js";
 
 const system = matchMedia("(prefers-color-scheme: dark)");
 const systemIsDark = signal(system.matches);

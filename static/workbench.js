@@ -13,7 +13,7 @@ import { Tabs } from "./parts/tabs.js";
 import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
-import { remembered } from "./remembered.js";
+import { remembered } from "./local_storage.js";
 import { hurried, session } from "./store.js";
 
 const LEAST_SCENE = 320; // [px]

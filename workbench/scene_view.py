@@ -22,7 +22,7 @@ from workbench.overlays.frustum import Frustum
 from workbench.scene_framing import Stage
 from workbench.view_settings import Look
 from workbench.viser_panel import Panel
-from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, start_viser, tell
+from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, send_scene_data, start_viser
 from workbench.worker.messages import Facts, State
 
 if TYPE_CHECKING:
@@ -150,10 +150,10 @@ class SceneView:
     def _said(self, command: Any) -> None:
         """Sends a command from the panel to the session, which runs in another thread."""
 
-        def tell() -> None:
+        def notify() -> None:
             self._session._keep(self._session.carry_out(command, "3D view"))
 
-        self._loop.call_soon_threadsafe(tell)
+        self._loop.call_soon_threadsafe(notify)
 
 
 class _Drawn:
@@ -191,7 +191,7 @@ class _Drawn:
         self._stage = Stage(self._model)
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
-        tell(server, "stage", self._stage.told(lay_grounds(server, self._model)))
+        send_scene_data(server, "stage", self._stage.told(lay_grounds(server, self._model)))
         self._tell_now()
         self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
         self._look: Look | None = None
@@ -242,4 +242,4 @@ class _Drawn:
             "shade": self._shades.told(self.data),
             "labels": features.labels if features.visible else [],
         }
-        tell(self._server, "now", now)
+        send_scene_data(self._server, "now", now)

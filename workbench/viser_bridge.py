@@ -24,7 +24,7 @@ MOST_VIEWS = 32
 
 
 ADDED = (
-    '<script src="/static/framed.js"></script><script type="module" src="/static/scene/view.js"></script>'
+    '<script src="/static/viser_shim.js"></script><script type="module" src="/static/scene/view.js"></script>'
     '<link rel="stylesheet" href="/static/scene/view.css">'
 )
 """HTML that is inserted into viser's page."""

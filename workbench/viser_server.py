@@ -49,14 +49,14 @@ def start_viser(secret: str) -> Any:
     return server
 
 
-def tell(server: Any, name: str, value: Any) -> None:
-    """Sends every browser scene data that viser has no message for: it calls `scene.tell(name, value)` there.
+def send_scene_data(server: Any, name: str, value: Any) -> None:
+    """Sends every browser scene data that viser has no message for: it calls `scene.receive(name, value)` there.
 
     The data arrives with what is drawn in the same `server.atomic()`; a late or slow browser gets only the newest value of each name.
     """
     from viser import _messages
 
-    message = _messages.RunJavascriptMessage(f"scene.tell({json.dumps(name)},{json.dumps(value, allow_nan=False)})")
+    message = _messages.RunJavascriptMessage(f"scene.receive({json.dumps(name)},{json.dumps(value, allow_nan=False)})")
     # Viser keeps every message of this type for later browsers, as they may differ; with one key, newer ones replace older ones.
     message.redundancy_key = lambda: f"scene {name}"
     server._websock_server.queue_message(message)

@@ -1,7 +1,7 @@
 // The aperture's free width, in cm and in shoulder widths (A/S). A drag, or a key held down, sends one change: the final value.
 
 import { computed, html, signal } from "../vendor/preact.js";
-import { settable } from "../parts/settable.js";
+import { optimistic } from "../parts/optimistic_value.js";
 import { session, state } from "../store.js";
 import { orderChange } from "./branch.js";
 
@@ -9,7 +9,7 @@ const MOVES = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End",
 
 const name = computed(() => Object.keys(state.value?.apertures ?? {})[0]);
 /** The free width [cm]. */
-const width = settable(
+const width = optimistic(
   () => 100 * (state.value?.apertures[name.value] ?? 0),
   (cm) => ({ type: "aperture", width: cm / 100, name: name.peek() }),
   orderChange,
@@ -35,8 +35,8 @@ export function Aperture() {
   const cm = held.value ?? width.value.value;
   const { bodies = {}, widths = {} } = session.value?.world ?? {};
   const shoulders = Object.values(bodies).find((body) => body.shoulders)?.shoulders;
-  const told = html`<output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>`;
-  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway; a program takes no commands while it runs"><span>${name}</span> ${told}</span>`;
+  const reading = html`<output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>`;
+  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway; a program takes no commands while it runs"><span>${name}</span> ${reading}</span>`;
   const [least, most] = widths[name.value];
   return html`<label class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
     <span>${name}</span>
@@ -56,6 +56,6 @@ export function Aperture() {
       onKeyUp=${release}
       onBlur=${release}
     />
-    ${told}
+    ${reading}
   </label>`;
 }

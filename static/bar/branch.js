@@ -2,10 +2,10 @@
 
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
 import { complain, session } from "../store.js";
-import { openRun } from "../runs/doing.js";
+import { openRun } from "../runs/actions.js";
 import { furthest, inThePast, present } from "../timeline/seek.js";
 
 const seconds = (time) => `${time.toFixed(2)} s`;
@@ -17,7 +17,7 @@ export async function change(what) {
   const isKept = recording || (recorded && !branched); // the run itself, or the recording that is replayed
   if (!inThePast.peek() || isKept) return say(what).then(() => true);
   const [here, end] = [seconds(present.peek()), seconds(furthest.peek())];
-  const text = `The run stands at ${here} and has come to ${end}. It is not recorded: if it is changed here, what came after ${here} is lost.`;
+  const text = `The run is at ${here} and has reached ${end}. It is not recorded: if it is changed here, what came after ${here} is lost.`;
   if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
   await say({ ...what, drop: true });
   return true;
@@ -28,16 +28,16 @@ export function orderChange(what) {
   return change(what).catch((error) => isLeft(error) || complain(error.message));
 }
 
-const MOST_TOLD = 50; // the number of notices remembered
+const MOST_SHOWN = 50; // the number of notices remembered
 
 /** The notices that were shown: they do not return when the page is loaded again. */
-const told = remembered("branches told", []);
+const alreadyShown = remembered("branches shown", []);
 /** The notices that are closed: dismissed now, or shown before the page was loaded. */
-const closed = signal(told.peek());
+const closed = signal(alreadyShown.peek());
 
 function Notice({ which, title, children }) {
   useEffect(() => {
-    if (!told.peek().includes(which)) told.value = [...told.peek(), which].slice(-MOST_TOLD);
+    if (!alreadyShown.peek().includes(which)) alreadyShown.value = [...alreadyShown.peek(), which].slice(-MOST_SHOWN);
   }, [which]);
   return html`<span class="former branched" role="status" title=${title}>
     <span>${children}</span>

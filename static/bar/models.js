@@ -20,10 +20,10 @@ let asked = 0;
 export async function listModels() {
   asked += 1;
   const mine = asked;
-  const told = await call("GET", "/api/models");
+  const listing = await call("GET", "/api/models");
   if (mine !== asked) return;
-  folder.value = told.folder;
-  models.value = told.models;
+  folder.value = listing.folder;
+  models.value = listing.models;
 }
 
 /** Shows a model. */

@@ -1,7 +1,7 @@
 // A hint in the status line that a run in real time can go faster; shown until the user has changed a speed once.
 
 import { html } from "../vendor/preact.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { session, state } from "../store.js";
 
 /** Whether the user has ever changed the speed of a run. */

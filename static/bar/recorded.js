@@ -2,7 +2,7 @@
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
-import { whenInFull } from "../runs/words.js";
+import { whenInFull } from "../runs/wording.js";
 import { call } from "../server.js";
 import { session, state } from "../store.js";
 import { before, choose, models, showSession } from "./models.js";

@@ -20,14 +20,14 @@ export function SeedField() {
   const of = `${id} ${run}`;
   const mine = draft.value?.of === of ? draft.value : null; // ignores a text typed for another run
   const text = mine?.text ?? known;
-  const problem = mine?.told ? seedProblem(text) : null;
+  const problem = mine?.submitted ? seedProblem(text) : null;
   // The largest seed is too large for a JavaScript number: it is sent as text.
   function press(event) {
     if (event.key === "Escape") draft.value = null;
     if (event.key !== "Enter") return;
     event.preventDefault();
     const wanted = event.currentTarget.value;
-    draft.value = { of, text: wanted, told: true };
+    draft.value = { of, text: wanted, submitted: true };
     if (seedProblem(wanted) !== null) return;
     order({ type: "restart", seed: wanted.trim() });
     event.currentTarget.blur();
@@ -42,7 +42,7 @@ export function SeedField() {
       value=${text}
       aria-invalid=${Boolean(problem)}
       onFocus=${(event) => event.currentTarget.select()}
-      onInput=${(event) => (draft.value = { of, text: event.currentTarget.value, told: false })}
+      onInput=${(event) => (draft.value = { of, text: event.currentTarget.value, submitted: false })}
       onKeyDown=${press}
       onBlur=${() => (draft.value = null)}
     />

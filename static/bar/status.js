@@ -3,9 +3,9 @@
 import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { Branch } from "./branch.js";
-import { Former } from "../editor/running.js";
+import { Former } from "../editor/stale_run.js";
 import { Hint } from "./pace.js";
-import { standing } from "../standing.js";
+import { runStatus } from "../run_status.js";
 import { connected, me, session, state } from "../store.js";
 
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
@@ -22,7 +22,7 @@ function browsersInFull(watching) {
 
 export function StatusLine() {
   const { seed, watching = [], controlled_by: control, recording } = session.value ?? {};
-  const { is, line } = standing.value;
+  const { is, line } = runStatus.value;
   return html`<footer class="status-line">
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
     <${Hint} />

@@ -3,9 +3,9 @@
 import { html } from "../vendor/preact.js";
 import { bindKey, keyText } from "../keys.js";
 import { Icon } from "../parts/icon.js";
-import { settable } from "../parts/settable.js";
+import { optimistic } from "../parts/optimistic_value.js";
 import { order, say } from "../server.js";
-import { isOver } from "../standing.js";
+import { isOver } from "../run_status.js";
 import { alive, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { bindFaster, speedIsKnown } from "./pace.js";
@@ -71,7 +71,7 @@ bindKey("u", "Run until …", () => isIdle("until") || runUntil());
 bindKey("+", "Faster", () => changeSpeed(1));
 bindKey("-", "Slower", () => changeSpeed(-1));
 
-const speed = settable(
+const speed = optimistic(
   () => state.value?.wanted ?? null,
   (factor) => ({ type: "speed", factor }),
 );

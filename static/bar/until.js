@@ -2,8 +2,8 @@
 
 import { html, signal, useId } from "../vendor/preact.js";
 import { dialog } from "../parts/dialog.js";
-import { agentsOf, nameIn } from "../mind/agents.js";
-import { breakpoints, toggleBreakpoint } from "../mind/breakpoints.js";
+import { agentsOf, nameIn } from "../inspector/agents.js";
+import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
 import { session, state } from "../store.js";
 import { sayThere } from "../timeline/seek.js";

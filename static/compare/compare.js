@@ -4,7 +4,7 @@ import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../
 import { Icon } from "../parts/icon.js";
 import { call } from "../server.js";
 import { present } from "../runs/list.js";
-import { whenText } from "../runs/words.js";
+import { whenText } from "../runs/wording.js";
 import { COLOURS, Curves } from "./curves.js";
 import { Difference } from "./difference.js";
 import { Changes, SideBySide } from "./sides.js";
@@ -18,18 +18,18 @@ export function compareRuns(first, second) {
 }
 
 function useComparison(kinds) {
-  const told = useSignal({ answer: null, error: null, waiting: true });
+  const found = useSignal({ answer: null, error: null, waiting: true });
   const key = JSON.stringify([pair.value, kinds]);
   useEffect(() => {
     const leave = new AbortController();
     const [first, second] = pair.value;
-    told.value = { ...told.value, waiting: true };
+    found.value = { ...found.value, waiting: true };
     call("POST", "/api/compare", { first, second, kinds }, leave.signal)
-      .then((answer) => (told.value = { answer, error: null, waiting: false }))
-      .catch((error) => !leave.signal.aborted && (told.value = { answer: null, error: error.message, waiting: false }));
+      .then((answer) => (found.value = { answer, error: null, waiting: false }))
+      .catch((error) => !leave.signal.aborted && (found.value = { answer: null, error: error.message, waiting: false }));
     return () => leave.abort();
   }, [key]);
-  return told.value;
+  return found.value;
 }
 
 function Head({ runs }) {
@@ -63,17 +63,17 @@ function Contents({ answer, waiting, error, kinds }) {
 function Dialog() {
   const box = useRef(null);
   const kinds = useSignal([]);
-  const told = useComparison(kinds.value);
+  const found = useComparison(kinds.value);
   useLayoutEffect(() => box.current.showModal(), []);
 
   return html`<dialog ref=${box} class="compare" aria-labelledby="compare-title" onClose=${() => (pair.value = null)}>
     <header>
       <h2 id="compare-title">Two runs</h2>
-      ${told.answer ? html`<${Head} runs=${told.answer.runs} />` : html`<span class="stretch"></span>`}
+      ${found.answer ? html`<${Head} runs=${found.answer.runs} />` : html`<span class="stretch"></span>`}
       <button class="bare" title="Change sides" onClick=${() => (pair.value = pair.value.toReversed())}>Change sides</button>
       <button class="bare" aria-label="Close" title="Close (Esc)" onClick=${() => box.current.close()}><${Icon} name="close" /></button>
     </header>
-    <${Contents} ...${told} kinds=${kinds} />
+    <${Contents} ...${found} kinds=${kinds} />
   </dialog>`;
 }
 

@@ -3,7 +3,7 @@
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Plot } from "../parts/plot.js";
 import { call } from "../server.js";
-import { nameOf, whenText } from "../runs/words.js";
+import { nameOf, whenText } from "../runs/wording.js";
 
 /** The colours of the two runs, in plots and headings. */
 export const COLOURS = ["series-1", "series-2"];
@@ -23,9 +23,9 @@ async function read(run, names) {
 /** Returns the default curves: speed, clearance, and the joint that moves most. */
 async function first(runs, known) {
   const joints = known.filter(({ group }) => group === "joint").map(({ name }) => name);
-  const told = await call("GET", `/api/recordings/${runs[0].id}/curves?most=100&${query(joints.slice(0, 100))}`);
-  const reach = (name) => Math.max(...told.curves[name]) - Math.min(...told.curves[name]);
-  const moving = joints.filter((name) => name in told.curves).sort((one, other) => reach(other) - reach(one))[0];
+  const samples = await call("GET", `/api/recordings/${runs[0].id}/curves?most=100&${query(joints.slice(0, 100))}`);
+  const reach = (name) => Math.max(...samples.curves[name]) - Math.min(...samples.curves[name]);
+  const moving = joints.filter((name) => name in samples.curves).sort((one, other) => reach(other) - reach(one))[0];
   const of = (wanted) => known.find(({ group }) => group === wanted)?.name;
   return [moving, of("speed"), of("clearance")].filter(Boolean).slice(0, AT_FIRST);
 }
@@ -34,7 +34,7 @@ async function first(runs, known) {
 function useCurves(runs) {
   const known = useSignal(null); // [{name, unit, group}] of both runs
   const chosen = useSignal([]);
-  const told = useSignal({}); // by run and name: {times, values}
+  const samples = useSignal({}); // by run and name: {times, values}
   const error = useSignal(null);
   const key = runs.map(({ id }) => id).join();
 
@@ -55,18 +55,18 @@ function useCurves(runs) {
   useEffect(() => {
     let over = false;
     async function complete(run) {
-      const missing = chosen.value.filter((name) => !told.value[`${run.id} ${name}`]);
+      const missing = chosen.value.filter((name) => !samples.value[`${run.id} ${name}`]);
       if (missing.length === 0) return;
       const { times, curves } = await read(run, missing);
       if (over) return;
       const more = missing.map((name) => [`${run.id} ${name}`, { times, values: curves[name] ?? [] }]);
-      told.value = { ...told.value, ...Object.fromEntries(more) };
+      samples.value = { ...samples.value, ...Object.fromEntries(more) };
     }
     Promise.all(runs.map(complete)).catch((reason) => !over && (error.value = reason.message));
     return () => (over = true);
   }, [key, chosen.value]);
 
-  return { known: known.value, chosen, told: told.value, error: error.value };
+  return { known: known.value, chosen, samples: samples.value, error: error.value };
 }
 
 function Choice({ known, chosen }) {
@@ -88,8 +88,8 @@ function Choice({ known, chosen }) {
     </span>`;
 }
 
-function Overlaid({ curve, runs, told, cursor, span }) {
-  const both = runs.map((run) => told[`${run.id} ${curve.name}`]);
+function Overlaid({ curve, runs, samples, cursor, span }) {
+  const both = runs.map((run) => samples[`${run.id} ${curve.name}`]);
   const series = useMemo(
     () =>
       both.flatMap((of, n) =>
@@ -104,7 +104,7 @@ function Overlaid({ curve, runs, told, cursor, span }) {
 
 /** @param runs Both runs, as the server describes them. */
 export function Curves({ runs }) {
-  const { known, chosen, told, error } = useCurves(runs);
+  const { known, chosen, samples, error } = useCurves(runs);
   const cursor = useSignal(null);
   const span = { from: 0, to: Math.max(0.01, ...runs.map(({ time }) => time)) };
   return html`<section class="overlaid" aria-label="Curves">
@@ -113,6 +113,6 @@ export function Curves({ runs }) {
     ${!known && !error ? html`<p class="waiting quiet" role="status"><progress aria-label="Reading"></progress> Reading the curves …</p>` : null}
     ${known?.length === 0 ? html`<p class="empty">Neither run has a body in a world, or they were recorded before curves were kept.</p>` : null}
     ${known && known.length > 0 && chosen.value.length === 0 ? html`<p class="empty">Add a curve to see both runs over one another.</p>` : null}
-    ${(known ?? []).length > 0 ? chosen.value.map((name) => html`<${Overlaid} key=${name} curve=${known.find((curve) => curve.name === name)} runs=${runs} told=${told} cursor=${cursor} span=${span} />`) : null}
+    ${(known ?? []).length > 0 ? chosen.value.map((name) => html`<${Overlaid} key=${name} curve=${known.find((curve) => curve.name === name)} runs=${runs} samples=${samples} cursor=${cursor} span=${span} />`) : null}
   </section>`;
 }

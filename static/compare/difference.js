@@ -8,7 +8,7 @@ const KINDS = [
   ["all events", []],
   ["firings", ["fire"]],
   ["firings and requests", ["fire", "request"]],
-  ["what the body is told", ["request", "move", "moved", "answer"]],
+  ["commands to the body", ["request", "move", "moved", "answer"]],
   ["what the eye sees", ["search", "sight"]],
   ["output", ["output"]],
 ];

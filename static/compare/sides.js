@@ -2,8 +2,8 @@
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
-import { remembered } from "../remembered.js";
-import { endedText, labelOf, measureText, sizeText, whenText } from "../runs/words.js";
+import { remembered } from "../local_storage.js";
+import { endedText, labelOf, measureText, sizeText, whenText } from "../runs/wording.js";
 
 const onlyOthers = remembered("compare only differences", false);
 

@@ -37,7 +37,7 @@ export async function checkByLoading(document) {
   try {
     const { problems, listing } = await call("POST", "/api/check", { path: document.path, text: doc.toString(), load: true });
     mark(document, doc, problems, { reveals: true });
-    const fine = listing.kind === "simulation" ? "it loads, and nothing is wrong" : "nothing is wrong as far as can be told without a run";
+    const fine = listing.kind === "simulation" ? "it loads, and nothing is wrong" : "nothing wrong was found without a run";
     document.note.value = problems.length === 0 && document.state.doc === doc ? fine : "";
   } catch (error) {
     document.note.value = "";
@@ -63,7 +63,7 @@ const taken = new WeakMap();
 /** Marks the notices of the newest run in the open texts; removes those of the previous run. */
 export const ending = effect(() => {
   const { id = null, attempt = null } = session.value ?? {};
-  const told = notices.value;
+  const all = notices.value;
   const open = [...documents.value.values()];
   untracked(() => {
     if (upTo.session !== id || upTo.attempt !== attempt) {
@@ -73,13 +73,13 @@ export const ending = effect(() => {
         if (document.marks.value.some(({ origin }) => origin === "run")) document.change(withMarks(document.state, "run", []));
       }
     }
-    for (const document of open) take(document, told, attempt);
+    for (const document of open) take(document, all, attempt);
   });
 });
 
-function take(document, told, attempt) {
+function take(document, all, attempt) {
   const after = taken.get(document) ?? -1;
-  const fresh = told.filter((notice) => notice.attempt === attempt && notice.number > after);
+  const fresh = all.filter((notice) => notice.attempt === attempt && notice.number > after);
   if (fresh.length === 0) return;
   taken.set(document, fresh.at(-1).number);
   const marks = document.state.field(marking).filter(({ origin }) => origin === "run");

@@ -34,7 +34,7 @@ import {
 } from "../vendor/codemirror.js";
 import { look } from "./look.js";
 import { marking } from "./marks.js";
-import { complete } from "./words.js";
+import { complete } from "./completions.js";
 
 /** The actions of the editor's own keys; panels/editor.js fills it in. */
 export const keys = { run: () => {}, save: () => {} };

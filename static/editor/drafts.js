@@ -87,13 +87,13 @@ export function read(path) {
   }
 }
 
-let told = false;
+let warned = false;
 
 /** Stores a draft; removes the oldest ones if there are too many. */
 export function keep(path, text, version) {
   if (!tab) return;
-  if (!write(keyOf(path), { path, text, version, at: Date.now() }) && !told) {
-    told = true;
+  if (!write(keyOf(path), { path, text, version, at: Date.now() }) && !warned) {
+    warned = true;
     complain(`The browser has no room to keep the unsaved text of ${path}: save it before you leave the page.`, "warning");
   }
   refresh();

@@ -63,8 +63,8 @@ export function saveAgain(document) {
 async function named(title, label, name, action, more, work) {
   let problem = null;
   for (;;) {
-    const told = await asked(title, label, name, action, { ...more, problem });
-    const { text, choice } = typeof told === "string" ? { text: told } : told ?? {};
+    const given = await asked(title, label, name, action, { ...more, problem });
+    const { text, choice } = typeof given === "string" ? { text: given } : given ?? {};
     if (!text) return null;
     const taken = name;
     name = text.endsWith(".py") ? text : `${text}.py`;

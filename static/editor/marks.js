@@ -99,7 +99,7 @@ function diagnostic(mark) {
 function written(mark) {
   const box = document.createElement("div");
   const text = document.createElement("div");
-  text.className = "told";
+  text.className = "shown-error";
   text.textContent = mark.message;
   box.append(text);
   if (hasMore(mark)) {

@@ -3,7 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { Traceback } from "../parts/place.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { goTo } from "./code.js";
 import { hasMore } from "./marks.js";
 

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
 import { Icon } from "../parts/icon.js";
 import { seeing } from "../panels/eye.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
 import { Retina } from "./retina.js";
 

@@ -4,12 +4,12 @@ import { h, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { openAt } from "../parts/place.js";
 import { call, order } from "../server.js";
-import { standing } from "../standing.js";
+import { runStatus } from "../run_status.js";
 import { session } from "../store.js";
 
 /** The elements allowed in a description; the server sends no others. */
 const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"]);
-const told = signal({ key: "", answer: null, problem: null });
+const loaded = signal({ key: "", answer: null, problem: null });
 
 /** Returns a key for the text and the run that a description belongs to. */
 function keyOf({ id, run, attempt, shown_attempt: shown }) {
@@ -18,8 +18,8 @@ function keyOf({ id, run, attempt, shown_attempt: shown }) {
 
 async function follow(wanted) {
   const key = keyOf(wanted);
-  if (told.peek().key === key) return;
-  told.value = { key, answer: null, problem: null };
+  if (loaded.peek().key === key) return;
+  loaded.value = { key, answer: null, problem: null };
   let answer = null;
   let problem = null;
   try {
@@ -27,7 +27,7 @@ async function follow(wanted) {
   } catch (error) {
     problem = error.message;
   }
-  if (told.peek().key === key) told.value = { key, answer, problem };
+  if (loaded.peek().key === key) loaded.value = { key, answer, problem };
 }
 
 /** Runs the model from its start with these parameter values. */
@@ -56,16 +56,16 @@ function Nodes({ nodes }) {
 function About() {
   const shown = session.value;
   useLayoutEffect(() => void (shown && follow(shown)));
-  if (!shown) return html`<p class="empty">${standing.value.text}</p>`;
-  const { answer, problem } = told.value;
+  if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
+  const { answer, problem } = loaded.value;
   const file = shown.model.split("/").at(-1);
-  const isLost = standing.value.is === "unloadable";
+  const isLost = runStatus.value.is === "unloadable";
   return html`<div class="about-frame"><article class="about">
     <header>
       <span class="mono">${file}</span>
       <button title="Open its file in the editor" onClick=${() => openAt(shown.model, 1)}><${Icon} name="pen" />Edit</button>
     </header>
-    ${isLost ? html`<p class="bad">${standing.value.text}</p>` : null}
+    ${isLost ? html`<p class="bad">${runStatus.value.text}</p>` : null}
     ${problem ? html`<p class="bad">The description cannot be read: ${problem}</p>` : null}
     ${answer ? html`<${Description} answer=${answer} />` : null}
   </article></div>`;

@@ -1,13 +1,13 @@
 // The contents of the agents: every buffer with its chunk, every module with its state, by agent; and the result of a run.
 
 import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
-import { agentOf, agentsOf, nameIn } from "../mind/agents.js";
-import { Flash } from "../mind/flash.js";
-import { Module, Plain, useRequests } from "../mind/modules.js";
-import { Result } from "../mind/result.js";
+import { agentOf, agentsOf, nameIn } from "../inspector/agents.js";
+import { Flash } from "../inspector/flash.js";
+import { Module, Plain, useRequests } from "../inspector/modules.js";
+import { Result } from "../inspector/result.js";
 import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf } from "../parts/chunk.js";
-import { nothing } from "../standing.js";
+import { nothing } from "../run_status.js";
 import { running, session, state } from "../store.js";
 
 const LINES = 3; // the number of lines of a chunk shown unless expanded

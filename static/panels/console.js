@@ -1,15 +1,15 @@
 // The model's output as it is printed, with the warnings and errors of the run between its lines; goes back with the run.
 
 import { html, useEffect, useMemo } from "../vendor/preact.js";
-import { fillGaps, printed, printedVersion } from "../mind/printed.js";
+import { fillGaps, printed, printedVersion } from "../inspector/printed.js";
 import { CopyButton } from "../parts/copy.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
 import { saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
-import { remembered } from "../remembered.js";
-import { nothingYet } from "../standing.js";
+import { remembered } from "../local_storage.js";
+import { nothingYet } from "../run_status.js";
 import { alive, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
@@ -49,18 +49,18 @@ function noticesUpTo(now) {
 
 /** The contents of the console: lines and notices, in order. */
 class Listed {
-  constructor(lines, told) {
+  constructor(lines, messages) {
     this.lines = lines;
-    this.told = told;
+    this.messages = messages;
     /** The position of each notice among all. */
-    this.places = told.map(({ events }, n) => firstWhere(lines, ({ number }) => number >= events) + n);
-    this.count = lines.length + told.length;
+    this.places = messages.map(({ events }, n) => firstWhere(lines, ({ number }) => number >= events) + n);
+    this.count = lines.length + messages.length;
   }
 
   /** Returns [line, null] or [null, notice]. */
   at(place) {
     const before = firstWhere(this.places, (one) => one >= place);
-    return this.places[before] === place ? [null, this.told[before]] : [this.lines[place - before], null];
+    return this.places[before] === place ? [null, this.messages[before]] : [this.lines[place - before], null];
   }
 
   /** Returns all contents as text. */
@@ -82,13 +82,13 @@ function useListed() {
   const has = (text) => text.toLowerCase().includes(wanted);
   const { lines, gaps, dropped, of } = printed();
   const present = firstWhere(lines, ({ number }) => number >= now);
-  const told = noticesUpTo(now);
+  const messages = noticesUpTo(now);
   const shown = useMemo(() => {
     const past = present === lines.length ? lines : lines.slice(0, present);
     return wanted ? past.filter(({ text }) => has(text)) : past;
   }, [version, present, wanted]);
-  const listed = new Listed(shown, wanted ? told.filter((notice) => has(textOf([null, notice]))) : told);
-  return { listed, ahead: lines.length - present, all: present + told.length, gaps, dropped, of };
+  const listed = new Listed(shown, wanted ? messages.filter((notice) => has(textOf([null, notice]))) : messages);
+  return { listed, ahead: lines.length - present, all: present + messages.length, gaps, dropped, of };
 }
 
 function Line({ entry: [line, notice] }) {

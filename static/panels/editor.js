@@ -8,8 +8,8 @@ import { Conflict } from "../editor/conflict.js";
 import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
 import { duplicate, makeNew, remove, rename } from "../editor/files.js";
 import { Problems } from "../editor/problems.js";
-import { saveAndRun } from "../editor/running.js";
-import { Strip } from "../editor/strip.js";
+import { saveAndRun } from "../editor/stale_run.js";
+import { Strip } from "../editor/banner.js";
 import { bindKey, noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
@@ -80,13 +80,13 @@ function Files({ path, document }) {
     </select>
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
-    ${tool("check", "Load it without running it, and tell what is wrong (this carries out its top level)", () => checkByLoading(document))}
+    ${tool("check", "Load it without running it, and list what is wrong (this executes its top level)", () => checkByLoading(document))}
   </div>`;
 }
 
 function Standing({ document }) {
   const dirty = document.dirty.value;
-  return html`<div class="standing">
+  return html`<div class="file-status">
     <span class="path" title="${folder.value}/${document.path}">${folder.value}/</span>
     <span class=${dirty ? "state unsaved" : "state quiet"} role="status">
       ${document.saving.value ? "saving …" : dirty ? `● unsaved${document.note.value && document.note.value !== "saved" ? `: ${document.note.value}` : ""}` : document.note.value}

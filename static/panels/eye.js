@@ -3,10 +3,10 @@
 import { html, useSignal } from "../vendor/preact.js";
 import { shadeOf } from "../eye/drawing.js";
 import { Retina } from "../eye/retina.js";
-import { Waiting } from "../mind/waiting.js";
+import { Waiting } from "../inspector/waiting.js";
 import { useAnswer } from "../parts/answer.js";
 import { CopyButton } from "../parts/copy.js";
-import { isGone, nothing } from "../standing.js";
+import { isGone, nothing } from "../run_status.js";
 import { session } from "../store.js";
 import { dark } from "../theme.js";
 
@@ -90,8 +90,8 @@ function Eye() {
   const body = useSignal(null);
   const kind = useSignal("objects");
   const of = bodies.includes(body.value) ? body.value : bodies[0];
-  const told = useAnswer(of === undefined ? null : { type: "view", body: of }, { live: true });
-  const { answer } = told;
+  const result = useAnswer(of === undefined ? null : { type: "view", body: of }, { live: true });
+  const { answer } = result;
   if (of === undefined) return html`<p class="empty">${nothing("No body of this model has an eye. What one sees is shown here as soon as a model with a camera runs.")}</p>`;
   const Table = kind.value === "objects" ? Objects : Edges;
   return html`<div class="eye">
@@ -101,7 +101,7 @@ function Eye() {
       ${KINDS.map(([id, text]) => html`<button key=${id} aria-pressed=${kind.value === id} onClick=${() => (kind.value = id)}>${text}</button>`)}
       <${CopyButton} text="Copy as JSON" disabled=${!answer} copied=${() => JSON.stringify(answer)} />
     </div>
-    <${Waiting} told=${told} />
+    <${Waiting} answer=${result} />
     ${isGone.value && !answer ? null : html`<${Retina} view=${answer} />`}
     <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer?.extents.length ? html`<${Table} view=${answer} />` : null}</div>
   </div>`;

@@ -1,15 +1,15 @@
 // Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
-import { MemoryTable } from "../mind/memory_table.js";
-import { Search } from "../mind/retrievals.js";
-import { postures, SchemaTable } from "../mind/schema_table.js";
-import { Waiting } from "../mind/waiting.js";
+import { MemoryTable } from "../inspector/memory_table.js";
+import { Search } from "../inspector/retrievals.js";
+import { postures, SchemaTable } from "../inspector/schema_table.js";
+import { Waiting } from "../inspector/waiting.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
-import { remembered } from "../remembered.js";
-import { nothing } from "../standing.js";
+import { remembered } from "../local_storage.js";
+import { nothing } from "../run_status.js";
 import { running, session, state } from "../store.js";
 
 const MOST = 5000; // the maximum number of chunks requested
@@ -20,18 +20,18 @@ const view = remembered("memory view", "chunks");
 const wanted = signal(""); // the chosen memory
 
 function Seen() {
-  const told = useAnswer({ type: "explain" });
-  const searches = (told.answer ?? []).flatMap((one) => one.searches);
+  const result = useAnswer({ type: "explain" });
+  const searches = (result.answer ?? []).flatMap((one) => one.searches);
   return html`<div class="reasons-text">
-    <${Waiting} told=${told} />
-    ${told.answer && searches.length === 0 ? html`<p class="empty">The eyes have not looked for anything yet.</p>` : null}
+    <${Waiting} answer=${result} />
+    ${result.answer && searches.length === 0 ? html`<p class="empty">The eyes have not looked for anything yet.</p>` : null}
     ${searches.map((reason) => html`<${Search} key="${reason.module} ${reason.bottom_up}" reason=${reason} />`)}
   </div>`;
 }
 
-function Note({ told, schema }) {
-  if (!told.answer) return null;
-  const { rows, size, threshold } = told.answer;
+function Note({ result, schema }) {
+  if (!result.answer) return null;
+  const { rows, size, threshold } = result.answer;
   const found = rows.length === size ? counted(size, "chunk") : `${rows.length} of ${counted(size, "chunk")}`;
   const cut = rows.length === MOST ? "; search for fewer" : "";
   return html`<span class="quiet">${schema ? counted(schema.length, "posture") : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
@@ -46,15 +46,15 @@ function Chunks({ memory, schema }) {
   }, [typed]);
   const size = state.value?.parts[memory]?.state.size ?? 0;
   const live = size <= LIVE;
-  const told = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MOST }, { live });
-  const mine = told.answer?.memory === memory ? told.answer : null;
+  const result = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MOST }, { live });
+  const mine = result.answer?.memory === memory ? result.answer : null;
   const found = schema && mine ? postures(mine.rows) : null;
   return html`<div class="tools">
       <input type="search" aria-label="Search the memory" placeholder="Search" value=${typed} onInput=${(event) => setTyped(event.currentTarget.value)} />
-      <${Note} told=${told} schema=${found} />
+      <${Note} result=${result} schema=${found} />
       ${running.value && !live ? html`<span class="quiet" role="status">as at the last pause</span>` : null}
     </div>
-    <${Waiting} told=${mine ? { ...told, waiting: false } : told} />
+    <${Waiting} answer=${mine ? { ...result, waiting: false } : result} />
     ${mine && !schema ? html`<${MemoryTable} answer=${mine} words=${words} />` : null}
     ${found?.length ? html`<${SchemaTable} rows=${found} />` : null}
     ${found && found.length === 0 ? html`<p class="empty">${words ? "No posture has all of these words." : "No posture has been felt yet: the body schema grows as the body moves."}</p>` : null}`;

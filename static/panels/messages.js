@@ -3,7 +3,7 @@
 import { computed, html, useEffect } from "../vendor/preact.js";
 import { hasMore } from "../editor/marks.js";
 import { Place, Traceback } from "../parts/place.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { isSettled, notices, settle } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
@@ -52,7 +52,7 @@ function Messages() {
   useEffect(() => settle("seen"), [notices.value]);
   const all = kept.value;
   const list = all.filter(({ level }) => !hidden.value.includes(level)).toReversed();
-  const none = all.length === 0 ? "No messages. What goes wrong in a model is told here, with its line." : "All messages are filtered out.";
+  const none = all.length === 0 ? "No messages. Errors and warnings of the model appear here, with their lines." : "All messages are filtered out.";
   return html`<div class="messages">
     <${Filter} />
     ${list.length === 0 ? html`<p class="empty">${none}</p>` : null}

@@ -5,12 +5,12 @@ import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
 import { boundsText, read, written } from "../parameters/values.js";
 import { call, isLeft, order } from "../server.js";
-import { standing } from "../standing.js";
+import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
 
 const listing = signal(null); // the declarations in the model's text
 const drafts = signal({}); // entered values that are not yet in effect, by name
-const told = signal({}); // values that live parameters were set to in this run, by name
+const liveValues = signal({}); // values that live parameters were set to in this run, by name
 const seed = signal("");
 let of = {};
 
@@ -21,7 +21,7 @@ async function follow({ id, model, run, stale }) {
   const other = of.id !== id;
   const asked = { id, run, stale };
   of = asked;
-  told.value = {};
+  liveValues.value = {};
   if (other) {
     listing.value = null;
     drafts.value = {};
@@ -44,7 +44,7 @@ function inForce({ name, live, default: otherwise }) {
   const begun = session.value?.parameters?.[name];
   const widths = Object.values(state.value?.apertures ?? {});
   if (begun !== undefined && live?.word === "aperture" && widths.length === 1) return Number(widths[0].toFixed(4));
-  const value = told.value[name] ?? begun;
+  const value = liveValues.value[name] ?? begun;
   return value === undefined ? otherwise : value;
 }
 
@@ -82,7 +82,7 @@ async function write(parameter, text, whole) {
   const run = of;
   try {
     const sent = await change({ type: "set", name, value });
-    if (run === of && sent) told.value = { ...told.value, [name]: value };
+    if (run === of && sent) liveValues.value = { ...liveValues.value, [name]: value };
     if (run === of && drafts.value[name] === text) drop(name); // otherwise more was typed meanwhile
   } catch (error) {
     if (!isLeft(error)) complain(error.message);
@@ -145,7 +145,7 @@ function Field({ parameter }) {
 function Parameters() {
   const shown = session.value;
   useLayoutEffect(() => void (shown && follow(shown))); // before anything can be typed into a field of the previous model
-  if (!shown) return html`<p class="empty">${standing.value.text}</p>`;
+  if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
   if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
   const fields = known();
   const changed = waiting().length;

@@ -1,24 +1,24 @@
 // The productions: the firing trace above, and the explanations below: conditions, the conflict set, retrievals.
 
 import { html, useLayoutEffect, useState } from "../vendor/preact.js";
-import { at, question, shownReasons } from "../mind/asked.js";
-import { HeldNote, held } from "../mind/breakpoints.js";
-import { ConflictSets } from "../mind/conflict.js";
-import { explained, ProductionList, productionsOf } from "../mind/list.js";
-import { Retrievals } from "../mind/retrievals.js";
-import { FiringTrace } from "../mind/trace.js";
-import { Waiting } from "../mind/waiting.js";
-import { Why } from "../mind/why.js";
+import { at, question, shownReasons } from "../inspector/asked.js";
+import { HeldNote, held } from "../inspector/breakpoints.js";
+import { ConflictSets } from "../inspector/conflict.js";
+import { explained, ProductionList, productionsOf } from "../inspector/list.js";
+import { Retrievals } from "../inspector/retrievals.js";
+import { FiringTrace } from "../inspector/trace.js";
+import { Waiting } from "../inspector/waiting.js";
+import { Why } from "../inspector/why.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { Splitter } from "../parts/splitter.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { running, state } from "../store.js";
 import { travel } from "../timeline/seek.js";
 
 const below = remembered("reasons height", Math.round(Math.min(270, 0.27 * innerHeight)));
 
-function Moment({ told }) {
+function Moment({ result }) {
   const [text, setText] = useState("");
   useLayoutEffect(() => setText(at.value === null ? "" : String(Number(at.value.toFixed(6)))), [at.value]);
   const wrong = text.trim() !== "" && !(Number(text) >= 0);
@@ -28,7 +28,7 @@ function Moment({ told }) {
     if (!wrong) at.value = text.trim() === "" ? null : Number(text);
   }
 
-  const time = told.answer?.[0]?.time;
+  const time = result.answer?.[0]?.time;
   return html`<label class="moment" title="The moment that is explained; nothing for the present one">
       at <input aria-label="Explain the time [s]" aria-invalid=${wrong} inputmode="decimal" placeholder=${(time ?? state.value?.time ?? 0).toFixed(3)} value=${text} onInput=${(event) => setText(event.currentTarget.value)} onKeyDown=${take} onBlur=${take} /> s
     </label>
@@ -51,8 +51,8 @@ const VIEWS = [
 ];
 
 function Reasons() {
-  const told = useAnswer(question.value, { once: at.value !== null });
-  const explanations = told.answer ?? [];
+  const result = useAnswer(question.value, { once: at.value !== null });
+  const explanations = result.answer ?? [];
   const shown = VIEWS.some(({ id }) => id === shownReasons.value) ? shownReasons.value : "why";
   const all = productionsOf(
     state.value?.parts,
@@ -76,16 +76,16 @@ function Reasons() {
       </div>
       <span class="stretch"></span>
       ${old && shown !== "conflict" ? html`<span class="quiet" role="status">as it was at ${time.toFixed(3)} s</span>` : null}
-      <${Moment} told=${told} />
+      <${Moment} result=${result} />
     </div>
     <div class="reasons-body ${shown}" role="tabpanel" id="reasons-panel" aria-labelledby="reasons-${shown}">
       ${shown === "why" ? html`<${ProductionList} all=${all} chosen=${chosen} />` : null}
       <div class="reasons-text" tabindex="0" role="region" aria-label="Explanation">
-        <${Waiting} told=${told} />
-        ${told.error && at.value !== null ? html`<${Elsewhere} />` : null}
-        ${shown === "why" ? html`<div id="why-text">${told.error ? null : html`<${Why} item=${chosen} />`}</div>` : null}
+        <${Waiting} answer=${result} />
+        ${result.error && at.value !== null ? html`<${Elsewhere} />` : null}
+        ${shown === "why" ? html`<div id="why-text">${result.error ? null : html`<${Why} item=${chosen} />`}</div>` : null}
         ${shown === "conflict" ? html`<${ConflictSets} />` : null}
-        ${shown === "retrievals" && told.answer ? html`<${Retrievals} explanations=${explanations} />` : null}
+        ${shown === "retrievals" && result.answer ? html`<${Retrievals} explanations=${explanations} />` : null}
       </div>
     </div>
   </section>`;

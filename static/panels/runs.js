@@ -4,10 +4,10 @@ import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Comparison } from "../compare/compare.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
-import { deleteRuns, openRun } from "../runs/doing.js";
+import { deleteRuns, openRun } from "../runs/actions.js";
 import { follow, listRuns, loading, problem, runs as list, total } from "../runs/list.js";
 import { chosen, sorted, Table } from "../runs/table.js";
-import { textOf } from "../runs/words.js";
+import { textOf } from "../runs/wording.js";
 
 /** Returns the recordings that contain every word of a search. */
 function found(all, search) {

@@ -5,11 +5,11 @@ import { RetinaInset } from "../eye/inset.js";
 import { bindKey, hearKeys, noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
-import { settable } from "../parts/settable.js";
-import { remembered } from "../remembered.js";
-import { rest } from "../rest.js";
+import { optimistic } from "../parts/optimistic_value.js";
+import { remembered } from "../local_storage.js";
+import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
-import { standing } from "../standing.js";
+import { runStatus } from "../run_status.js";
 import { running, session, state } from "../store.js";
 
 const open = remembered("overlays open", false);
@@ -26,8 +26,8 @@ const overlays = new Map();
 /** The switch of an overlay. */
 function overlay(name) {
   if (!overlays.has(name)) {
-    const told = () => Boolean(session.value?.overlays.find((one) => one.name === name)?.shown);
-    overlays.set(name, settable(told, (shown) => ({ type: "overlay", name, shown })));
+    const reported = () => Boolean(session.value?.overlays.find((one) => one.name === name)?.shown);
+    overlays.set(name, optimistic(reported, (shown) => ({ type: "overlay", name, shown })));
   }
   return overlays.get(name);
 }
@@ -90,7 +90,7 @@ function missing(drawn) {
   const { world, scene, alive } = session.value ?? {};
   if (world && scene) return drawn === null ? ["The 3D view loads …", true] : drawn ? null : [NO_WEBGL, false];
   if (world && alive) return ["The 3D view is being made …", true];
-  if (state.value === null) return [standing.value.text, standing.value.is === "loading"];
+  if (state.value === null) return [runStatus.value.text, runStatus.value.is === "loading"];
   return ["This model has no world: there is nothing to see. Its buffers, productions and memory stand beside.", false];
 }
 
@@ -99,8 +99,8 @@ function Cover({ text, awaited }) {
 }
 
 export function Scene() {
-  const told = session.value;
-  const shown = Boolean(told?.world && told.scene);
+  const facts = session.value;
+  const shown = Boolean(facts?.world && facts.scene);
   const address = useRef("about:blank");
   const frame = useRef(null);
   const pictured = useSignal({ of: "", drawn: null });
@@ -111,14 +111,14 @@ export function Scene() {
     addEventListener("message", hear);
     return () => removeEventListener("message", hear);
   }, []);
-  if (shown) address.current = `/viser/${told.id}/?panel=hidden`;
+  if (shown) address.current = `/viser/${facts.id}/?panel=hidden`;
   const lacks = missing(pictured.value.of === address.current ? pictured.value.drawn : null);
   const loads = useSignal(0);
   useEffect(() => {
     frame.current.contentWindow?.scene?.choose(view.value);
   }, [view.value, resets.value, loads.value]);
   function begin({ currentTarget: { contentWindow: inner } }) {
-    inner?.restWith?.(rest);
+    inner?.useFrameBudget?.(frameBudget);
     if (shown && inner) hearKeys(inner);
     loads.value += 1;
   }

@@ -1,11 +1,11 @@
 // The timeline: one axis of time for agents and body, for going back and forth.
 
 import { computed, html } from "../vendor/preact.js";
-import { nothingYet } from "../standing.js";
+import { nothingYet } from "../run_status.js";
 import { curvesVersion, names } from "../timeline/curves.js";
 import { lanes, lanesVersion } from "../timeline/record.js";
 import { column } from "../timeline/rows.js";
-import { Stage } from "../timeline/stage.js";
+import { Stage } from "../timeline/canvas.js";
 import { Tools } from "../timeline/tools.js";
 
 /** The text shown if there is nothing to draw yet; otherwise empty. */

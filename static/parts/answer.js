@@ -19,7 +19,7 @@ const NOTHING = { answer: null, error: null, waiting: false, of: null };
  *   there is none.
  */
 export function useAnswer(question, { live = false, once = false } = {}) {
-  const [told, setTold] = useState(NOTHING);
+  const [result, setResult] = useState(NOTHING);
   const key = JSON.stringify(question);
   const newest = useRef(key);
   newest.current = key;
@@ -35,13 +35,13 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       busy = true;
       const run = whichRun();
       const of = session.peek().id;
-      setTold((before) => ({ ...before, waiting: true }));
+      setResult((before) => ({ ...before, waiting: true }));
       const news = await say(question).then(
         (answer) => ({ answer, error: null, of }),
         (error) => ({ answer: null, error: error.message, of }),
       );
       if (over || newest.current !== key) return;
-      setTold((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // an answer of another run is ignored
+      setResult((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // an answer of another run is ignored
       busy = false;
       timer = setTimeout(ask, running.peek() ? WHILE_RUNNING : 0);
     }
@@ -54,8 +54,8 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       over = true;
       clearTimeout(timer);
       end();
-      if (busy) setTold((before) => ({ ...before, waiting: false }));
+      if (busy) setResult((before) => ({ ...before, waiting: false }));
     };
   }, [key, live, once]);
-  return told.of === null || told.of === session.value?.id ? told : NOTHING;
+  return result.of === null || result.of === session.value?.id ? result : NOTHING;
 }

@@ -3,15 +3,15 @@
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { compareRuns } from "../compare/compare.js";
-import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./doing.js";
+import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./actions.js";
 import { download, Downloads } from "./downloads.js";
 import { present } from "./list.js";
-import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./words.js";
+import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./wording.js";
 
 const FORMS = [
-  ["sqlite", "SQLite", "The recording as it is"],
+  ["sqlite", "SQLite", "The recording file, unchanged"],
   ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
   ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
   ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick; columns have the names of joints"],
@@ -27,25 +27,25 @@ function Forms({ run }) {
 }
 
 function Replayed({ run }) {
-  const told = replays.value[run.id];
+  const result = replays.value[run.id];
   const passed = useSignal(0);
-  const since = told?.since;
+  const since = result?.since;
   useEffect(() => {
     if (!since) return undefined;
     passed.value = 0;
     const clock = setInterval(() => (passed.value = (Date.now() - since) / 1000), 200);
     return () => clearInterval(clock);
   }, [since]);
-  if (!told) return null;
+  if (!result) return null;
   if (since) {
     return html`<div class="replayed" role="status">
-      <progress aria-label="Running again" value=${told.share || undefined}></progress> running again … <span class="number">${told.share ? `${Math.floor(100 * told.share)} %, ` : ""}${passed.value.toFixed(0)} s</span>
+      <progress aria-label="Running again" value=${result.share || undefined}></progress> running again … <span class="number">${result.share ? `${Math.floor(100 * result.share)} %, ` : ""}${passed.value.toFixed(0)} s</span>
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = told.agrees === true ? (told.text.startsWith("agrees as far") ? "It agrees as far as it goes." : "Every byte agrees.") : told.agrees === false ? "It differs." : "It cannot tell.";
-  const text = told.text.replace(/^(every byte agrees|agrees as far as it goes|differs): /, "");
-  return html`<div class="replayed" role="status"><b class=${told.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
+  const head = result.agrees === true ? (result.text.startsWith("agrees as far") ? "It agrees as far as it goes." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
+  const text = result.text.replace(/^(every byte agrees|agrees as far as it goes|differs): /, "");
+  return html`<div class="replayed" role="status"><b class=${result.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
 }
 
 /** Whether the facts about the chosen run are shown; where there is little room, the list has it at first. */

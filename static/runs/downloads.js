@@ -4,14 +4,14 @@ import { html, signal, useEffect, useSignal } from "../vendor/preact.js";
 import { saveFile } from "../parts/picture.js";
 import { fetchFile } from "../server.js";
 import { complain } from "../store.js";
-import { nameOf, sizeText } from "./words.js";
+import { nameOf, sizeText } from "./wording.js";
 
 /** The active downloads: {key, text, since, come, all}, with the bytes received and their total, 0 while the file is being created. */
 const downloads = signal([]);
 const cancels = new Map();
 
-function note(key, told) {
-  downloads.value = downloads.value.map((one) => (one.key === key ? { ...one, ...told } : one));
+function note(key, change) {
+  downloads.value = downloads.value.map((one) => (one.key === key ? { ...one, ...change } : one));
 }
 
 /** Fetches a file of a recording and saves it on the user's computer. Errors are shown as messages. */

@@ -2,7 +2,7 @@
 
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
-import { isOver } from "../standing.js";
+import { isOver } from "../run_status.js";
 import { session, state, way } from "../store.js";
 
 const PART = 250;
@@ -30,15 +30,15 @@ export async function listRuns() {
   const found = new Map();
   try {
     do {
-      const told = await call("GET", `/api/recordings?first=${found.size}&most=${PART}`);
+      const page = await call("GET", `/api/recordings?first=${found.size}&most=${PART}`);
       if (mine !== asked) return;
-      for (const run of told.recordings) found.set(run.id, run);
+      for (const run of page.recordings) found.set(run.id, run);
       batch(() => {
-        total.value = told.total;
+        total.value = page.total;
         problem.value = null;
         if (runs.value === null || runs.value.length <= found.size) runs.value = [...found.values()];
       });
-      if (told.recordings.length < PART) break;
+      if (page.recordings.length < PART) break;
     } while (found.size < total.value);
     runs.value = [...found.values()];
   } catch (error) {

@@ -1,10 +1,10 @@
 // The table of recordings: draws only the visible rows, so that thousands cost no more than a few.
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { alive, session, state } from "../store.js";
 import { present } from "./list.js";
-import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./words.js";
+import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
 const ROW = 44; // [px]; style.css has the same
 const AROUND = 6; // the number of rows drawn beyond the visible ones

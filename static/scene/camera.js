@@ -1,7 +1,7 @@
 // The camera of this browser: its view, and how it follows the body. It moves viser's own camera controls, which
 // rotate, pan and zoom by mouse.
 
-import { FOV, anchorOf, standing } from "./stage.js";
+import { FOV, anchorOf, cameraPose } from "./stage.js";
 import { cross, plus } from "./space.js";
 
 const SLIGHT = 1e-6; // smaller movements are ignored [m]
@@ -60,7 +60,7 @@ export class SceneCamera {
     this.setFov(FOV);
     this.anchor = anchorOf(view, stage, now.body);
     if (view !== "eye" && !stays) {
-      const { target, back, distance } = standing(view, stage, now.body, camera.aspect, this.room());
+      const { target, back, distance } = cameraPose(view, stage, now.body, camera.aspect, this.room());
       const place = this.toThree(plus(target, back, distance)).toArray();
       controls.setLookAt(...place, ...this.toThree(target).toArray(), false);
     }

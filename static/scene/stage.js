@@ -72,7 +72,7 @@ export function anchorOf(view, stage, body) {
  * @param aspect The width of the picture divided by its height.
  * @param room The part of its width that the page does not cover, from the left.
  */
-export function standing(view, stage, body, aspect, room = 1) {
+export function cameraPose(view, stage, body, aspect, room = 1) {
   const { ahead } = stage;
   const anchor = anchorOf(view, stage, body);
   if (view === "follow") {

@@ -1,5 +1,5 @@
 // What the 3D view adds to viser, in viser's page: this browser's camera, ground and sky, labels. The server sends the data with each
-// state (`window.scene`, see `framed.js`); everything changes just before each picture, so that all of it shows the same moment.
+// state (`window.scene`, see `viser_shim.js`); everything changes just before each picture, so that all of it shows the same moment.
 
 import { SceneCamera } from "./camera.js";
 import { Cutaway } from "./cutaway.js";
@@ -14,7 +14,7 @@ const HIDDEN = ["/overlays/frustum"]; // not drawn in the view through the eye
 async function ready() {
   for (;;) {
     const viewer = window.__viserMutable;
-    if (viewer?.scene && viewer.cameraControl && viewer.backgroundMaterial && viewer.nodeRefFromName[""] && given.told.stage && given.told.now) return viewer;
+    if (viewer?.scene && viewer.cameraControl && viewer.backgroundMaterial && viewer.nodeRefFromName[""] && given.facts.stage && given.facts.now) return viewer;
     await new Promise((done) => setTimeout(done, 15));
   }
 }
@@ -30,7 +30,7 @@ const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Labels();
 const cutaway = new Cutaway(viewer);
-let { stage } = given.told;
+let { stage } = given.facts;
 let shaded = null;
 let leftOut = false;
 
@@ -83,9 +83,9 @@ let waiting = false; // whether a view was chosen meanwhile
 /** Returns whether all shapes of the newest scene are there: viser removes those of the former scene at once, and reads new ones one
  * by one. */
 function isWhole() {
-  const first = given.heard.find((now) => now.stage === given.told.stage);
+  const first = given.heard.find((now) => now.stage === given.facts.stage);
   if (first === undefined) return false;
-  if (stage === given.told.stage) return true;
+  if (stage === given.facts.stage) return true;
   const number = drawnNumber();
   if (number === null || number < first.moment) return false;
   return Object.entries(window.__viserSceneTree.getState()).every(([name, node]) => {

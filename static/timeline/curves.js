@@ -2,7 +2,7 @@
 // was omitted is requested when it pauses: first the visible stretch, then the rest, until each tick is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
@@ -172,19 +172,19 @@ async function askOnce() {
   const whose = `${way.peek()} ${Boolean(world)}`; // a program may create its world later
   if (!asked.startsWith(`${whose} `)) {
     forget(`${whose} `);
-    const told = world ? await say({ type: "curves", names: [] }) : { names: [] };
+    const answer = world ? await say({ type: "curves", names: [] }) : { names: [] };
     if (!whose.startsWith(`${way.peek()} `)) return true;
-    names.value = told.names;
+    names.value = answer.names;
   }
   const list = names.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
   const key = `${whose} ${JSON.stringify(list)}`;
   if (asked !== key) forget(key);
   const stretch = list.length > 0 ? next() : null;
   if (!stretch) return false;
-  const told = await say({ type: "curves", names: list, first: Math.max(0, stretch.from - near()), last: stretch.to + near(), most: stretch.most });
+  const answer = await say({ type: "curves", names: list, first: Math.max(0, stretch.from - near()), last: stretch.to + near(), most: stretch.most });
   if (asked !== key || !whose.startsWith(`${way.peek()} `)) return true;
-  if (told.names.length !== names.peek().length) names.value = told.names; // another world was added
-  put(list, stretch, told);
+  if (answer.names.length !== names.peek().length) names.value = answer.names; // another world was added
+  put(list, stretch, answer);
   return known.times.length > 0;
 }
 

@@ -3,7 +3,7 @@
 import { chunkText } from "../parts/chunk.js";
 import { Widths } from "./commands.js";
 import { firstWhere } from "./search.js";
-import { TAKERS } from "./takers.js";
+import { TAKERS } from "./lane_builders.js";
 
 /**
  * @typedef Band

@@ -7,7 +7,7 @@ import { savePicture } from "../parts/picture.js";
 import { session } from "../store.js";
 import { plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
-import { scene } from "./stage.js";
+import { scene } from "./canvas.js";
 
 const [WIDE, HIGH, LEFT] = [900, 260, 46]; // of a plot [px]
 const which = signal("");

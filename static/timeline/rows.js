@@ -1,6 +1,6 @@
 // The rows of the timeline, their order and their heights.
 
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { contacts, names, plots } from "./curves.js";
 import { lanes } from "./record.js";
 

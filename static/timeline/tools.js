@@ -13,7 +13,7 @@ import { lanesVersion } from "./record.js";
 import { groupsThere, hidden } from "./rows.js";
 import { furthest, inThePast, present, seek, wanted } from "./seek.js";
 import { savePictures } from "./pictures.js";
-import { filter } from "./stage.js";
+import { filter } from "./canvas.js";
 import { fit, mode, zoom } from "./view.js";
 
 const STEP = 1.6; // the factor of a zoom button

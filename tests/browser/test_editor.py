@@ -57,7 +57,7 @@ def ends(page: Page, text: str) -> None:
 
 
 def unsaved(page: Page) -> Any:
-    return expect(page.locator(".standing .state"))
+    return expect(page.locator(".file-status .state"))
 
 
 def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
@@ -88,7 +88,7 @@ def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[...,
     shows(page, ".problems", "No problems")
     for _ in range(3):
         page.keyboard.press("Control+s")  # one after the other, although nobody waits
-    shows(page, ".standing", "saved$|savedSave")
+    shows(page, ".file-status", "saved$|savedSave")
     shows(page, ".strip", "What is shown is the run of the former text")
     shows(page, "#time", "0.06 s")  # saving runs nothing
     page.get_by_role("button", name="Run the new one").click()
@@ -168,7 +168,7 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     edit(page, "shared.py")
     written("shared.py", "a = 1\nb = 3\n")
     expect(page.locator(CODE)).to_have_text(re.compile("b = 3"))  # nothing was edited here
-    shows(page, ".standing", "read again: the file had changed")
+    shows(page, ".file-status", "read again: the file had changed")
     write(page, "mine = 1\n")
     written("shared.py", "theirs = 1\n")
     shows(page, ".strip", "has changed on disk")
@@ -182,7 +182,7 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     assert path.read_text(encoding="utf-8") == "theirs = 1\n"
     page.get_by_role("button", name="Compare and choose").click()
     page.get_by_role("button", name="Keep mine").click()
-    shows(page, ".standing", "saved")
+    shows(page, ".file-status", "saved")
     assert path.read_text(encoding="utf-8") == "a = 1\nb = 3\nmine = 1\nmore = 1\n"
     write(page, "again = 1\n")
     written("shared.py", "theirs = 2\n")
@@ -195,7 +195,7 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     path.unlink()
     shows(page, ".strip", "gone from the folder")
     page.get_by_role("button", name="Save it again").click()
-    shows(page, ".standing", "saved")
+    shows(page, ".file-status", "saved")
     assert "again = 1" in path.read_text(encoding="utf-8")
 
 
@@ -248,7 +248,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     unsaved(page).to_have_text(re.compile("unsaved.*brought back"))
     assert path.read_text(encoding="utf-8") == "a = 1\n"
     page.keyboard.press("Control+s")
-    shows(page, ".standing", "saved")
+    shows(page, ".file-status", "saved")
     other.locator(CODE).focus()
     other.keyboard.press("Control+s")
     shows(other, ".conflict", "has changed on disk")

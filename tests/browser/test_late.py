@@ -363,7 +363,7 @@ def test_a_text_that_is_being_saved_is_in_no_conflict_with_itself(pages: Callabl
             glances.let_go()
         drawn(page)
         expect(page.locator(".strip")).to_have_count(0)
-    shows(page, ".standing .state", "unsaved")
+    shows(page, ".file-status .state", "unsaved")
     expect(page.locator(".strip")).to_have_count(0)
 
 

@@ -139,7 +139,7 @@ def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two
     order("until", 2)
     order("seek", 1.5)
     drag("Home")
-    expect(asked).to_contain_text("The run stands at 1.50 s and has come to 2.00 s. It is not recorded")
+    expect(asked).to_contain_text("The run is at 1.50 s and has reached 2.00 s. It is not recorded")
     asked.get_by_role("button", name="Cancel").click()
     expect(asked).to_have_count(0)
     expect(page.locator("#width")).to_have_text(width)

@@ -199,7 +199,7 @@ def test_a_recording_from_elsewhere_shows_its_code_and_asks_before_it_is_run(
     expect(dialog).to_contain_text("This installation did not make the recording far, or it was changed since. Replaying it runs the code")
     expect(dialog.locator("pre")).to_contain_text("class Counting(ACTR)")
     dialog.get_by_role("button", name="Cancel").click()
-    expect(page.get_by_text("It cannot tell. cancelled")).to_be_visible()
+    expect(page.get_by_text("Not known. cancelled")).to_be_visible()
     page.get_by_role("button", name="Replay", exact=True).click()
     dialog.get_by_role("button", name="Run its code").click()
     expect(page.get_by_text("Every byte agrees.")).to_be_visible()

@@ -104,7 +104,7 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
 
 def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_loading_anew(workbench: Served, page: Page) -> None:
     held: list[Route] = []
-    page.route("**/static/framed.js", lambda route: held.append(route))
+    page.route("**/static/viser_shim.js", lambda route: held.append(route))
     page.goto(f"{workbench.url}/?model=aperture_passage.py")
     cover = page.locator(".scene-cover")
     expect(cover).to_have_text("The 3D view loads …", timeout=PATIENCE)
@@ -171,8 +171,8 @@ def test_where_the_processor_draws_there_are_no_shadows_and_edges_are_not_smooth
 
 
 RESTING = """async () => {
-    const { Rest } = await import("/static/rest.js");
-    const frames = [], rest = new Rest((draw) => frames.push(draw)), told = [], clock = performance.now;
+    const { FrameBudget } = await import("/static/frame_budget.js");
+    const frames = [], rest = new FrameBudget((draw) => frames.push(draw)), told = [], clock = performance.now;
     const frame = () => frames.shift()?.();
     let now = 1000;
     performance.now = () => now;
@@ -203,7 +203,7 @@ def test_the_3d_view_draws_when_the_page_does_while_a_run_is_hurried(pages: Call
     frame = page.frame_locator("iframe[title='3D view']")
     expect(frame.get_by_text("t = 0.00 s")).to_have_count(1, timeout=PATIENCE)
     draws = """async (left) => {
-        const { rest } = await import("/static/rest.js");
+        const { frameBudget: rest } = await import("/static/frame_budget.js");
         Object.defineProperty(rest, "left", { get: () => left, configurable: true });
         const view = document.querySelector("iframe[title='3D view']").contentWindow;
         let drawn = false;

@@ -60,7 +60,7 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
     shows(page, "#time", "0.05 s")
     page.click("#stop")
     shows(page, "#status", "^stopped$")
-    says(page, "The run was stopped: nothing more can be asked of it. «Run again» begins it anew.", ("Productions", "Memory"))
+    says(page, "The run was stopped: nothing more can be asked of it. «Run again» starts it from the beginning.", ("Productions", "Memory"))
     expect(page.locator("#panel-memory")).not_to_contain_text("red apple")
     open_tab(page, "Buffers")
     expect(page.locator(".buffers [data-path$='goal']")).to_contain_text("end")  # as it was
@@ -69,14 +69,14 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
     choose(page, "dies.py")
     page.click("#run")
     lost = "There is no run any more: the model's process ended with exit code 3. "
-    lost += "What happened just before that may not be told. «Run again» begins it anew."
+    lost += "What happened just before that may be missing. «Run again» starts it from the beginning."
     shows(page, "#status", "^failed: the model's process ended with exit code 3$")
     says(page, lost, ("Buffers", "Productions", "Memory", "Eye"))
     expect(timeline).to_have_text(lost)
     expect(page.locator(".toast")).to_contain_text("exit code 3")
 
     page.get_by_label("Model", exact=True).select_option("broken.py")
-    unloadable = "This model cannot be loaded: Messages says why, with the line. Mend it in the Editor, and run it again."
+    unloadable = "This model cannot be loaded: see Messages for the reason and the line. Fix it in the editor, then run it again."
     shows(page, "#status", "^the model cannot be loaded$")
     says(page, unloadable, ("Buffers", "Productions", "Memory", "Eye"))
     expect(timeline).to_have_text(unloadable)

@@ -53,9 +53,9 @@ class Standing:
         body = self.data.body("walker").xpos.tolist()
         self.told = self.page.evaluate(
             """async ([view, stage, body, aspect]) => {
-                const { standing, anchorOf } = await import("/static/scene/stage.js");
+                const { cameraPose, anchorOf } = await import("/static/scene/stage.js");
                 const { plus, minus } = await import("/static/scene/space.js");
-                const found = standing(view, stage, stage.start, aspect);
+                const found = cameraPose(view, stage, stage.start, aspect);
                 const way = minus(anchorOf(view, stage, body), anchorOf(view, stage, stage.start));
                 return { ...found, target: plus(found.target, way) };
             }""",
@@ -173,7 +173,7 @@ def test_the_retina_has_the_colours_of_the_edges_in_the_scene(blank: Page) -> No
 # -- the picture itself
 
 AT = """() => {
-    const { camera, nodeRefFromName } = window.__viserMutable, { now, stage } = window.scene.told;
+    const { camera, nodeRefFromName } = window.__viserMutable, { now, stage } = window.scene.facts;
     const at = (place) => camera.position.clone().set(...place).applyMatrix4(nodeRefFromName[""].matrixWorld).project(camera).toArray();
     const middle = now.body.map((x, axis) => x + stage.middle[axis]);
     return { middle: at(middle), x: now.body[0], view: window.scene.camera.view, position: camera.position.toArray(),
@@ -207,9 +207,9 @@ def in_the_middle(page: Page, frame: Frame) -> dict[str, Any]:
 
 def steps(page: Page, frame: Frame, ticks: int) -> None:
     """Runs on for some ticks, and waits until the 3D view shows that."""
-    before = frame.evaluate("() => window.scene.told.now.body[0]")
+    before = frame.evaluate("() => window.scene.facts.now.body[0]")
     page.evaluate("async (ticks) => (await import('/static/server.js')).order({ type: 'step', ticks })", ticks)
-    until(page, lambda: frame.evaluate("() => window.scene.told.now.body[0]") > before)
+    until(page, lambda: frame.evaluate("() => window.scene.facts.now.body[0]") > before)
 
 
 def drag(page: Page, x: float, y: float, button: Any = "left") -> None:
@@ -252,7 +252,7 @@ def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Call
         in_the_middle(page, frame)
     page.click("#restart")
     shows(page, "#time", "t = 0.00 s")
-    until(page, lambda: abs(frame.evaluate("() => window.scene.told.now.body[0]")) < 0.01)
+    until(page, lambda: abs(frame.evaluate("() => window.scene.facts.now.body[0]")) < 0.01)
     in_the_middle(page, frame)
     page.reload()
     frame = frame_of(page)
@@ -262,7 +262,7 @@ def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Call
 
 
 WATCH = """() => {
-    const viewer = window.__viserMutable, { told } = window.scene;
+    const viewer = window.__viserMutable, { facts: told } = window.scene;
     const found = { off: Infinity };
     for (const [name, node] of Object.entries(viewer.nodeRefFromName)) if (name.startsWith("/bodies/")) node?.traverse((object) => {
         for (let n = 0; n < (object.getPositionAt ? object.instancesCount : 0); n++) {
@@ -305,7 +305,7 @@ WATCH_RESTART = """() => {
     window.watched = [];
     viewer.scene.onAfterRender = (renderer, scene, camera) => {
         if (camera !== viewer.camera) return;
-        const { body } = window.scene.shown, { middle } = window.scene.told.stage;
+        const { body } = window.scene.shown, { middle } = window.scene.facts.stage;
         let off = 100, shapes = 0;
         scene.traverse((object) => {
             for (let n = 0; n < (object.getPositionAt ? object.instancesCount : 0); n++) {
@@ -326,7 +326,7 @@ def test_no_picture_mixes_two_runs(pages: Callable[..., Page]) -> None:
     in_the_middle(page, frame)
     page.click("#run")
     shows(page, "#status", "ended")
-    until(page, lambda: frame.evaluate("() => window.scene.told.now.moment === window.scene.shown.moment"))
+    until(page, lambda: frame.evaluate("() => window.scene.facts.now.moment === window.scene.shown.moment"))
     frame.evaluate(WATCH_RESTART)
     page.click("#restart")
     shows(page, "#time", "t = 0.00 s")
@@ -350,7 +350,7 @@ def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages:
             said = {"type": how, "time": time}
             page.evaluate("async (said) => (await import('/static/server.js')).order(said)", said)
             shows(page, "#time", f"t = {time:.2f} s")
-            until(page, lambda: frame.evaluate("() => window.scene.told.now.moment === window.scene.shown.moment"))
+            until(page, lambda: frame.evaluate("() => window.scene.facts.now.moment === window.scene.shown.moment"))
             drawn(page)
 
         return act
@@ -433,14 +433,14 @@ def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_o
     until(page, lambda: frame.evaluate(seen, "/overlays/frustum/0"))
 
     labels = """(far) => {
-        const { told, camera } = window.scene, [x, y] = told.stage.start;
+        const { facts: told, camera } = window.scene, [x, y] = told.stage.start;
         const places = [[x, y, 1.7], [x, y, 1.6], [x + 0.2, y, 1.65], [x, y + 0.1, 1.9], [x + 7, y, 1.5]];
         const labels = places.map((place, n) => ({ text: `opening ${n} of ${far}`, place, chosen: n < 2 }));
-        window.scene.tell("now", { ...told.now, labels });
+        window.scene.receive("now", { ...told.now, labels });
         window.__viserMutable.cameraControl.dollyTo(far, false);
     }"""
     rectangles = """() => {
-        const { camera, told } = window.scene, [x, y, z, radius] = told.now.heads[0], at = camera.at([x, y, z]);
+        const { camera, facts: told } = window.scene, [x, y, z, radius] = told.now.heads[0], at = camera.at([x, y, z]);
         const half = radius * camera.scaleAt(at.depth) * innerHeight;
         const shown = [...document.querySelectorAll(".scene-labels p")].filter((one) => getComputedStyle(one).visibility === "visible");
         const boxes = shown.map((one) => one.getBoundingClientRect()).map(({ left, top, width, height }) => ({ left, top, width, height }));

@@ -15,7 +15,7 @@ from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall
 from actr3d.world.world import World
 from workbench.backdrop import Outlines, Shades
 from workbench.scene_framing import Stage
-from workbench.viser_server import start_viser, tell
+from workbench.viser_server import send_scene_data, start_viser
 
 
 def scene(*parts: Any) -> tuple[Any, MjData]:
@@ -83,8 +83,8 @@ def test_who_comes_later_is_told_the_newest_only() -> None:
     server = start_viser("secret")
     try:
         for number in range(5):
-            tell(server, "now", {"text": f"</script>{number}"})
-        tell(server, "stage", 1)
+            send_scene_data(server, "now", {"text": f"</script>{number}"})
+        send_scene_data(server, "stage", 1)
         buffer = server._websock_server._broadcast_buffer
         sources = [message.source for message in buffer.message_from_id.values() if hasattr(message, "source")]
         assert sources == ['scene.tell("now",{"text": "</script>4"})', 'scene.tell("stage",1)']

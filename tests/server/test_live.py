@@ -369,7 +369,7 @@ def test_viser_is_behind_the_login_and_nowhere_else(server: Served) -> None:
     name = scene_of(server)
     page = server.get(f"/viser/{name}/")
     assert "connect-src 'self' data: blob:" in page.headers["content-security-policy"]
-    assert 'src="/static/framed.js"' in page.text
+    assert 'src="/static/viser_shim.js"' in page.text
     protocol = [Subprotocol(f"viser-v{viser.__version__}")]
 
     async def talk() -> None:

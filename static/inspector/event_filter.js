@@ -4,7 +4,7 @@ import { useMemo } from "../vendor/preact.js";
 import { events } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
-export class Sifted {
+export class EventFilter {
   /** @param takes Returns whether an event is wanted. */
   constructor(takes) {
     this.takes = takes;
@@ -35,9 +35,9 @@ export class Sifted {
 }
 
 /** Returns the filtered events at this moment; `key` differs if the filter does. */
-export function useSifted(takes, key) {
-  const sifted = useMemo(() => new Sifted(takes), [key]);
-  return sifted.update(events.value);
+export function useEventFilter(takes, key) {
+  const filtered = useMemo(() => new EventFilter(takes), [key]);
+  return filtered.update(events.value);
 }
 
 /** Returns an event by its number. */

@@ -5,13 +5,13 @@ import { counted } from "../parts/count.js";
 import { systemsOf } from "./agents.js";
 import { at, production } from "./asked.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
-import { chosenText, isBare, isGone, nothing } from "../standing.js";
+import { chosenText, isBare, isGone, nothing } from "../run_status.js";
 import { state } from "../store.js";
 
 /** The status of a production: [class, sign, in words]. */
 export function howItStands(reason) {
   if (!reason) return ["", "", ""];
-  if (reason.matches === null) return ["unknown", "?", "cannot be told"];
+  if (reason.matches === null) return ["unknown", "?", "unknown here"];
   if (reason.selected) return ["selected", "▸", reason.matches ? `matches, and ${chosenText(at.value === null)}` : "was chosen, but matches no longer"];
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }

@@ -2,7 +2,7 @@
 
 import { contacts } from "../timeline/curves.js";
 import { firstWhere } from "../timeline/search.js";
-import { eventAt } from "./sifted.js";
+import { eventAt } from "./event_filter.js";
 
 /** Returns contacts as events, in order: the start of each, the body, the force and the duration. */
 export function touchEvents() {

@@ -17,15 +17,15 @@ export async function saveAndRun(document) {
 
 /** Returns a notice if the run that is shown is not one of the file's text: {text, failed, gone, path}; otherwise null. */
 export const former = computed(() => {
-  const told = session.value;
-  if (!told || told.recorded !== null) return null; // a recording is a run of the text of its time
-  if (told.gone) return { text: "The file of this run is gone from the folder: the run can go on, but not begin again.", gone: true, path: told.model };
-  if (told.loading) return null;
-  if (!told.stale) return null;
+  const facts = session.value;
+  if (!facts || facts.recorded !== null) return null; // a recording is a run of the text of its time
+  if (facts.gone) return { text: "The file of this run is gone from the folder: the run can go on, but not begin again.", gone: true, path: facts.model };
+  if (facts.loading) return null;
+  if (!facts.stale) return null;
   // The newest attempt failed if it reported an error and is not the run that is shown.
-  const failed = told.attempt !== told.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === told.attempt);
+  const failed = facts.attempt !== facts.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === facts.attempt);
   const text = `What is shown is the run of the former text${failed ? "; the new one does not load" : ""}.`;
-  return { text, failed, path: told.model };
+  return { text, failed, path: facts.model };
 });
 
 /** Runs the new text of the file of the run that is shown. */
@@ -36,11 +36,11 @@ export function runNew(path) {
 
 /** Shows in the status line that the run is one of an earlier text, with a button to run the new one. */
 export function Former() {
-  const told = former.value;
+  const facts = former.value;
   // The editor shows this itself, beside the text.
-  if (!told || (openTab.value === "editor" && shown.value.path === told.path)) return null;
+  if (!facts || (openTab.value === "editor" && shown.value.path === facts.path)) return null;
   return html`<span class="former" role="status">
-    ${told.text}
-    ${told.gone ? null : html`<button onClick=${() => runNew(told.path)}>Run the new one</button>`}
+    ${facts.text}
+    ${facts.gone ? null : html`<button onClick=${() => runNew(facts.path)}>Run the new one</button>`}
   </span>`;
 }

@@ -1,9 +1,9 @@
 // The explanation that the user requests: of which production, and at which moment.
 
 import { computed, effect, signal } from "../vendor/preact.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 import { events, session } from "../store.js";
-import { eventAt } from "./sifted.js";
+import { eventAt } from "./event_filter.js";
 
 /** The production to explain: {system, name}; null for the relevant one at that moment. */
 export const production = signal(null);

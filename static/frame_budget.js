@@ -4,7 +4,7 @@
 const SMOOTH = 40; // a picture that takes at most this long [ms] needs no pause
 const SHARE = 1 / 6; // the maximum share of time for slower pictures
 
-export class Rest {
+export class FrameBudget {
   /** Whether the run goes as fast as possible. */
   hurried = false;
   #begun = null; // the start of the current picture
@@ -42,4 +42,4 @@ export class Rest {
 }
 
 /** The instance shared by this page and its 3D view: simultaneous drawings count as one picture. */
-export const rest = new Rest();
+export const frameBudget = new FrameBudget();

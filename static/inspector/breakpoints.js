@@ -1,11 +1,11 @@
 // Breakpoints: productions after which the run pauses; shared by all viewers.
 
 import { computed, html } from "../vendor/preact.js";
-import { settable } from "../parts/settable.js";
+import { optimistic } from "../parts/optimistic_value.js";
 import { order } from "../server.js";
 import { session, state } from "../store.js";
 
-const list = settable(
+const list = optimistic(
   () => session.value?.breakpoints ?? [],
   (productions) => ({ type: "breakpoints", productions }),
 );

@@ -9,7 +9,7 @@ import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
-import { whenText } from "./words.js";
+import { whenText } from "./wording.js";
 
 /** The results of replays by id: {since, share} while one is running, then {agrees, text}. */
 export const replays = signal({});
@@ -41,8 +41,8 @@ async function leaveUnwatched() {
   }
 }
 
-function note(id, told) {
-  replays.value = { ...replays.value, [id]: told };
+function note(id, replay) {
+  replays.value = { ...replays.value, [id]: replay };
 }
 
 /** Runs a recording again in a separate process; the result is stored in `replays`. */
@@ -52,13 +52,13 @@ export async function replayRun(run) {
   const path = `/api/recordings/${run.id}/replay`;
   note(run.id, { since: Date.now(), share: 0 });
   const look = setInterval(async () => {
-    const told = await call("GET", path, undefined, cancel.signal).catch(() => null);
+    const progress = await call("GET", path, undefined, cancel.signal).catch(() => null);
     const { since } = replays.value[run.id];
-    if (since && told?.share) note(run.id, { since, share: told.share });
+    if (since && progress?.share) note(run.id, { since, share: progress.share });
   }, LOOK);
   try {
-    const told = await withTrust(run.id, "Replaying it", (trust) => call("POST", path, { trust }, cancel.signal));
-    note(run.id, told ?? { agrees: null, text: "cancelled" });
+    const verdict = await withTrust(run.id, "Replaying it", (trust) => call("POST", path, { trust }, cancel.signal));
+    note(run.id, verdict ?? { agrees: null, text: "cancelled" });
   } catch (error) {
     note(run.id, { agrees: null, text: cancel.signal.aborted ? "cancelled" : error.message });
   }

@@ -3,19 +3,19 @@
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
-import { chosenText } from "../standing.js";
+import { chosenText } from "../run_status.js";
 import { state } from "../store.js";
 import { pairs, timeText } from "./event_text.js";
 import { Flash } from "./flash.js";
-import { eventAt, useSifted } from "./sifted.js";
+import { eventAt, useEventFilter } from "./event_filter.js";
 
 /** Returns the newest request to each part up to the current moment, by path. */
 export function useRequests(paths) {
-  const sifted = useSifted((event) => event[2] === "request", "requests");
+  const filtered = useEventFilter((event) => event[2] === "request", "requests");
   const found = new Map();
   const wanted = new Set(paths);
-  for (let n = sifted.below(state.value?.events ?? 0) - 1; n >= 0 && wanted.size > 0; n -= 1) {
-    const event = eventAt(sifted.numbers[n]);
+  for (let n = filtered.below(state.value?.events ?? 0) - 1; n >= 0 && wanted.size > 0; n -= 1) {
+    const event = eventAt(filtered.numbers[n]);
     if (wanted.delete(event[1])) found.set(event[1], event);
   }
   return found;

@@ -8,11 +8,11 @@ import { session } from "../store.js";
  * Returns {value, set}: a signal with the value to show, and the function that sets it. One command at a time is sent; of the
  * values set meanwhile, the newest is sent next.
  *
- * @param told Returns the value last reported by the run.
+ * @param reported Returns the value last reported by the run.
  * @param command Returns the command that sets a value.
  * @param send Sends it, and shows errors.
  */
-export function settable(told, command, send = order) {
+export function optimistic(reported, command, send = order) {
   const wanted = signal(null); // {value}; null if the run has confirmed the value
   let saying = false;
 
@@ -32,5 +32,5 @@ export function settable(told, command, send = order) {
     if (!saying) say();
   }
 
-  return { value: computed(() => (wanted.value === null ? told() : wanted.value.value)), set };
+  return { value: computed(() => (wanted.value === null ? reported() : wanted.value.value)), set };
 }

@@ -6,13 +6,13 @@ import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventText, GROUPS, timeText } from "./event_text.js";
 import { goTo } from "./go.js";
 import { Rows } from "./rows.js";
-import { useSifted } from "./sifted.js";
+import { useEventFilter } from "./event_filter.js";
 import { askWhy } from "./asked.js";
 import { Mixed, touchEvents } from "./touches.js";
 import { seek } from "../timeline/seek.js";
-import { nothingYet } from "../standing.js";
+import { nothingYet } from "../run_status.js";
 import { events, session, state } from "../store.js";
-import { remembered } from "../remembered.js";
+import { remembered } from "../local_storage.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
 const TIME = "88px"; // wide enough for times of some hours
@@ -89,15 +89,15 @@ export function FiringTrace() {
   const key = `${groups.value} ${wantedWords.value} ${wanted}`;
   const kinds = useMemo(() => new Set(GROUPS.filter(({ id }) => groups.value.includes(id)).flatMap((group) => group.kinds)), [groups.value]);
   const test = testOf(kinds, wantedWords.value, wanted);
-  const sifted = useSifted(test, key);
-  const mixed = new Mixed(sifted.numbers, touchEvents().filter(test));
+  const filtered = useEventFilter(test, key);
+  const mixed = new Mixed(filtered.numbers, touchEvents().filter(test));
   const { first, list } = events.value;
   const now = state.value?.events ?? 0;
   const time = (state.value?.time ?? 0) * 1e6 + 1;
-  const present = sifted.below(now) + mixed.touches.filter(([begins]) => begins <= time).length;
+  const present = filtered.below(now) + mixed.touches.filter(([begins]) => begins <= time).length;
   const several = systems.length > 1;
-  const at = chosen === null ? -1 : sifted.below(chosen);
-  const chosenRow = chosen < 0 ? (mixed.rowOfTouch(chosen) ?? null) : sifted.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
+  const at = chosen === null ? -1 : filtered.below(chosen);
+  const chosenRow = chosen < 0 ? (mixed.rowOfTouch(chosen) ?? null) : filtered.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
 
   const row = (n) => {
     const number = mixed.numberAt(n);
@@ -105,7 +105,7 @@ export function FiringTrace() {
     return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
   const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goTo(mixed.numberAt(n)));
-  const nothing = list.length === 0 ? nothingYet() : "None of the events so far is one of those that are shown.";
+  const nothing = list.length === 0 ? nothingYet() : "All events so far are filtered out.";
   return html`<section class="trace">
     <div class="tools">
       <input type="search" aria-label="Filter the trace" placeholder="Filter" value=${wantedWords.value} onInput=${(event) => (wantedWords.value = event.currentTarget.value)} />

@@ -6,16 +6,16 @@
 {
   document.hasFocus = () => true;
 
-  // What the server sends of the scene besides its shapes, and the chosen view: `scene/view.js` shows both.
+  // What the server sends about the scene besides its shapes, and the chosen view; `scene/view.js` draws both.
   const MOST_HEARD = 64;
   window.scene = {
-    told: {},
+    facts: {},
     heard: [], // the data of the newest moments, with the stage of their scene; some of them are not drawn yet
     view: "follow",
     onview: null,
-    tell(name, value) {
-      this.told[name] = value;
-      if (name === "now") this.heard = [...this.heard, { ...value, stage: this.told.stage }].slice(-MOST_HEARD);
+    receive(name, value) {
+      this.facts[name] = value;
+      if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MOST_HEARD);
     },
     /** Moves the camera to the start of a view, also if it is that view already. */
     choose(view) {
@@ -33,11 +33,11 @@
     document.documentElement.append(style);
   }
 
-  /** Tells the surrounding page whether there is a picture, or, with false, that there will be none. */
-  const tellDrawn = (drawn) => parent.postMessage({ drawn }, location.origin);
+  /** Notifies the surrounding page whether there is a picture, or, with false, that there will be none. */
+  const notifyDrawn = (drawn) => parent.postMessage({ drawn }, location.origin);
 
   /** Detects the first drawing on the screen itself, not into an intermediate buffer. */
-  function tellFirst() {
+  function notifyFirst() {
     const kind = WebGL2RenderingContext.prototype;
     for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"]) {
       const draw = kind[name];
@@ -45,7 +45,7 @@
         draw.apply(this, all);
         if (this.getParameter(this.FRAMEBUFFER_BINDING) !== null) return;
         kind[name] = draw;
-        tellDrawn(true);
+        notifyDrawn(true);
       };
     }
   }
@@ -53,10 +53,10 @@
   /** Whether the processor draws, without a graphics card. */
   function drawnBySoftware() {
     const gl = document.createElement("canvas").getContext("webgl2");
-    if (gl) tellFirst();
-    else tellDrawn(false);
-    const told = gl?.getExtension("WEBGL_debug_renderer_info");
-    const name = gl ? String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
+    if (gl) notifyFirst();
+    else notifyDrawn(false);
+    const info = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = gl ? String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
     gl?.getExtension("WEBGL_lose_context")?.loseContext();
     return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
   }
@@ -76,21 +76,21 @@
   const ask = requestAnimationFrame.bind(window);
   const forget = cancelAnimationFrame.bind(window);
   const waiting = new Map();
-  let rest = null;
+  let frameBudget = null;
   let last = 0;
 
-  window.restWith = (given) => (rest = given);
+  window.useFrameBudget = (given) => (frameBudget = given);
 
   window.requestAnimationFrame = (draw) => {
     last += 1;
     const mine = last;
     function now(time) {
-      if (rest?.left > 0) {
+      if (frameBudget?.left > 0) {
         waiting.set(mine, ask(now));
         return;
       }
       waiting.delete(mine);
-      rest?.drawing();
+      frameBudget?.drawing();
       draw(time);
     }
     waiting.set(mine, ask(now));

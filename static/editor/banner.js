@@ -3,7 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { close } from "./documents.js";
 import { saveAgain } from "./files.js";
-import { former, runNew } from "./running.js";
+import { former, runNew } from "./stale_run.js";
 
 /** @param document The text that is shown. @param compare Shows both texts if the file has another one. */
 export function Strip({ document, compare }) {

@@ -2,11 +2,11 @@
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
-import { standing } from "../standing.js";
+import { runStatus } from "../run_status.js";
 import { howItStands } from "./list.js";
 import { Part } from "./part_names.js";
 
-const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "cannot be told"] };
+const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "unknown here"] };
 
 function ConditionRow({ one, first }) {
   const [sign, words] = SIGNS[one.holds];
@@ -49,7 +49,7 @@ function Utility({ reason }) {
 export function Why({ item }) {
   if (!item) return null;
   const { reason, name } = item;
-  if (!reason) return standing.value.is === "running" ? html`<h3 class="mono">${name}</h3><p class="quiet">${standing.value.text}</p>` : null;
+  if (!reason) return runStatus.value.is === "running" ? html`<h3 class="mono">${name}</h3><p class="quiet">${runStatus.value.text}</p>` : null;
   const [kind, , words] = howItStands(reason);
   const bound = Object.entries(reason.bindings);
   return html`<h3 class=${kind}><span class="mono">${name}</span>: ${words}</h3>

@@ -7,7 +7,7 @@ import { events, running, state } from "../store.js";
 import { dark } from "../theme.js";
 import { curvesVersion, names, plots } from "./curves.js";
 import { drawAxis, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
-import { begin, partAt, press, turn } from "./hand.js";
+import { begin, partAt, press, turn } from "./pointer.js";
 import { Painter } from "./painter.js";
 import { lanes, lanesVersion } from "./record.js";
 import { AXIS, column, hidden, layout } from "./rows.js";

@@ -2,22 +2,22 @@
 
 import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
-import { chosenText, isGone, nothingYet } from "../standing.js";
+import { chosenText, isGone, nothingYet } from "../run_status.js";
 import { running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, production, shownReasons } from "./asked.js";
 import { pairs, timeText } from "./event_text.js";
 import { fixed } from "./part_names.js";
-import { eventAt, useSifted } from "./sifted.js";
+import { eventAt, useEventFilter } from "./event_filter.js";
 
 const isChoice = ([, , kind, data]) => kind === "select" || kind === "fire" || kind === "changed" || (kind === "conflict" && Object.keys(data.utilities).length > 0);
 
 /** Returns the last cycle of each system before an event: {time, conflict, select, fire, over}, as far as it got. */
-function lastCycles(sifted, end, time) {
+function lastCycles(filtered, end, time) {
   const cycles = new Map();
   const after = new Map(); // the events after the conflict, by system
-  for (let n = sifted.below(end) - 1; n >= 0 && n > sifted.below(end) - 2000; n -= 1) {
-    const [when, source, kind, data] = eventAt(sifted.numbers[n]);
+  for (let n = filtered.below(end) - 1; n >= 0 && n > filtered.below(end) - 2000; n -= 1) {
+    const [when, source, kind, data] = eventAt(filtered.numbers[n]);
     if (cycles.has(source) || (time !== null && when > time)) continue;
     if (kind === "conflict") cycles.set(source, { source, time: when, conflict: data, ...after.get(source) });
     else after.set(source, { ...after.get(source), [kind]: { time: when, ...data } });
@@ -83,9 +83,9 @@ function Cycle({ cycle, agents }) {
 }
 
 export function ConflictSets() {
-  const sifted = useSifted(isChoice, "choices");
+  const filtered = useEventFilter(isChoice, "choices");
   const agents = agentsOf(state.value?.parts);
-  const cycles = lastCycles(sifted, at.value === null ? (state.value?.events ?? 0) : Infinity, at.value === null ? null : at.value * 1e6);
+  const cycles = lastCycles(filtered, at.value === null ? (state.value?.events ?? 0) : Infinity, at.value === null ? null : at.value * 1e6);
   if (cycles.length === 0) return isGone.value ? null : html`<p class="empty">${nothingYet("No production has matched in this run.")}</p>`;
   return html`${cycles.map((cycle) => html`<${Cycle} key=${cycle.source} cycle=${cycle} agents=${agents} />`)}`;
 }

@@ -4,36 +4,36 @@
 import { computed } from "./vendor/preact.js";
 import { opening, session, state } from "./store.js";
 
-const AGAIN = "«Run again» begins it anew.";
-const MEND = "Messages says why, with the line. Mend it in the Editor, and run it again.";
+const AGAIN = "«Run again» starts it from the beginning.";
+const FIX = "see Messages for the reason and the line. Fix it in the editor, then run it again.";
 
 /** The states: `line` is a word or two, `text` describes the status and what to do. Both receive the result of `known`. */
-const STANDINGS = {
+const STATUSES = {
   none: { line: () => "no run", text: () => "No model is shown: choose one above." },
   loading: { line: loadingLine, text: () => opening.value?.text ?? "The model is being loaded …" },
-  unloadable: { line: () => "the model cannot be loaded", text: () => `This model cannot be loaded: ${MEND}` },
-  ready: { line: asTold, text: ({ kind }) => (kind === "program" ? "Press Run: the program makes its model as it goes." : "Press Run, or step.") },
-  running: { line: asTold, text: () => "It is told as soon as the run pauses." },
+  unloadable: { line: () => "the model cannot be loaded", text: () => `This model cannot be loaded: ${FIX}` },
+  ready: { line: withReason, text: ({ kind }) => (kind === "program" ? "Press Run: the program makes its model as it goes." : "Press Run, or step.") },
+  running: { line: withReason, text: () => "It is shown as soon as the run pauses." },
   busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; it answers after this step. Stop ends it.` },
-  halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and stands still. Stop ends it.` },
-  paused: { line: asTold, text: () => "The run is paused." },
-  ended: { line: asTold, text: () => `The run is over. Go back on the timeline; ${AGAIN}` },
-  failed: { line: asTold, text: () => `The run has failed: ${MEND}` },
+  halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and does not continue. Stop ends it.` },
+  paused: { line: withReason, text: () => "The run is paused." },
+  ended: { line: withReason, text: () => `The run is over. Go back on the timeline; ${AGAIN}` },
+  failed: { line: withReason, text: () => `The run has failed: ${FIX}` },
   stopped: { line: stoppedLine, text: () => `The run was stopped: nothing more can be asked of it. ${AGAIN}` },
-  lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. What happened just before that may not be told. ${AGAIN}` },
+  lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. What happened just before that may be missing. ${AGAIN}` },
 };
 
 function loadingLine() {
   return opening.value?.slow ? "the workbench is starting …" : "loading …";
 }
 
-function asTold({ status, reason }) {
+function withReason({ status, reason }) {
   return reason ? `${status}: ${reason}` : status;
 }
 
 /** A run that has ended by itself may be stopped too: then it can no longer answer questions. */
 function stoppedLine({ status, reason }) {
-  return reason === "stopped" || !reason ? "stopped" : `${asTold({ status, reason })}; stopped`;
+  return reason === "stopped" || !reason ? "stopped" : `${withReason({ status, reason })}; stopped`;
 }
 
 /** Returns a summary of the session and the newest state. */
@@ -58,13 +58,13 @@ function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending 
  * running, busy with something that does not end, halted by a signal, or paused; it has ended by itself; the model has failed; a user
  * has stopped it with its process; its process is lost.
  */
-export const standing = computed(() => {
-  const told = known();
-  const is = nameOf(told);
-  return { is, line: told.loading && is !== "busy" && is !== "halted" ? loadingLine() : STANDINGS[is].line(told), text: STANDINGS[is].text(told) };
+export const runStatus = computed(() => {
+  const facts = known();
+  const is = nameOf(facts);
+  return { is, line: facts.loading && is !== "busy" && is !== "halted" ? loadingLine() : STATUSES[is].line(facts), text: STATUSES[is].text(facts) };
 });
 
-const isOne = (names) => computed(() => names.includes(standing.value.is));
+const isOne = (names) => computed(() => names.includes(runStatus.value.is));
 /** Whether the run is over at the current moment. */
 export const isOver = isOne(["ended", "failed", "stopped", "lost"]);
 /** Whether the run can answer no questions, because it does not exist yet or any more. */
@@ -75,14 +75,14 @@ export const isBare = computed(() => state.value === null || (session.value?.kin
 /** Returns why a panel is empty; `none` is its text for a model without such contents. */
 export function nothing(none) {
   if (!isBare.value) return none;
-  const { is, text } = standing.value;
+  const { is, text } = runStatus.value;
   if (is === "ended") return `The program is over, and has made no model. ${AGAIN}`;
   return is === "ready" ? `There is no model yet. ${text}` : is === "running" ? "There is no model yet." : text;
 }
 
 /** Returns why there are no events: not yet, or, in a run that is over, `never`. */
 export function nothingYet(never = "Nothing has happened in this run.") {
-  const { is, text } = standing.value;
+  const { is, text } = runStatus.value;
   if (isBare.value && is !== "ready") return nothing("");
   return isOver.value ? never : `Nothing has happened yet.${is === "ready" ? ` ${text}` : ""}`;
 }
