@@ -50,7 +50,7 @@ class ModelOutput(io.TextIOWrapper):
 
     Args:
         take: Called with each line.
-        number: The file descriptor that it stands for.
+        number: The file descriptor that it replaces.
     """
 
     def __init__(self, take: Callable[[str], None], number: int = 1) -> None:

@@ -64,7 +64,7 @@ class Token:
 
 @dataclass(frozen=True, kw_only=True)
 class Gate:
-    """Describes where the server listens and who has access."""
+    """The addresses at which the server listens, and the access rules."""
 
     token: Token
     port: int
@@ -93,7 +93,7 @@ class Guard:
 
     Args:
         app: The application to protect.
-        gate: Decides who has access.
+        gate: Grants or refuses access.
     """
 
     def __init__(self, app: App, gate: Gate) -> None:
@@ -146,7 +146,7 @@ class Guard:
         if origin is not None and not gate.is_own_origin(origin, host):
             return 403, "another page asks"
         if origin is None and not by_header and (socket or method not in SAFE):
-            return 403, "it is not told which page asks"
+            return 403, "the request has no Origin header, so it is not known which page sent it"
         if headers.one("sec-fetch-site") in ("cross-site", "same-site") and headers.one("sec-fetch-mode") != "navigate":
             return 403, "another page asks"
         if not socket and method not in SAFE:

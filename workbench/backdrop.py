@@ -112,7 +112,7 @@ class Shades:
         self._geoms = np.flatnonzero(shown)
         self._boxes = model.geom_aabb[self._geoms]
 
-    def told(self, data: MjData) -> list[list[float]]:
+    def quads(self, data: MjData) -> list[list[float]]:
         """Returns the darkest shadows: x, y, direction of the first side (cosine, sine), two half sides, softness [m], darkness."""
         turned = data.geom_xmat[self._geoms].reshape(-1, 3, 3)
         middle = data.geom_xpos[self._geoms] + np.einsum("nij,nj->ni", turned, self._boxes[:, :3])

@@ -40,7 +40,7 @@ def beginning_of(path: Path) -> Beginning:
         file = facts.get("file")
         if not isinstance(file, str) or file not in facts.get("sources", {}):
             raise RecordingError("the recording does not say which model file made it")
-        told = {
+        facts = {
             "made_here": recorded.made_here,
             "file": file,
             "source": facts["sources"][file],
@@ -49,7 +49,7 @@ def beginning_of(path: Path) -> Beginning:
             "helpers": facts.get("helpers", {}),
             "commands": [(command.tick, command.data) for command in recorded.commands()],
         }
-    return msgspec.convert(told, Beginning)
+    return msgspec.convert(facts, Beginning)
 
 
 def written(began: Beginning) -> str:

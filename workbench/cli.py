@@ -76,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     host, port = options.host if ":" not in options.host else f"[{options.host.strip('[]')}]", listening.getsockname()[1]
     local = host in LOOPBACK
     if not local:
-        print(f"warning: others can reach {host}; whoever has the address below can run programs as you", file=sys.stderr)
+        print(f"warning: others can reach {host}; anyone with the address below can run programs as you", file=sys.stderr)
     names: list[str] = [*options.name, host]
     gate = Gate(token=Token(), port=port, hosts=LOOPBACK | {name.lower() for name in names})
     zygote = spawn()  # it loads at the same time as the server
@@ -94,11 +94,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _reason(error: OSError, options: argparse.Namespace) -> str:
     """Returns why the server cannot start: which folder or address is not available."""
-    told = error.strerror or str(error)
+    reason = error.strerror or str(error)
     if error.filename is None:
-        return f"cannot listen at {options.host}, port {options.port}: {told}"
+        return f"cannot listen at {options.host}, port {options.port}: {reason}"
     where = Path(error.filename)
-    return f"the models folder '{where}' cannot be had: {'it is a file' if where.is_file() else told}"
+    return f"the models folder '{where}' cannot be used: {'it is a file' if where.is_file() else reason}"
 
 
 def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:

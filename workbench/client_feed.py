@@ -189,12 +189,12 @@ class Feed:
             message["state"] = Raw(shown.state_json())
         first, events = shown.log.since(self._next)
         if events or self._cut is not None:
-            told: dict[str, Any] = {"first": first, "list": [Raw(event) for event in events]}
+            update: dict[str, Any] = {"first": first, "list": [Raw(event) for event in events]}
             if self._cut is not None:
-                told["cut"], self._cut = self._cut, None
+                update["cut"], self._cut = self._cut, None
             if events and first > self._next:
-                told["missing"] = first - self._next
-            message["events"] = told
+                update["missing"] = first - self._next
+            message["events"] = update
             self._next = first + len(events) if events else self._next
         notices = [(number, notice) for number, notice in shown.notices if number >= self._notice]
         if notices:

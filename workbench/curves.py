@@ -159,10 +159,10 @@ class Force(Source):
         if self._data.ncon == 0:
             return (0.0,)
         pairs = self._data.contact.geom
-        ours = self._own[pairs]
+        is_body = self._own[pairs]
         forces: defaultdict[tuple[int, int], float] = defaultdict(float)
-        for number in np.flatnonzero(ours[:, 0] != ours[:, 1]).tolist():
-            mine, other = pairs[number].tolist() if ours[number, 0] else pairs[number, ::-1].tolist()
+        for number in np.flatnonzero(is_body[:, 0] != is_body[:, 1]).tolist():
+            mine, other = pairs[number].tolist() if is_body[number, 0] else pairs[number, ::-1].tolist()
             if mine in self._parts and other not in self._ground and self._data.contact.dist[number] <= 0:
                 mujoco.mj_contactForce(self._model, self._data, number, self._wrench)
                 forces[self._parts[mine], int(self._owners[other])] += float(self._wrench[0])
@@ -186,7 +186,7 @@ class Curves:
         """All curves with name, unit and group."""
         return [curve._asdict() for source in self._sources for curve in source.curves]
 
-    def told(self, moments: Iterable[tuple[float, bytes]], names: Sequence[str] | None) -> dict[str, Any]:
+    def sampled(self, moments: Iterable[tuple[float, bytes]], names: Sequence[str] | None) -> dict[str, Any]:
         """Returns `names` (all curves with unit and group), `times` [s], and `curves` (values by name).
 
         Args:

@@ -145,10 +145,10 @@ class ModelFolder:
             raise FileError(f"a model file has no more than {LARGEST:,} bytes")
         now = self.version(where) if where.is_file() else None
         if now != version:
-            told = (
+            reason = (
                 "there is no such file any more" if now is None else "there is such a file already" if version is None else "it has changed"
             )
-            raise ConflictError(f"'{path}' was not saved: {told}")
+            raise ConflictError(f"'{path}' was not saved: {reason}")
         try:
             if where.exists() and not _writable(where):
                 raise FileError(f"cannot write '{path}': it is read-only")

@@ -109,7 +109,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
         every = stride(end + 1 - begin, most - 1)
         states = ((tick, state) for _, tick, state, _ in recorded.states() if begin <= tick <= end)
         moments = ((seconds(tick * period), state) for tick, state in states if tick % every == 0 or tick == end)
-        return Curves(loaded(from_text(facts["compiled"])), facts["world"]).told(moments, names)
+        return Curves(loaded(from_text(facts["compiled"])), facts["world"]).sampled(moments, names)
 
 
 @form("comparison")

@@ -14,7 +14,7 @@ from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import WorkerMonitor, subject_of
 
 PATIENCE = 120.0
-"""A worker that comes no further for so long is given up [s]."""
+"""Maximum time without progress before a worker is ended [s]."""
 LOOK = 0.25
 """How often it is looked how far it has come [s]."""
 
@@ -45,7 +45,7 @@ class Job:
         """Yields again and again how far the worker has come, until it is over.
 
         Args:
-            stage: Tells how far it has come.
+            stage: Returns how far the worker is.
 
         Raises:
             StuckError: If it comes no further.
@@ -75,7 +75,7 @@ class Job:
         elif isinstance(message, Reply):
             self.reply(message)
         elif isinstance(message, Notice):
-            self.tell(message)
+            self.add_notice(message)
 
     def reply(self, message: Reply) -> None:
         """Takes what came of it, or why nothing did."""
@@ -89,19 +89,19 @@ class Job:
         self.ending = ending
         self.over.set()
 
-    def tell(self, notice: Notice) -> None:
+    def add_notice(self, notice: Notice) -> None:
         """Takes what the worker complains of."""
         if notice.level != "info":  # what is printed is of no interest
             self.notices.append(notice)
 
     def halt(self, worker: Worker, name: str) -> None:
-        """Ends a worker that a signal has stopped: nobody is there who could let it go on."""
+        """Ends a worker that was stopped by a signal: nothing would continue it."""
         if name:
-            self.tell(Notice(level="error", text=f"{self.subject} was stopped by {name}, and ended"))
+            self.add_notice(Notice(level="error", text=f"{self.subject} was stopped by {name}, and ended"))
             worker.kill()
 
     def busy(self, worker: Worker) -> bool:
-        """Tells that nobody wants to know where the worker is."""
+        """Ignores where the worker is: no user watches a job."""
         return False
 
 
@@ -111,7 +111,7 @@ async def doing(workers: Workers, start: Start, job: Job | None = None, memory: 
 
     Args:
         workers: Who gives workers.
-        start: What the worker is told.
+        start: The first message to the worker.
         job: Where it is noted how far it has come; None for a new one.
         memory: How much memory it may take [MB]; None for as much as a model may.
 

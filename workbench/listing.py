@@ -165,8 +165,8 @@ def _stamp(path: Path) -> _Stamp:
     numbers: list[int] = []
     for each in (path, path.with_name(f"{path.name}-wal")):
         try:
-            told = each.lstat()
+            status = each.lstat()
         except OSError:
             continue
-        numbers += told.st_ino, told.st_mtime_ns, told.st_size
+        numbers += status.st_ino, status.st_mtime_ns, status.st_size
     return tuple(numbers)

@@ -133,7 +133,7 @@ def listing_of(source: str, filename: str = "model.py") -> Listing:
 
 def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
     """Yields the errors and warnings of compiling a text; it is not executed."""
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             compile_source(source, filename)
@@ -143,7 +143,7 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
     found = problem_of_build(source)
     if found is not None:
         yield Problem(level="error", message=sendable(found[1]), line=found[0])
-    for warning in told:
+    for warning in caught:
         yield Problem(level="warning", message=sendable(str(warning.message)), line=warning.lineno)
 
 

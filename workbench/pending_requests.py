@@ -33,10 +33,10 @@ class Waiting:
         self._number += 1  # starts at 1: number 0 means that nobody waits for the reply
         reply: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
         self._waiting[self._number] = worker, reply
-        self.tell(worker, said, self._number)
+        self.send(worker, said, self._number)
         return await reply
 
-    def tell(self, worker: Worker, said: Any, number: int = 0) -> None:
+    def send(self, worker: Worker, said: Any, number: int = 0) -> None:
         """Sends a worker a command; without a number, nobody waits for the reply."""
         worker.send(Do(id=number, say=said.model_dump_json().encode()))
 

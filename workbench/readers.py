@@ -21,9 +21,9 @@ T = TypeVar("T")
 MEMORY = 2_000
 """How much memory reading a recording may take [MB]."""
 MOST = 8
-"""So many files are made at once; others wait for their turn."""
+"""Maximum number of files made at once; others wait."""
 MOST_OF_ONE = 2
-"""So many of them of one recording: one that takes long does not hold up others."""
+"""Maximum number of those for one recording, so that a slow one does not delay others."""
 
 
 class ReadingError(Actr3dError):
@@ -91,7 +91,7 @@ def _size(path: str) -> int:
 
 
 async def while_wanted(work: Awaitable[T], gone: Callable[[], Awaitable[Any]]) -> T:
-    """Returns what comes of some work, which is cancelled as soon as who asked for it has gone.
+    """Returns the result of some work, which is cancelled when the client disconnects.
 
     Args:
         work: The work.

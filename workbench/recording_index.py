@@ -75,7 +75,7 @@ def summary_json(path: Path) -> bytes:
         found = unreadable(path, reason.replace(f"'{path}'", "it"))
     summary = to_json(vars(found)).encode()
     if len(summary) > MOST_TEXT:
-        return to_json(vars(unreadable(path, "what it tells of its run is too long to be listed"))).encode()
+        return to_json(vars(unreadable(path, "the description of its run is too long to be listed"))).encode()
     return msgspec.json.encode(msgspec.json.decode(summary, type=Summary))
 
 

@@ -75,8 +75,8 @@ async def recordings(
     sessions = sessions_of(request)
     total, found = await sessions.listing.some(first, most)
     writing = sessions.writing()
-    told = {"total": total, "recordings": [{**vars(summary), "session": writing.get(summary.id)} for summary in found]}
-    return Response(await asyncio.to_thread(to_json, told), media_type="application/json")
+    page = {"total": total, "recordings": [{**vars(summary), "session": writing.get(summary.id)} for summary in found]}
+    return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
 
 
 @router.get("/recordings/{recording}")
@@ -174,7 +174,7 @@ def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     """Deletes a recording; 409 while a run is still writing it."""
     sessions = sessions_of(request)
     if recording in sessions.writing():
-        raise SessionError("a run that is open still writes this recording; begin its model anew, or close its session, and then delete it")
+        raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
     sessions.recordings.delete(recording)
     return {"deleted": recording}
 

@@ -15,7 +15,7 @@ from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
 MOST = 2
-"""So many are run again at once; each takes a processor."""
+"""Maximum number of recordings run again at once; each takes a processor."""
 
 
 class BusyError(Actr3dError):
@@ -40,11 +40,11 @@ class Reruns:
         return max((job.share for other, job in self._going_on if other == path), default=None)
 
     async def run(self, path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
-        """Returns whether every byte agrees (None where that cannot be told), and what the comparison says.
+        """Returns whether every byte agrees (None if that is unknown), and the text of the comparison.
 
         Args:
             path: The recording.
-            left: Tells whether nobody waits for it any more; then it is ended.
+            left: Returns whether the client has disconnected; then the replay is ended.
 
         Raises:
             BusyError: If enough are run again already.

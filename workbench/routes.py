@@ -183,8 +183,8 @@ async def open_session(request: Request, body: Open) -> dict[str, Any]:
 def session(request: Request, session: Id) -> Response:
     """Returns the facts of a session and the newest state of its run."""
     found = sessions_of(request).get(session)
-    told = {"session": msgspec.Raw(found.facts_json()), "state": msgspec.Raw(found.state_json())}
-    return Response(msgspec.json.encode(told), media_type="application/json")
+    found_json = {"session": msgspec.Raw(found.facts_json()), "state": msgspec.Raw(found.state_json())}
+    return Response(msgspec.json.encode(found_json), media_type="application/json")
 
 
 @router.get("/sessions/{session}/about")
@@ -210,8 +210,8 @@ async def say_to(request: Request, session: Id, body: Saying) -> Response:
             msgspec.json.encode({"result": None, "error": "not done yet: the model is busy"}), 202, media_type="application/json"
         )
     reply = work.result()
-    told = msgspec.json.encode({"result": msgspec.Raw(reply.result), "error": reply.error})
-    return Response(told, 200 if reply.error is None else 409, media_type="application/json")
+    found_json = msgspec.json.encode({"result": msgspec.Raw(reply.result), "error": reply.error})
+    return Response(found_json, 200 if reply.error is None else 409, media_type="application/json")
 
 
 @router.post("/sessions/{session}/close")

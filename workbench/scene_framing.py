@@ -67,7 +67,7 @@ class Stage:
         """Returns the position of the body."""
         return np.array(data.xpos[self.body])
 
-    def told(self, grounds: list[str]) -> dict[str, Any]:
+    def data(self, grounds: list[str]) -> dict[str, Any]:
         """Returns the data with which browsers place their cameras.
 
         Args:
@@ -83,8 +83,8 @@ class Stage:
             "start": self.start,
             "middle": self.middle,
         }
-        told: dict[str, Any] = {name: value.round(4).tolist() for name, value in numbers.items()}
-        return {**told, "height": self.height, "ground": self.ground, "grounds": grounds, "own": self.own}
+        rounded: dict[str, Any] = {name: value.round(4).tolist() for name, value in numbers.items()}
+        return {**rounded, "height": self.height, "ground": self.ground, "grounds": grounds, "own": self.own}
 
     def _of_body(self, model: MjModel, body: int) -> bool:
         """Returns whether a MuJoCo body belongs to the body of the stage; if no body moves, all do."""

@@ -191,7 +191,7 @@ class _Drawn:
         self._stage = Stage(self._model)
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
-        send_scene_data(server, "stage", self._stage.told(lay_grounds(server, self._model)))
+        send_scene_data(server, "stage", self._stage.data(lay_grounds(server, self._model)))
         self._tell_now()
         self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
         self._look: Look | None = None
@@ -239,7 +239,7 @@ class _Drawn:
             "body": self._stage.base(self.data).round(5).tolist(),
             "eye": eyes.eye(self.data),
             "heads": eyes.heads(self.data),
-            "shade": self._shades.told(self.data),
+            "shade": self._shades.quads(self.data),
             "labels": features.labels if features.visible else [],
         }
         send_scene_data(self._server, "now", now)

@@ -163,7 +163,7 @@ class Session:
                 attempt.texts.take(message)
                 self._changed(facts=shown)
             case Notice():
-                self.tell(message, start)
+                self.add_notice(message, start)
             case At():
                 self._stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
                 self._changed(facts=True)
@@ -211,9 +211,9 @@ class Session:
         self._ending = "stopped" if asked else ending
         where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
         if ending and not asked:
-            self.tell(Notice(level="error", text=f"{self._ending}{where}"))
+            self.add_notice(Notice(level="error", text=f"{self._ending}{where}"))
         elif asked and where:
-            self.tell(Notice(level="warning", text=f"stopped while it was busy{where}"))
+            self.add_notice(Notice(level="warning", text=f"stopped while it was busy{where}"))
         attempt.over = True
         if attempt is self._loading:
             self._loading = None
@@ -237,10 +237,8 @@ class Session:
             return
         self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
         if name:
-            text = (
-                f"the model's process was stopped by {name}, and stands still: SIGCONT to process {worker.pid} lets it go on, Stop ends it"
-            )
-            self.tell(Notice(level="warning", text=text))
+            text = f"the model's process was stopped by {name}, and does not continue: SIGCONT to process {worker.pid} continues it, Stop ends it"
+            self.add_notice(Notice(level="warning", text=text))
         self._changed(facts=True)
 
     def busy(self, worker: Worker) -> bool:
@@ -342,7 +340,7 @@ class Session:
         if loading is None:
             return await self._waiting.ask(self._worker, said)
         if isinstance(said, say.Pause) and self._worker is not None:  # both runs must pause
-            self._waiting.tell(loading.worker, said)
+            self._waiting.send(loading.worker, said)
             return await self._waiting.ask(self._worker, said)
         return await self._waiting.ask(loading.worker, said)
 
@@ -394,7 +392,7 @@ class Session:
             if self.branched is None
             else {"recording": self.branched.recording, "at": self.branched.at, "until": self.branched.until},
             "scene": self.has_scene,
-            **self.look.told(),
+            **self.look.as_dict(),
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
@@ -457,7 +455,7 @@ class Session:
             self._controlled_by = ""
         self._changed(facts=True)
 
-    def tell(self, notice: Notice, start: Start | None = None) -> None:
+    def add_notice(self, notice: Notice, start: Start | None = None) -> None:
         """Sends a notice to all who watch, with the attempt it is about and the version of the model's text at that time."""
         shown: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         shown |= {"file": self._shown_file(notice.file, start), "line": notice.line}

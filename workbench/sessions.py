@@ -228,16 +228,16 @@ class Sessions:
         Raises:
             OSError: If no worker can be started.
         """
-        told: list[dict[str, Any]] = []
+        problems: list[dict[str, Any]] = []
         async with doing(self.workers, Start(job="check", path=str(path), source=text, folder=str(path.parent))) as checking:
             try:
                 async with asyncio.timeout(CHECK_TIME):
                     await checking.over.wait()
             except TimeoutError:
-                told.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
+                problems.append({"level": "error", "message": f"loading takes longer than {CHECK_TIME:g} s", "line": None})
             for notice in checking.notices:
                 own = notice.file in (None, str(path))
-                told.append({"level": notice.level, "message": notice.text, "line": notice.line if own else None})
+                problems.append({"level": notice.level, "message": notice.text, "line": notice.line if own else None})
             if checking.ending:
-                told.append({"level": "error", "message": checking.ending, "line": None})
-        return told
+                problems.append({"level": "error", "message": checking.ending, "line": None})
+        return problems

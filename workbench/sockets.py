@@ -149,7 +149,7 @@ class _Page:
                     self._tasks.add(task)
                     task.add_done_callback(self._tasks.discard)
                 else:
-                    feed.reply(_reply(_number_of(text), error=problem or "too much waits already for what comes of it"))
+                    feed.reply(_reply(_number_of(text), error=problem or "too many requests are waiting for their results"))
         finally:
             if feed is not None:
                 session.part(feed)

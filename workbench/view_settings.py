@@ -19,6 +19,6 @@ class Look:
         """Returns the overlays that are shown after a command."""
         return replace(self, shown=self.shown | {said.name} if said.shown else self.shown - {said.name})
 
-    def told(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Returns the entry for pages: `overlays`, each with `name`, `title` and whether it is `shown`."""
         return {"overlays": [{"name": name, "title": overlay.title, "shown": name in self.shown} for name, overlay in OVERLAYS.items()]}

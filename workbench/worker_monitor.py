@@ -28,7 +28,7 @@ _MEANINGS = {
 """Explanations of signals, added to their names."""
 
 
-class Told(Protocol):
+class Receiver(Protocol):
     """Receives what an attendant reports; a session does."""
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
@@ -39,7 +39,7 @@ class Told(Protocol):
         """Handles the end of a worker; `ending` is empty if it ended normally."""
         ...
 
-    def tell(self, notice: Notice) -> None:
+    def add_notice(self, notice: Notice) -> None:
         """Sends a notice to the user."""
         ...
 
@@ -58,13 +58,13 @@ class WorkerMonitor:
     Args:
         worker: The worker.
         start: What the worker must do.
-        told: Receives the worker's messages and its end.
+        receiver: Receives the worker's messages and its end.
     """
 
-    def __init__(self, worker: Worker, start: Start, told: Told) -> None:
+    def __init__(self, worker: Worker, start: Start, receiver: Receiver) -> None:
         self._worker = worker
         self._start = start
-        self._told = told
+        self._receiver = receiver
         self._heard = time.monotonic()
         self._given_up = 0.0
         """When the last message had arrived before the worker did not even answer where it is."""
@@ -82,7 +82,7 @@ class WorkerMonitor:
             status = await asyncio.shield(worker.exit)  # the awaiting task may be cancelled, the worker must not be
             worker.kill()  # and the processes that it has started
             await asyncio.wait([printing], timeout=1)
-            self._told.take_end(worker, "" if over else _why(status, subject_of(self._start)))
+            self._receiver.take_end(worker, "" if over else _why(status, subject_of(self._start)))
         finally:
             printing.cancel()
             watching.cancel()
@@ -110,9 +110,9 @@ class WorkerMonitor:
             while (message := await self._worker.receive()) is not None:
                 self._heard = time.monotonic()
                 over |= isinstance(message, Over)
-                self._told.take(self._worker, self._start, message)
+                self._receiver.take(self._worker, self._start, message)
         except (ValueError, msgspec.MsgspecError) as error:
-            self._told.tell(notice("error", f"the worker said what nobody understands, and was ended ({error})"))
+            self._receiver.add_notice(notice("error", f"the worker sent a malformed message and was ended ({error})"))
         return over
 
     async def _print(self) -> None:
@@ -128,9 +128,9 @@ class WorkerMonitor:
             count += 1
             text = line.decode(errors="replace").rstrip()
             if text:
-                self._told.tell(notice("info", text))
+                self._receiver.add_notice(notice("info", text))
         if await output.read(PRINTED):
-            self._told.tell(notice("warning", "the model's process prints much more; that is left out"))
+            self._receiver.add_notice(notice("warning", "the model's process prints much more, which is omitted"))
             while await output.read(PRINTED):
                 pass
 
@@ -142,12 +142,12 @@ class WorkerMonitor:
             await asyncio.sleep(SILENT / 4)
             if self._worker.halted != halted:
                 halted, since = self._worker.halted, None
-                self._told.halt(self._worker, _name_of(halted) if halted else "")
+                self._receiver.halt(self._worker, _name_of(halted) if halted else "")
             if halted:
                 self._heard = time.monotonic()
                 continue
             now = time.monotonic()
-            since = (since or now) if self._told.busy(self._worker) else None
+            since = (since or now) if self._receiver.busy(self._worker) else None
             if since is None:
                 continue
             silent = now - max(since, self._heard)
@@ -155,7 +155,7 @@ class WorkerMonitor:
                 self._worker.send(Where())
             if silent > SPEECHLESS and self._given_up != self._heard:
                 self._given_up = self._heard
-                self._told.take(self._worker, self._start, At(file=None, line=None))
+                self._receiver.take(self._worker, self._start, At(file=None, line=None))
 
 
 def subject_of(start: Start) -> str:

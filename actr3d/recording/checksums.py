@@ -9,7 +9,7 @@ from actr3d.recording.form import COLUMNS, FORM
 
 
 class Checksums:
-    """Computes the checksums of a recording, row by row as it is written or read; SHA-256.
+    """Computes the checksums of a recording, row by row, while it is written or read; SHA-256.
 
     The checksum of a row covers the row before it in its table, so a row cannot be changed, removed or moved without
     changing all that follow. The checksum of the whole recording covers the last checksum of each table, and all facts.

@@ -129,7 +129,7 @@ def check_fact(name: str, value: Any) -> None:
 
 
 def check_facts(facts: Mapping[str, Any]) -> None:
-    """Does so with all of them, and raises an error where those are missing that every recording has.
+    """Checks all facts, and raises an error if one that every recording has is missing.
 
     Raises:
         RecordingError: If one is missing or has a wrong value.

@@ -37,12 +37,12 @@ class Recording:
     """
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
-        told: dict[str, Any] = {"form": FORM, "versions": versions(), **facts}
-        self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in told.items()])
+        all_facts: dict[str, Any] = {"form": FORM, "versions": versions(), **facts}
+        self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in all_facts.items()])
         self._append = self._writer.events.append
         self._second = 0
         """The latest second of simulated time; earlier ones are in the file."""
-        self._ticks_a_second = max(1, MICROSECONDS // told.get("period_us", USUAL_PERIOD))
+        self._ticks_a_second = max(1, MICROSECONDS // all_facts.get("period_us", USUAL_PERIOD))
         self.events = self.answers = self.commands = self.states = 0
         """The number of items of each sort received so far."""
         self._over = {"ended": False, "failed": False}

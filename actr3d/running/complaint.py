@@ -18,7 +18,7 @@ PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "p
 
 @dataclass(frozen=True, kw_only=True)
 class Complaint:
-    """An error as it is reported to the model's author."""
+    """The report of an error to the model's author."""
 
     message: str
     """The error message, without its place."""
@@ -57,7 +57,7 @@ def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
 
 
 def failure(error: BaseException) -> str:
-    """Returns what a recording is told of an error that ends its run; a replay compares it."""
+    """Returns the description of an error that ends a run, as recorded; a replay compares it."""
     try:
         words = str(error)
     except Exception:  # noqa: BLE001 - the words are the model's own, too

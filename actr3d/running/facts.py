@@ -42,8 +42,8 @@ def built_facts(
         until: The limit of its runs [s]; None for none.
         helpers: The helper modules that it has loaded while it built the simulation.
     """
-    told = {"file": file, "sources": {file: source}, "parameters": parameters, "built": True}
-    return {**told, "program_seed": seed, "until": until, "helpers": helpers}
+    facts = {"file": file, "sources": {file: source}, "parameters": parameters, "built": True}
+    return {**facts, "program_seed": seed, "until": until, "helpers": helpers}
 
 
 def first_difference(then: Mapping[str, Any], now: Mapping[str, Any], apart: Collection[str]) -> str | None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from actr3d.simulation import Simulation
 
 Progress = Callable[[float], object]
-"""Is told which share of a recording has been run again, from 0 to 1."""
+"""Receives the share of a recording that has been run again, from 0 to 1."""
 
 
 def replay(
@@ -51,7 +51,7 @@ def replay(
         make: Makes the simulation; None for what the recorded model file builds, or for a recorded program.
         trust: Whether code may be run of a recording that this installation did not make; see `Recorded.made_here`.
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
-        progress: Is told again and again which share has been run: of the ticks, or of a program's events.
+        progress: Called repeatedly with the share that has been run: of the ticks, or of a program's events.
         within: A folder for what is laid out as files meanwhile, which a program that ends the process leaves there; None for
             where the system has temporary ones.
 
@@ -138,7 +138,7 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, beside: Besid
         simulation: The simulation, at its start.
         beside: Compares what it does.
         facts: The facts that its recording would begin with.
-        progress: Is told the share of the ticks that are done.
+        progress: Called with the share of the ticks that are done.
     """
     from actr3d.simulation import Command
 
@@ -236,23 +236,23 @@ def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]
     """Returns the facts that running a recording again cannot check, and says so of those that it has."""
     then, now = recorded.facts, beside.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
-    told, silent = set(UNCHECKED), set(CHECKED_BEFORE)
+    named, silent = set(UNCHECKED), set(CHECKED_BEFORE)
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
-        told |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
+        named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
     if not (recorded.over or _failed(recorded)):
         # What ends a run where the recorded one goes no further is another end than the recorded one, or than none.
         goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
         silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
     elif not from_code and said.get("by") not in ("stop", "done", None):
-        told.add("ended")  # it was not run to its end by this library, but by a program that says so
+        named.add("ended")  # it was not run to its end by this library, but by a program that says so
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
     early = beside.commands > 0 or not (recorded.over or _failed(recorded))
     if early and {name: helpers[name] for name in used if name in helpers} == used:
         # A run that went back and another way, or was broken off, may have loaded more than its recording needs.
-        (told if len(used) < len(helpers) else silent).add("helpers")
-    names = [f"'{name}'" for name in sorted(told) if then.get(name) is not None]
-    return told | silent, [f"not checked: {', '.join(names)}"] if names else []
+        (named if len(used) < len(helpers) else silent).add("helpers")
+    names = [f"'{name}'" for name in sorted(named) if then.get(name) is not None]
+    return named | silent, [f"not checked: {', '.join(names)}"] if names else []
 
 
 def _recorded_end(recorded: Recorded) -> str | None:

@@ -1,4 +1,4 @@
-"""Runs a recording again in a process of its own: whatever the recorded program does to its process, it does not stand for a verdict."""
+"""Runs a recording again in a process of its own: what the recorded program does to its process cannot be mistaken for a verdict."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Verdict:
     """What is said of a recording that was run again."""
 
     code: int
-    """`AGREES`, `DIFFERS`, or `UNKNOWN` where neither can be told."""
+    """`AGREES`, `DIFFERS`, or `UNKNOWN` if neither is known."""
     text: str
 
 
@@ -98,7 +98,7 @@ def _compare(file: str, trust: bool, any_version: bool, within: Path) -> Verdict
 
 
 def _answered(file: str, work: Callable[[], T]) -> T | Verdict:
-    """Returns what comes of some work with a recording, or what is said where it cannot be done."""
+    """Returns the result of some work with a recording, or the reason why it cannot be done."""
     try:
         return work()
     except UntrustedError:

@@ -43,7 +43,7 @@ class Standing:
         self.model: MjModel = World(Scene(parts=(Floor(), Mannequin(name="walker"), *parts))).mj_model
         self.data = MjData(self.model)
         mujoco.mj_forward(self.model, self.data)
-        self.stage = Stage(self.model).told([])
+        self.stage = Stage(self.model).data([])
 
     def see(self, view: str, x: float = 0.0) -> None:
         """Moves the walker, and the camera of a view that was chosen at the start."""

@@ -27,7 +27,7 @@ def scene(*parts: Any) -> tuple[Any, MjData]:
 
 def test_shade_lies_under_the_feet_and_along_a_wall_as_it_stands() -> None:
     model, data = scene(Mannequin(name="walker"), Wall(name="wall", start=(3, -2), end=(5, 0)))
-    shades = Shades(model, 0.0).told(data)
+    shades = Shades(model, 0.0).quads(data)
     wall = max(shades, key=lambda shade: max(shade[4:6]))
     assert wall[:2] == pytest.approx([4, -1], abs=1e-3)
     assert abs(wall[2] * math.cos(math.pi / 4) + wall[3] * math.sin(math.pi / 4)) == pytest.approx(1, abs=1e-3)
@@ -40,10 +40,10 @@ def test_shade_lies_under_the_feet_and_along_a_wall_as_it_stands() -> None:
 
 def test_what_is_high_above_the_ground_or_below_it_casts_none() -> None:
     low, high = ((Loose(name="box", position=(0, 0, z), mass=None),) for z in (0.15, 6.0))
-    assert len(Shades(*_model_and_ground(*low)).told(scene(*low)[1])) == 1
-    assert Shades(*_model_and_ground(*high)).told(scene(*high)[1]) == []
+    assert len(Shades(*_model_and_ground(*low)).quads(scene(*low)[1])) == 1
+    assert Shades(*_model_and_ground(*high)).quads(scene(*high)[1]) == []
     bare = World(Scene(parts=(Floor(),))).mj_model
-    assert Shades(bare, 0.0).told(MjData(bare)) == []
+    assert Shades(bare, 0.0).quads(MjData(bare)) == []
 
 
 def _model_and_ground(*parts: Any) -> tuple[Any, float]:
@@ -66,17 +66,17 @@ def test_outlines_are_those_of_walls_and_go_with_them() -> None:
 
 def test_the_stage_is_told_with_the_body_s_middle_and_size() -> None:
     model, _ = scene(Mannequin(name="walker"), Aperture(width=0.6))
-    told = Stage(model).told(["/floor"])
+    told = Stage(model).data(["/floor"])
     assert told["height"] == pytest.approx(1.75, abs=0.1)
     assert np.add(told["start"], told["middle"]) == pytest.approx([0, 0, 0.87], abs=0.1)
     assert told["ahead"] == pytest.approx([1, 0, 0], abs=0.01)
     crowd = [Loose(name=f"box {n}", position=(n % 10 - 5, n // 10 - 5, 0.2)) for n in range(100)]
-    assert len(Stage(scene(Mannequin(name="walker"), *crowd)[0]).told([])["corners"]) == 8
-    still = Stage(scene(Wall(name="wall", start=(3, -2), end=(3, 2)))[0]).told([])  # where nothing moves, the body is all that stands there
+    assert len(Stage(scene(Mannequin(name="walker"), *crowd)[0]).data([])["corners"]) == 8
+    still = Stage(scene(Wall(name="wall", start=(3, -2), end=(3, 2)))[0]).data([])  # where nothing moves, the body is all that stands there
     assert still["height"] >= 4
     assert still["middle"] == pytest.approx([3, 0, 1.25], abs=0.1)
     nothing: Any = World(Scene(parts=(Floor(),))).mj_model
-    assert np.isfinite(Stage(nothing).told([])["corners"]).all()
+    assert np.isfinite(Stage(nothing).data([])["corners"]).all()
 
 
 def test_who_comes_later_is_told_the_newest_only() -> None:
@@ -87,6 +87,6 @@ def test_who_comes_later_is_told_the_newest_only() -> None:
         send_scene_data(server, "stage", 1)
         buffer = server._websock_server._broadcast_buffer
         sources = [message.source for message in buffer.message_from_id.values() if hasattr(message, "source")]
-        assert sources == ['scene.tell("now",{"text": "</script>4"})', 'scene.tell("stage",1)']
+        assert sources == ['scene.receive("now",{"text": "</script>4"})', 'scene.receive("stage",1)']
     finally:
         server.stop()

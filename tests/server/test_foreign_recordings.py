@@ -92,7 +92,7 @@ def test_whatever_is_among_the_recordings_all_are_listed(desk: Desk, hostile: Pa
     assert problems.pop("good") is None
     assert all(problems.values()), problems
     assert problems["endless"] == problems["computed"] == problems["trigger"] == "no recording: it has other tables than a recording"
-    assert problems["long"] == "what it tells of its run is too long to be listed"
+    assert problems["long"] == "the description of its run is too long to be listed"
 
 
 def test_nothing_can_be_had_of_them_but_the_file_and_a_clear_error(desk: Desk, hostile: Path) -> None:

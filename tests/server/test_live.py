@@ -82,7 +82,7 @@ def test_a_port_that_is_taken_is_told(server: Served) -> None:
 
 
 @pytest.mark.parametrize(
-    ("named", "told"), [("file", "'{}' cannot be had: it is a file"), ("file/inside", "'{}' cannot be had: Not a directory")]
+    ("named", "told"), [("file", "'{}' cannot be used: it is a file"), ("file/inside", "'{}' cannot be used: Not a directory")]
 )
 def test_a_models_folder_that_cannot_be_had_is_named(tmp_path: Path, named: str, told: str) -> None:
     (tmp_path / "file").write_text("x", encoding="utf-8")

@@ -249,7 +249,7 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
             def switch(self) -> None: ...
 
         assert say.ANYTHING.validate_python(command).name == "heights"
-        assert Look().told()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
+        assert Look().as_dict()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
     finally:
         del OVERLAYS["heights"]
 

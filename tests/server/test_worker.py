@@ -156,7 +156,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
         ("import ctypes; ctypes.string_at(0)", "SIGSEGV: a crash in compiled code"),
         ("x = [0] * 10**10", "the model used more memory"),
         ("exec('x = []\\nwhile True: x.append(bytearray(10**7))')", "the model used more memory"),
-        (f"{WIRES} [link._wire.sendall(b'junk' * 1000) for link in links]; time.sleep(9)", "nobody understands"),
+        (f"{WIRES} [link._wire.sendall(b'junk' * 1000) for link in links]; time.sleep(9)", "malformed message"),
         ("[os.close(n) for n in range(3, 64) if os.path.exists(f'/proc/self/fd/{n}')]", CLOSED),
         ("os.closerange(0, 64)", CLOSED),
         ("os.closerange(3, 64); files = [open('/dev/null') for _ in range(64)]; time.sleep(9)", CLOSED),
@@ -276,7 +276,7 @@ def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behin
 
 def test_a_process_that_a_signal_has_stopped_is_said_to_stand_still(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("os.kill(os.getpid(), signal.SIGSTOP); goal.set('done')"), run=True, wait=None)
-    talk.wait_for_notice("was stopped by SIGSTOP, and stands still")
+    talk.wait_for_notice("was stopped by SIGSTOP, and does not continue")
     talk.wait(lambda: talk.facts["stuck"])
     assert talk.facts["stuck"] == {"file": None, "line": None, "function": "", "signal": "SIGSTOP"}
     worker: Any = talk.session._worker

@@ -70,8 +70,8 @@ class Frustum(Overlay):
         if site < 0 or name not in self.fields:
             return None
         axes = data.site_xmat[site].reshape(3, 3)
-        told = {"place": data.site_xpos[site], "forward": axes[:, 0], "up": axes[:, 2]}
-        return {**{key: value.round(5).tolist() for key, value in told.items()}, "fov": self.fields[name][1]}
+        pose = {"place": data.site_xpos[site], "forward": axes[:, 0], "up": axes[:, 2]}
+        return {**{key: value.round(5).tolist() for key, value in pose.items()}, "fov": self.fields[name][1]}
 
     def heads(self, data: MjData) -> list[list[float]]:
         """Returns the spheres around the heads that carry eyes, which labels must not cover: x, y, z, radius [m]."""

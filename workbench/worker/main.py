@@ -141,7 +141,7 @@ def _settle(output: int) -> None:
 
 
 class _PastPrint(io.RawIOBase):
-    """Discards what the model prints, as it is recorded as events already. A forked copy of the process sends no events; there, the
+    """Discards what the model prints, because it is already recorded as events. A forked copy of the process sends no events; there, the
     output is passed on as other output, line by line.
     """
 

@@ -140,7 +140,7 @@ class Shown:
         """
         first, last = stretch(question.first, question.last, self.period, begin)
         moments = ((seconds(begin + tick * self.period), state) for tick, state in self.kept.states.within(first, last, question.most))
-        return self._curves.told(moments, question.names)
+        return self._curves.sampled(moments, question.names)
 
     @cached_property
     def _curves(self) -> Curves:

@@ -247,7 +247,7 @@ class SimulationRun:
         self._controller.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
 
     def _keep_branch(self, at: float, until: float, *, drop: bool) -> Path | None:
-        """Keeps the run as recorded so far, before something is changed in its past. Returns the file; None where it may be lost.
+        """Keeps what has been recorded of the run, before something is changed in its past. Returns the file; None where it may be lost.
 
         Raises:
             SimulationError: If it cannot be kept, and may not be lost.
