@@ -237,7 +237,7 @@ class Session:
             return
         self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
         if name:
-            text = f"the model's process was stopped by {name}, and does not continue: SIGCONT to process {worker.pid} continues it, Stop ends it"
+            text = f"the model's process was stopped by {name}: SIGCONT to process {worker.pid} continues it, Stop ends it"
             self.add_notice(Notice(level="warning", text=text))
         self._changed(facts=True)
 

@@ -276,7 +276,7 @@ def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behin
 
 def test_a_process_that_a_signal_has_stopped_is_said_to_stand_still(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("os.kill(os.getpid(), signal.SIGSTOP); goal.set('done')"), run=True, wait=None)
-    talk.wait_for_notice("was stopped by SIGSTOP, and does not continue")
+    talk.wait_for_notice("was stopped by SIGSTOP: SIGCONT")
     talk.wait(lambda: talk.facts["stuck"])
     assert talk.facts["stuck"] == {"file": None, "line": None, "function": "", "signal": "SIGSTOP"}
     worker: Any = talk.session._worker
