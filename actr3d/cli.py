@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import importlib
+import inspect
 import os
 import sys
 import warnings
@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
-from actr3d.errors import SettingError
+from actr3d.errors import SettingError, did_you_mean
 from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
@@ -28,14 +28,6 @@ from actr3d.running.options import options_help, read_options, read_settings
 from actr3d.running.run import run_model
 from actr3d.trace import LEVELS, Trace, TraceEvent
 from actr3d.values import to_json
-
-BENCHMARKS = {
-    "core": "actr3d.bench.core",
-    "camera": "actr3d.bench.camera",
-    "lockstep": "actr3d.bench.lockstep",
-    "aperture": "actr3d.experiment.aperture.benchmark",
-}
-"""By name, the module whose `main` runs a benchmark; it is imported when it is needed, because most are slow to import."""
 
 
 def event_line(event: TraceEvent) -> str:
@@ -232,8 +224,8 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
-    bench.add_argument("name", choices=BENCHMARKS, help="what to measure")
-    bench.add_argument("--trials", type=_count, metavar="N", help="aperture only: number of trials per cell (30)")
+    bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure (unless given, list all benchmarks)")
+    bench.add_argument("--trials", type=_count, metavar="N", help="number of trials per cell, for benchmarks that run trials")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
@@ -243,10 +235,24 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _bench(options: argparse.Namespace) -> int:
-    bench: Any = importlib.import_module(BENCHMARKS[options.name])
-    if options.trials is not None and options.name == "aperture":
-        return bench.main(json_output=options.json, trials=options.trials)
-    return bench.main(json_output=options.json)
+    from actr3d.bench.figures import find_benchmarks  # benchmarks are slow to import
+
+    known = find_benchmarks()
+    if options.name is None:
+        for name, function in sorted(known.items()):
+            about = inspect.getdoc(sys.modules[function.__module__]) or ""
+            print(f"{name:<10}{' '.join(about.partition(': ')[2].split('.')[0].split())}")
+        return 0
+    if options.name not in known:
+        near = did_you_mean(options.name, known)
+        print(f"actr3d bench: no benchmark '{options.name}'{near}; there are: {', '.join(sorted(known))}", file=sys.stderr)
+        return 2
+    settings = {} if options.trials is None else {"trials": options.trials}
+    function = known[options.name]
+    if unknown := settings.keys() - inspect.signature(function).parameters:
+        print(f"actr3d bench {options.name}: it has no {', '.join(unknown)}", file=sys.stderr)
+        return 2
+    return function(json_output=options.json, **settings)
 
 
 def _soak(options: argparse.Namespace) -> int:

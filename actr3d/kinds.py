@@ -1,12 +1,43 @@
-"""The kinds of events that a trace records: the lowest level, the source, and the data of each."""
+"""The kinds of events that a trace records: the lowest level, the source, the data and the meaning of each; the registry of kinds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
+
+from actr3d.registry import Registry
 
 LEVELS = ("none", "production", "buffer", "all")
 """The levels of a trace: nothing; selections and firings; also buffer changes; everything."""
+
+
+class Group(NamedTuple):
+    """A group of kinds, by which pages filter events."""
+
+    title: str
+    shown: bool = False
+    """Whether pages show it at first."""
+
+
+GROUPS = {
+    "fire": Group("Firings", shown=True),
+    "output": Group("Prints", shown=True),
+    "reward": Group("Rewards", shown=True),
+    "compile": Group("Compiled productions", shown=True),
+    "command": Group("User's commands", shown=True),
+    "contact": Group("Contacts and results", shown=True),
+    "plan": Group("Plans (SGOMS)", shown=True),
+    "choice": Group("Choices"),
+    "buffer": Group("Buffers"),
+    "memory": Group("Memory"),
+    "request": Group("Requests and answers"),
+    "vision": Group("Vision"),
+    "motor": Group("Movements"),
+    "learning": Group("Learned utilities"),
+    "state": Group("Attributes"),
+    "run": Group("Beginnings and ends"),
+    "other": Group("Other events", shown=True),
+}
+"""The groups, in the order in which pages list them."""
 
 
 class Kind(NamedTuple):
@@ -14,89 +45,322 @@ class Kind(NamedTuple):
 
     level: str
     """The lowest level at which it is recorded."""
+    rank: int
+    """The place of that level among `LEVELS`."""
     source: str
     """The part that emits it."""
     data: str
     """The names of its data; optional ones are in brackets, «...» means names that depend on the source."""
     meaning: str
+    group: str
+    """The group by which pages filter it: one of `GROUPS`."""
+    title: str
+    """What pages write before its text."""
+    text: str
+    """Its text on pages, with data in braces (`{production}`); empty for all data as `name=value`."""
 
 
-KINDS: Mapping[str, Kind] = {
-    "start": Kind("production", "top model", "model seed profile", "the trace of a run begins: the model's class, its seed and profile"),
-    "command": Kind("production", "top model", "command data", "a user changes the run"),
-    "select": Kind("production", "system", "production", "a production is chosen"),
-    "fire": Kind("production", "system", "production bound", "a production fires, with the variables that it bound"),
-    "changed": Kind("production", "system", "production", "a chosen production no longer matches, and does not fire"),
-    "compile": Kind("production", "system", "production parents", "a production is learned from two others"),
-    "reward": Kind("production", "system", "value", "an agent receives a reward"),
-    "output": Kind("production", "model", "text", "an agent prints a line; also a program, in recordings and with `--json`"),
-    "result": Kind("production", "top model", "...", "a run with a measure is over: its result"),
-    "planning_unit": Kind(
-        "production",
-        "SGOMS buffer",
-        "name what path [by]",
-        "a planning unit is «begun», «ended», «interrupted» (by another), «resumed», «cut» (abandoned), or «going on» as a trace begins",
-    ),
-    "unit_task": Kind("production", "SGOMS buffer", "name what path", "the same for a unit task"),
-    "method": Kind("production", "SGOMS buffer", "name what path", "the same for a method"),
-    "operator": Kind("production", "SGOMS buffer", "name what path", "the same for an operator"),
-    "buffer": Kind(
-        "buffer",
-        "buffer",
-        "chunk [texts]",
-        "the new chunk in a buffer (its slots), or none; `texts`: the text that patterns compare, for values such as lists",
-    ),
-    "run": Kind("all", "top model", "limit", "a run begins, for this time [s]; None without a limit"),
-    "stop": Kind(
-        "all", "top model", "by [error]", "a run ends: «limit», «until», «stop», «done» (nothing is left to do) or «error», with its class"
-    ),
-    "added": Kind("all", "parent", "part model [was]", "a model joins the tree; `was` is its path before, if it was a run of its own"),
-    "removed": Kind("all", "parent", "part model", "a model leaves the tree"),
-    "state": Kind("all", "any part", "...", "new values of attributes; `size` is the number of chunks in a memory"),
-    "productions": Kind(
-        "all",
-        "system",
-        "productions initializers chosen matched drawn [utilities parts threshold]",
-        "the contents of a production system: its productions, the methods without parameters, the chosen production, those that "
-        "matched last, the modules that draw noise, and the current choice (as in «conflict»)",
-    ),
-    "initialize": Kind("all", "system", "method", "a method without parameters runs, before the first cycle"),
-    "observe": Kind("all", "system", "...", "new values of what else productions see (`name.slot`); None if missing"),
-    "conflict": Kind(
-        "all",
-        "system",
-        "utilities [parts drawn threshold]",
-        "the productions that match, their utilities and the parts of these, the modules that drew noise, and the utility threshold",
-    ),
-    "utility": Kind("all", "system", "production part value", "the new value of a part of a production's utility, after learning"),
-    "request": Kind(
-        "all",
-        "module",
-        "...",
-        "a request to a module (`call`). For a memory, with all candidates; if it was made before the trace, also `made` [s] and "
-        "`outcome`. `outside_vision`: the agent asks for the raw view",
-    ),
-    "retrieval": Kind("all", "memory", "failed [chunk]", "a retrieved chunk arrives, or the retrieval fails"),
-    "answer": Kind("all", "port, vision, motor", "word value", "a body answers a request"),
-    "search": Kind(
-        "all",
-        "vision",
-        "asked bottom_up noticed refused chosen [why]",
-        "a view is searched: the features that match, with their saliences; those that do not, with the reason; and the chosen one. "
-        "`why`: the reason if features were noticed but none was chosen",
-    ),
-    "sight": Kind(
-        "all",
-        "vision",
-        "bottom_up failed [chunk held]",
-        "a found feature is put into the buffer, or the search fails; `held`: the buffer keeps its chunk",
-    ),
-    "move": Kind(
-        "all", "motor", "movement group speed [to]", "a movement of a muscle group begins; speed and target are in radians or metres"
-    ),
-    "moved": Kind("all", "motor", "movement group end", "a movement ends: «done», «stopped», «limit» or «blocked»"),
-    "refused": Kind("all", "motor", "movement why", "a movement is refused: the muscle group is «busy», or its «limit» is nearer"),
-    "add": Kind("all", "memory", "chunk merged size given", "a chunk is added to a memory, or strengthens the equal one there (`merged`)"),
-    "chunks": Kind("all", "memory", "by size gone new", "a memory's chunks change in another way: the method, and the chunks"),
-}
-"""All kinds of events."""
+KINDS: Registry[Kind] = Registry("kind of trace event")
+"""All kinds of events by name."""
+
+
+def trace_kind(
+    name: str, *, level: str, source: str, data: str, meaning: str, group: str = "other", title: str = "", text: str = ""
+) -> None:
+    """Registers a kind of event; see the fields of `Kind`. Parts emit it with `Model.emit`.
+
+    Args:
+        name: The name of the kind.
+        level: The lowest level at which it is recorded.
+        source: The part that emits it.
+        data: The names of its data.
+        meaning: What it means, for the manual.
+        group: The group by which pages filter it.
+        title: What pages write before its text; the name unless given.
+        text: Its text on pages.
+
+    Raises:
+        ValueError: If there is such a kind already, or no such level or group.
+    """
+    for what, value, known in (("level", level, LEVELS[1:]), ("group", group, GROUPS)):
+        if value not in known:
+            raise ValueError(f"trace kind '{name}': {what} must be one of {', '.join(known)} (got {value!r})")
+    KINDS.add(name, Kind(level, LEVELS.index(level), source, data, meaning, group, title or name, text))
+
+
+trace_kind(
+    "start",
+    level="production",
+    source="top model",
+    data="model seed profile",
+    meaning="the trace of a run begins: the model's class, its seed and profile",
+    group="run",
+)
+trace_kind("command", level="production", source="top model", data="command data", meaning="a user changes the run", group="command")
+trace_kind(
+    "select",
+    level="production",
+    source="system",
+    data="production",
+    meaning="a production is chosen",
+    group="choice",
+    title="chosen",
+    text="{production}",
+)
+trace_kind(
+    "fire",
+    level="production",
+    source="system",
+    data="production bound",
+    meaning="a production fires, with the variables that it bound",
+    group="fire",
+)
+trace_kind(
+    "changed",
+    level="production",
+    source="system",
+    data="production",
+    meaning="a chosen production no longer matches, and does not fire",
+    group="fire",
+    title="no longer",
+    text="{production} was chosen, but matches no longer",
+)
+trace_kind(
+    "compile",
+    level="production",
+    source="system",
+    data="production parents",
+    meaning="a production is learned from two others",
+    group="compile",
+)
+trace_kind(
+    "reward",
+    level="production",
+    source="system",
+    data="value",
+    meaning="an agent receives a reward",
+    group="reward",
+    title="reward",
+    text="{value}",
+)
+trace_kind(
+    "output",
+    level="production",
+    source="model",
+    data="text",
+    meaning="an agent prints a line; also a program, in recordings and with `--json`",
+    group="output",
+    title="prints",
+    text="{text}",
+)
+trace_kind(
+    "result", level="production", source="top model", data="...", meaning="a run with a measure is over: its result", group="contact"
+)
+trace_kind(
+    "planning_unit",
+    level="production",
+    source="SGOMS buffer",
+    data="name what path [by]",
+    meaning="a planning unit is «begun», «ended», «interrupted» (by another), «resumed», «cut» (abandoned), or «going on» "
+    "as a trace begins",
+    group="plan",
+)
+trace_kind(
+    "unit_task",
+    level="production",
+    source="SGOMS buffer",
+    data="name what path",
+    meaning="the same for a unit task",
+    group="plan",
+    title="unit task",
+    text="{name} {what}",
+)
+trace_kind(
+    "method",
+    level="production",
+    source="SGOMS buffer",
+    data="name what path",
+    meaning="the same for a method",
+    group="plan",
+    title="method",
+    text="{name} {what}",
+)
+trace_kind(
+    "operator",
+    level="production",
+    source="SGOMS buffer",
+    data="name what path",
+    meaning="the same for an operator",
+    group="plan",
+    title="operator",
+    text="{name} {what}",
+)
+trace_kind(
+    "buffer",
+    level="buffer",
+    source="buffer",
+    data="chunk [texts]",
+    meaning="the new chunk in a buffer (its slots), or none; `texts`: the text that patterns compare, for values such as lists",
+    group="buffer",
+)
+trace_kind(
+    "run", level="all", source="top model", data="limit", meaning="a run begins, for this time [s]; None without a limit", group="run"
+)
+trace_kind(
+    "stop",
+    level="all",
+    source="top model",
+    data="by [error]",
+    meaning="a run ends: «limit», «until», «stop», «done» (nothing is left to do) or «error», with its class",
+    group="run",
+)
+trace_kind(
+    "added",
+    level="all",
+    source="parent",
+    data="part model [was]",
+    meaning="a model joins the tree; `was` is its path before, if it was a run of its own",
+    group="run",
+)
+trace_kind("removed", level="all", source="parent", data="part model", meaning="a model leaves the tree", group="run")
+trace_kind(
+    "state",
+    level="all",
+    source="any part",
+    data="...",
+    meaning="new values of attributes; `size` is the number of chunks in a memory",
+    group="state",
+)
+trace_kind(
+    "productions",
+    level="all",
+    source="system",
+    data="productions initializers chosen matched drawn [utilities parts threshold]",
+    meaning="the contents of a production system: its productions, the methods without parameters, the chosen production, "
+    "those that matched last, the modules that draw noise, and the current choice (as in «conflict»)",
+    group="run",
+)
+trace_kind(
+    "initialize",
+    level="all",
+    source="system",
+    data="method",
+    meaning="a method without parameters runs, before the first cycle",
+    group="run",
+)
+trace_kind(
+    "observe",
+    level="all",
+    source="system",
+    data="...",
+    meaning="new values of what else productions see (`name.slot`); None if missing",
+    group="state",
+)
+trace_kind(
+    "conflict",
+    level="all",
+    source="system",
+    data="utilities [parts drawn threshold]",
+    meaning="the productions that match, their utilities and the parts of these, the modules that drew noise, and the utility threshold",
+    group="choice",
+)
+trace_kind(
+    "utility",
+    level="all",
+    source="system",
+    data="production part value",
+    meaning="the new value of a part of a production's utility, after learning",
+    group="learning",
+    title="utility",
+    text="{production} {part} {value}",
+)
+trace_kind(
+    "request",
+    level="all",
+    source="module",
+    data="...",
+    meaning="a request to a module (`call`). For a memory, with all candidates; if it was made before the trace, also "
+    "`made` [s] and `outcome`. `outside_vision`: the agent asks for the raw view",
+    group="request",
+)
+trace_kind(
+    "retrieval",
+    level="all",
+    source="memory",
+    data="failed [chunk]",
+    meaning="a retrieved chunk arrives, or the retrieval fails",
+    group="memory",
+)
+trace_kind(
+    "answer",
+    level="all",
+    source="port, vision, motor",
+    data="word value",
+    meaning="a body answers a request",
+    group="request",
+    title="answer",
+    text="{word}: {value}",
+)
+trace_kind(
+    "search",
+    level="all",
+    source="vision",
+    data="asked bottom_up noticed refused chosen [why]",
+    meaning="a view is searched: the features that match, with their saliences; those that do not, with the reason; and the "
+    "chosen one. `why`: the reason if features were noticed but none was chosen",
+    group="vision",
+)
+trace_kind(
+    "sight",
+    level="all",
+    source="vision",
+    data="bottom_up failed [chunk held]",
+    meaning="a found feature is put into the buffer, or the search fails; `held`: the buffer keeps its chunk",
+    group="vision",
+)
+trace_kind(
+    "move",
+    level="all",
+    source="motor",
+    data="movement group speed [to]",
+    meaning="a movement of a muscle group begins; speed and target are in radians or metres",
+    group="motor",
+    title="moves",
+    text="{movement} ({group})",
+)
+trace_kind(
+    "moved",
+    level="all",
+    source="motor",
+    data="movement group end",
+    meaning="a movement ends: «done», «stopped», «limit» or «blocked»",
+    group="motor",
+    title="moved",
+    text="{movement} ({group}): {end}",
+)
+trace_kind(
+    "refused",
+    level="all",
+    source="motor",
+    data="movement why",
+    meaning="a movement is refused: the muscle group is «busy», or its «limit» is nearer",
+    group="motor",
+    title="refused",
+    text="{movement}: {why}",
+)
+trace_kind(
+    "add",
+    level="all",
+    source="memory",
+    data="chunk merged size given",
+    meaning="a chunk is added to a memory, or strengthens the equal one there (`merged`)",
+    group="memory",
+)
+trace_kind(
+    "chunks",
+    level="all",
+    source="memory",
+    data="by size gone new",
+    meaning="a memory's chunks change in another way: the method, and the chunks",
+    group="memory",
+)

@@ -139,7 +139,7 @@ class Trace:
         event = _event((time_us, source, kind, data))
         if self.keep:
             self._records.append(event)  # in this form: later readers need not create its data again
-        rank = _RANKS.get(kind, 0)
+        rank = KINDS[kind].rank if kind in KINDS else 0
         for listener, level in self._listeners:
             if level >= rank:
                 try:
@@ -254,9 +254,6 @@ class Trace:
     def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
         """Returns the events of one kind, optionally of one source, in order."""
         return [e for e in self if e.kind == kind and (source is None or e.source == source)]
-
-
-_RANKS = {name: LEVELS.index(kind.level) for name, kind in KINDS.items()}
 
 
 def top_path(number: int) -> str:

@@ -17,11 +17,11 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
-from workbench import protocol as say
 from workbench import recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
 from workbench.loader import sendable
+from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping
 from workbench.sessions import Sessions
@@ -105,7 +105,7 @@ async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
     first = error.errors()[0]
     if first["type"] == "json_invalid":
         return _told(f"the body is no JSON: {first['ctx']['error']} at character {first['loc'][-1]}", 400)
-    return _told(say.problem_of(first), 422)
+    return _told(problem_of(first), 422)
 
 
 async def _no_answer(_: Request, error: Exception) -> JSONResponse:

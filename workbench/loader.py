@@ -24,7 +24,7 @@ _BOUNDS = {"Gt": "above", "Ge": "least", "Lt": "below", "Le": "most"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Change:
+class LiveCommand:
     """Describes the command that changes a parameter during a run; see `actr3d.configuration.Live`."""
 
     word: str
@@ -52,7 +52,7 @@ class Parameter:
     unit: str | None = None
     help: str = ""
     line: int = 0
-    live: Change | None = None
+    live: LiveCommand | None = None
     """How the parameter is changed during a run; None if a change needs a new run."""
 
     def check(self, value: Any) -> None:
@@ -213,7 +213,7 @@ def _marked(parameter: Parameter, mark: ast.expr, constants: Mapping[str, Any]) 
     if name in _BOUNDS and [*values, *named.values()]:
         return replace(parameter, **{_BOUNDS[name]: [*values, *named.values()][0]})
     if name == "Live" and values:
-        return replace(parameter, live=Change(word=values[0], before=tuple(values[1:]), body=named.get("body")))
+        return replace(parameter, live=LiveCommand(word=values[0], before=tuple(values[1:]), body=named.get("body")))
     return parameter
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import pickle
 from typing import Any
 
 from actr3d.errors import SimulationError
@@ -21,7 +22,7 @@ class Waiting:
         self._waiting: dict[int, tuple[Worker, asyncio.Future[Reply]]] = {}
 
     async def ask(self, worker: Worker | None, said: Any) -> Reply:
-        """Sends a worker a command or question of `protocol`, and returns its reply.
+        """Sends a worker a page command, and returns its reply.
 
         Raises:
             SimulationError: If there is no worker, or too many requests wait already.
@@ -38,7 +39,7 @@ class Waiting:
 
     def send(self, worker: Worker, said: Any, number: int = 0) -> None:
         """Sends a worker a command; without a number, nobody waits for the reply."""
-        worker.send(Do(id=number, say=said.model_dump_json().encode()))
+        worker.send(Do(id=number, command=pickle.dumps(said)))
 
     def take(self, reply: Reply) -> None:
         """Delivers a reply to its caller."""

@@ -13,10 +13,10 @@ from fastapi.responses import Response
 from pydantic import Field
 
 from actr3d.values import to_json
-from workbench import protocol as say
 from workbench.listing import MOST as MOST_LISTED
 from workbench.loader import sendable
 from workbench.open_file import OpenFile, gone
+from workbench.page_commands import Name, PageMessage
 from workbench.readers import while_wanted
 from workbench.retention import stands_alone
 from workbench.routes import Id, sessions_of
@@ -35,13 +35,13 @@ KINDS: dict[File, str] = {
 """The file formats in which a recording can be downloaded, with their media types."""
 
 
-class Naming(say.Said):
+class Naming(PageMessage):
     """A new name for a recording."""
 
     to: Annotated[str, Field(min_length=1, max_length=150)]
 
 
-class Trusting(say.Said):
+class Trusting(PageMessage):
     """Whether code of a recording may be run."""
 
     trust: bool = False
@@ -55,12 +55,12 @@ class Opening(Trusting):
     """Whether a run with a body goes in real time until a speed is chosen."""
 
 
-class Pair(say.Said):
+class Pair(PageMessage):
     """Two recordings to compare."""
 
     first: Annotated[str, Field(max_length=160)]
     second: Annotated[str, Field(max_length=160)]
-    kinds: tuple[say.Name, ...] = Field(default=(), max_length=50)
+    kinds: tuple[Name, ...] = Field(default=(), max_length=50)
     """The kinds of events to compare; empty for all."""
 
 
@@ -109,7 +109,7 @@ async def _made(request: Request, form: str, *paths: Path, **options: Any) -> Fi
 async def recorded_curves(
     request: Request,
     recording: Id,
-    name: Annotated[list[say.Name] | None, Query(max_length=500)] = None,
+    name: Annotated[list[Name] | None, Query(max_length=500)] = None,
     first: Annotated[float, Query(ge=0, lt=1e9, allow_inf_nan=False)] = 0.0,
     most: Annotated[int, Query(ge=2, le=20_000)] = 2_000,
     last: Annotated[float | None, Query(ge=0, lt=1e9, allow_inf_nan=False)] = None,

@@ -12,11 +12,12 @@ from fastapi import Path as InPath
 from fastapi.responses import Response
 from pydantic import Field
 
-from workbench import protocol as say
 from workbench.about import about_of
 from workbench.files import ModelFile
 from workbench.loader import listing_of, sendable
 from workbench.outlines import outline_of
+from workbench.page_commands import Name, PageMessage, PlainValue, Text
+from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
 
 router = APIRouter(prefix="/api")
@@ -29,42 +30,42 @@ ANSWER_TIME = 10.0
 """How long a request waits for the result of a command [s]; the command itself continues."""
 
 
-class Save(say.Said):
+class Save(PageMessage):
     """A model file with its new text."""
 
     path: FilePath
-    text: say.Text
+    text: Text
     version: Version | None = None
     """The version that is replaced; None for a new file."""
 
 
-class Rename(say.Said):
+class Rename(PageMessage):
     """A model file and its new name."""
 
     path: FilePath
     to: FilePath
 
 
-class Delete(say.Said):
+class Delete(PageMessage):
     """A model file to move to the trash folder."""
 
     path: FilePath
 
 
-class Check(say.Said):
+class Check(PageMessage):
     """A text to check, which may not be a valid model yet."""
 
     path: FilePath
-    text: say.Text
+    text: Text
     load: bool = False
     """Whether it is also loaded in a worker, which runs its top level and its `build`."""
 
 
-class Open(say.Said):
+class Open(PageMessage):
     """A model with which to start a session."""
 
     model: FilePath
-    settings: dict[say.Name, say.Plain] = Field(default_factory=dict, max_length=200)
+    settings: dict[Name, PlainValue] = Field(default_factory=dict, max_length=200)
     seed: int | None = Field(default=None, ge=0, lt=2**63)
     record: bool = True
     run: bool = False
@@ -72,10 +73,10 @@ class Open(say.Said):
     """Whether a run with a body goes in real time until a speed is chosen; otherwise every run goes as fast as possible."""
 
 
-class Saying(say.Said):
+class Saying(PageMessage):
     """A command or question."""
 
-    say: say.Anything
+    say: AnyCommand
 
 
 def sessions_of(request: Request) -> Sessions:

@@ -12,8 +12,8 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench import protocol as say
 from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
+from workbench.page_commands.command import PageCommand
 from workbench.pending_requests import Waiting
 from workbench.recording_index import begun
 from workbench.retention import erase, never_begun
@@ -282,67 +282,74 @@ class Session:
 
     # -- commands and questions
 
-    async def carry_out(self, said: Any, who: str = "") -> Reply:
+    async def carry_out(self, command: PageCommand, who: str = "") -> Reply:
         """Carries out a command or answers a question; the reply holds the result or the error.
 
         Args:
-            said: One of `protocol.Anything`.
+            command: The command or question.
             who: The name of the user, as other users see it.
         """
-        if not isinstance(said, (*say.QUESTIONS, *say.LOOKS)) and who and who != self._controlled_by:
+        if command.takes_control and who and who != self._controlled_by:
             self._controlled_by = who
             self._changed(facts=True)
         try:
-            match said:
-                case say.Stop():
-                    await self.stop()
-                case say.Restart():
-                    await self._begin_again(said)
-                case say.Overlay():
-                    self.look = self.look.after(said)
-                    self._tell_watchers(self.look)
-                    self._changed(facts=True)
-                case _:
-                    before = self.breakpoints
-                    self._note(said)
-                    reply = await self._ask(said)
-                    if isinstance(said, say.Breakpoints) and reply.error is not None and self.breakpoints == said.productions:
-                        self._note(say.Breakpoints(productions=before))  # the run does not know one of the names
-                    return reply
+            return await command.serve(self)
         except (Actr3dError, OSError) as error:
             return Reply(id=0, error=str(error))
-        return Reply(id=0)
 
-    async def _begin_again(self, said: say.Restart) -> None:
-        """Starts a run with the settings and seed of the newest run, except where the command gives others."""
-        newest = self._newest
-        settings = said.settings if said.settings is not None or newest is None else newest.start.settings
-        seed = said.seed if said.seed is not None or said.new_seed or newest is None else newest.start.seed
-        await self.begin(Wanted(settings=settings or {}, seed=seed, record=said.record, run=said.run))
+    async def restart(
+        self, settings: dict[str, Any] | None, seed: int | str | None, *, new_seed: bool = False, record: bool = True, run: bool = False
+    ) -> None:
+        """Starts a new run.
 
-    def _note(self, said: Any) -> None:
-        """Stores what also holds for later runs: speed and breakpoints."""
-        if isinstance(said, say.Speed):
-            self.speed, self.real_time = said.factor, False
-        elif isinstance(said, say.Breakpoints):
-            self.breakpoints = said.productions
-            self._changed(facts=True)
-
-    async def _ask(self, said: Any) -> Reply:
-        """Sends a command to the run that it is meant for: questions and moves in time to the run on screen, all others to the newest run.
-
-        After a user has started a new run, further commands go to it, although the previous run is on screen until the new one is built.
+        Args:
+            settings: Values of parameters that differ from the model's defaults; None for those of the newest run.
+            seed: The seed; None for that of the newest run, or with `new_seed` for a random one.
+            new_seed: Whether the seed differs from that of the newest run.
+            record: Whether the run is recorded.
+            run: Whether it starts going at once.
         """
-        if isinstance(said, (*say.QUESTIONS, say.Back, say.Seek)):
-            return await self._waiting.ask(self._worker, said)
+        newest = self._newest
+        if newest is not None:
+            settings = newest.start.settings if settings is None else settings
+            seed = newest.start.seed if seed is None and not new_seed else seed
+        await self.begin(Wanted(settings=settings or {}, seed=seed, record=record, run=run))
+
+    def set_speed(self, factor: float | None) -> None:
+        """Stores the speed for this and later runs, as a multiple of real time; None for as fast as possible."""
+        self.speed, self.real_time = factor, False
+
+    def set_breakpoints(self, productions: tuple[str, ...]) -> None:
+        """Stores the breakpoints for this and later runs."""
+        self.breakpoints = productions
+        self._changed(facts=True)
+
+    def show_overlay(self, name: str, shown: bool) -> None:
+        """Shows or hides an overlay of the 3D view."""
+        self.look = self.look.with_overlay(name, shown)
+        self._tell_watchers(self.look)
+        self._changed(facts=True)
+
+    async def ask(self, command: PageCommand) -> Reply:
+        """Has a worker carry out a command: the worker of the run on screen if it is for that run, otherwise that of the newest run.
+
+        After a user has started a new run, commands go to it, although the previous run is on screen until the new one is built.
+        """
+        if not command.of_shown_run:
+            async with self._beginning:
+                loading = self._loading
+            if loading is not None:
+                return await self._waiting.ask(loading.worker, command)
+        return await self._waiting.ask(self._worker, command)
+
+    async def ask_all(self, command: PageCommand) -> Reply:
+        """Has the worker of the run on screen carry out a command, and that of the run being built, too."""
         async with self._beginning:
             loading = self._loading
-        if loading is None:
-            return await self._waiting.ask(self._worker, said)
-        if isinstance(said, say.Pause) and self._worker is not None:  # both runs must pause
-            self._waiting.send(loading.worker, said)
-            return await self._waiting.ask(self._worker, said)
-        return await self._waiting.ask(loading.worker, said)
+        if loading is None or self._worker is None:
+            return await self.ask(command)
+        self._waiting.send(loading.worker, command)
+        return await self._waiting.ask(self._worker, command)
 
     def draw(self, kinds: tuple[str, ...]) -> None:
         """Sets for which kinds of overlays the states of this run and later runs contain data."""

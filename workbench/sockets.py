@@ -15,7 +15,8 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from actr3d.errors import Actr3dError
-from workbench import protocol as say
+from actr3d.kinds import GROUPS, KINDS
+from workbench import protocol
 from workbench.client_feed import Feed, Raw
 from workbench.sessions import Sessions
 from workbench.shipped import static
@@ -53,6 +54,19 @@ def panel_styles() -> Response:
     """Returns a style sheet that imports those of the folder `panels`."""
     names = [path.name for path in sorted((static() / "panels").glob("*.css"))]
     return Response("".join(f'@import url("panels/{name}");\n' for name in names), media_type="text/css")
+
+
+@router.get("/static/trace_kinds.js")
+def trace_kinds() -> Response:
+    """Returns a module with the groups of trace events, by which pages filter them, and the texts of their kinds."""
+    groups = [
+        {"id": name, "text": title, "first": shown, "kinds": [kind for kind, of in KINDS.items() if of.group == name]}
+        for name, (title, shown) in GROUPS.items()
+    ]
+    texts = {name: [kind.title, kind.text] for name, kind in KINDS.items()}
+    return Response(
+        f"export const GROUPS = {json.dumps(groups)};\nexport const TEXTS = {json.dumps(texts)};\n", media_type="text/javascript"
+    )
 
 
 @router.get("/viser/")
@@ -161,7 +175,7 @@ class _Page:
             while True:
                 await self._websocket.send_text((await feed.next()).decode())
 
-    async def _carry_out(self, session: Any, feed: Feed, request: say.Request) -> None:
+    async def _carry_out(self, session: Any, feed: Feed, request: protocol.Request) -> None:
         reply = await session.carry_out(request.say, self._name)
         feed.reply(_reply(request.id, reply.result, reply.error))
 
@@ -182,11 +196,11 @@ def _number_of(text: str) -> int | None:
     return number if isinstance(number, int) and 0 <= number < 2**53 else None
 
 
-def _read(text: str) -> tuple[say.Attach | None, say.Request | None, str]:
+def _read(text: str) -> tuple[protocol.Attach | None, protocol.Request | None, str]:
     """Parses a page's message: an `Attach`, a `Request`, or the reason why it is neither."""
     try:
         if '"attach"' in text[:200]:
-            return say.Attach.model_validate_json(text), None, ""
-        return None, say.Request.model_validate_json(text), ""
+            return protocol.Attach.model_validate_json(text), None, ""
+        return None, protocol.Request.model_validate_json(text), ""
     except ValidationError as error:
-        return None, None, say.problem_of(error.errors(include_url=False, include_input=False)[0])
+        return None, None, protocol.problem_of(error.errors(include_url=False, include_input=False)[0])

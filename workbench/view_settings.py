@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from workbench import protocol as say
 from workbench.overlays import OVERLAYS
 
 
@@ -15,9 +14,9 @@ class Look:
 
     shown: frozenset[str] = field(default_factory=lambda: frozenset(n for n, one in OVERLAYS.items() if one.shown_at_first))
 
-    def after(self, said: say.Overlay) -> Look:
-        """Returns the overlays that are shown after a command."""
-        return replace(self, shown=self.shown | {said.name} if said.shown else self.shown - {said.name})
+    def with_overlay(self, name: str, shown: bool) -> Look:
+        """Returns the settings with an overlay shown or hidden."""
+        return replace(self, shown=self.shown | {name} if shown else self.shown - {name})
 
     def as_dict(self) -> dict[str, Any]:
         """Returns the entry for pages: `overlays`, each with `name`, `title` and whether it is `shown`."""

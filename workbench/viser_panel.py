@@ -6,12 +6,15 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from workbench import protocol as say
 from workbench.overlays import OVERLAYS
+from workbench.page_commands.changes import Aperture
+from workbench.page_commands.moving import Back
+from workbench.page_commands.running import Pause, Run, Step
+from workbench.page_commands.session import Overlay
 from workbench.view_settings import Look
 from workbench.worker.messages import State
 
-WORDS: dict[str, Callable[[], Any]] = {"run": say.Run, "pause": say.Pause, "step": say.Step, "back": say.Back}
+WORDS: dict[str, Callable[[], Any]] = {"run": Run, "pause": Pause, "step": Step, "back": Back}
 MOST_SLIDERS = 8
 
 
@@ -70,8 +73,8 @@ class Panel:
 
     def _slid(self, name: str, slider: Any, event: Any) -> None:
         if event.client_id is not None:  # otherwise the panel itself was updated to the current state
-            self._said(say.Aperture(width=slider.value / 100, name=name))
+            self._said(Aperture(width=slider.value / 100, name=name))
 
     def _switched(self, name: str, box: Any, event: Any) -> None:
         if event.client_id is not None:
-            self._said(say.Overlay(name=name, shown=box.value))
+            self._said(Overlay(name=name, shown=box.value))

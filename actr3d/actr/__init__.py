@@ -22,6 +22,7 @@ from actr3d.actr.kernel.log import log, log_everything
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.lint.checks import check_agent, check_classes
 from actr3d.actr.loading.sweep import run
+from actr3d.actr.modules import MODULES
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.modules.motor import Motor
 from actr3d.actr.modules.sos_vision import SOSVision
@@ -75,3 +76,6 @@ __all__ = [
     "log_everything",
     "run",
 ]
+
+globals().update(MODULES)  # those above are imported by name for type checkers and readers
+__all__ += [name for name in MODULES if name not in __all__]  # pyright: ignore[reportUnsupportedDunderAll]

@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from actr3d.bench.figures import Figure, little_garbage, ratio, report, seconds_of
+from actr3d.bench.figures import Figure, benchmark, little_garbage, ratio, report, seconds_of
 from actr3d.camera import GeometricCamera
 
 RAYS = 10_000
@@ -123,6 +123,7 @@ def measure() -> list[Figure]:
         ]
 
 
+@benchmark("camera")
 def main(*, json_output: bool) -> int:
     """Measures and prints; returns the exit code."""
     return report(measure(), json_output=json_output)

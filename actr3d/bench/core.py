@@ -18,7 +18,7 @@ from typing import Any
 
 from actr3d.actr import ACTR, Buffer, Memory
 from actr3d.actr.loading import load_text
-from actr3d.bench.figures import Figure, ratio, report, seconds_of
+from actr3d.bench.figures import Figure, benchmark, ratio, report, seconds_of
 
 THREE = """
 from python_actr import *
@@ -200,6 +200,7 @@ def measure() -> list[Figure]:
     ]
 
 
+@benchmark("core")
 def main(*, json_output: bool) -> int:
     """Measures and prints; returns the exit code."""
     try:

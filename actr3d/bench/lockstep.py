@@ -17,7 +17,7 @@ import mujoco
 
 from actr3d.actr.loading import load_text
 from actr3d.bench import camera
-from actr3d.bench.figures import Figure, processor_time_of, report
+from actr3d.bench.figures import Figure, benchmark, processor_time_of, report
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, WorldState
 
@@ -211,6 +211,7 @@ def _best(make: Callable[[], Simulation]) -> tuple[float, float, float]:
     return plain, bare, recorded
 
 
+@benchmark("lockstep")
 def main(*, json_output: bool) -> int:
     """Measures and prints; returns the exit code."""
     return report(measure(), json_output=json_output)

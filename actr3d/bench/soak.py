@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 from pathlib import Path
 
-from actr3d.bench.figures import Figure, report, seconds_of
+from actr3d.bench.figures import Figure, benchmark, report, seconds_of
 from actr3d.bench.lockstep import typical
 
 TICKS = 1_000_000
@@ -49,6 +49,7 @@ def measure(ticks: int = TICKS) -> list[Figure]:
     ]
 
 
+@benchmark("soak")
 def main(*, json_output: bool) -> int:
     """Measures and prints; returns the exit code."""
     return report(measure(), json_output=json_output)

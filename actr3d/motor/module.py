@@ -433,14 +433,14 @@ class Motor(WithParameters, Port):
             return
         movement.begun = True
         self._obey(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.place)
-        self._emit("move", movement.trace_data())
+        self.emit("move", **movement.trace_data())
         self._ask()
 
     def _refuse(self, call: str, why: str) -> None:
         """Refuses a command."""
         self._become("error", True)
         self._become("refusal", why)
-        self._emit("refused", {"movement": call, "why": why})
+        self.emit("refused", movement=call, why=why)
 
     def _halt(self, keys: Iterable[str], place: str, end: str = "stopped") -> None:
         """Ends movements before they are done."""
@@ -457,7 +457,7 @@ class Motor(WithParameters, Port):
         """Shows the end of movements to productions and in the trace."""
         for movement, end in ended:
             self._become(f"{movement.group}_end", end)
-            self._emit("moved", {"movement": movement.name, "group": movement.group, "end": end})
+            self.emit("moved", movement=movement.name, group=movement.group, end=end)
         self._show_busy()
 
     def _gait(self) -> Iterable[Order]:
@@ -571,8 +571,3 @@ class Motor(WithParameters, Port):
         """Sets an attribute if its value changes."""
         if self.__dict__.get(name, _NOTHING) != value:
             Model.__setattr__(self, name, value)
-
-    def _emit(self, kind: str, data: dict[str, Any]) -> None:
-        trace = self.sch.trace
-        if trace is not None and trace.all:
-            trace.emit(self.sch.now_us, self._path, kind, data)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
+from actr3d.registry import Registry
 from actr3d.world import World
 
 
@@ -33,3 +34,19 @@ class Measure(Protocol):
             over: Whether the agents have ended the run; otherwise it was cut short, or continues.
         """
         ...
+
+
+M = TypeVar("M", bound="type[Measure]")
+
+MEASURES: Registry[type[Measure]] = Registry("measure")
+"""The measures of the library by the name of their class."""
+
+
+def measure(kind: M) -> M:
+    """Registers a measure under the name of its class.
+
+    Raises:
+        ValueError: If there is a measure of this name already.
+    """
+    MEASURES.add(kind.__name__, kind)
+    return kind

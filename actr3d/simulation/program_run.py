@@ -36,7 +36,7 @@ class ProgramRun:
         Raises:
             Exception: What a listener of that trace has raised.
         """
-        if event.kind == "output" or LEVELS.index(KINDS[event.kind].level) > self._rank:
+        if event.kind == "output" or KINDS[event.kind].rank > self._rank:
             return
         self._pass_on(event, self._trace)
         self._trace.raise_failures()

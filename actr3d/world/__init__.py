@@ -1,6 +1,7 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
 from actr3d.world import actuators, sensors
+from actr3d.world.anatomy import BODY_KINDS
 from actr3d.world.bodies import Car, ImportedBody, Load, Mannequin
 from actr3d.world.body import Body, BodyState
 from actr3d.world.bounding_box import BoundingBox
@@ -31,3 +32,6 @@ __all__ = [
     "actuators",
     "sensors",
 ]
+
+globals().update(BODY_KINDS)  # those above are imported by name for type checkers and readers
+__all__ += [name for name in BODY_KINDS if name not in __all__]  # pyright: ignore[reportUnsupportedDunderAll]

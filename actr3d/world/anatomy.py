@@ -8,6 +8,7 @@ from typing import Annotated, Protocol, TypeVar, runtime_checkable
 from annotated_types import Gt
 
 from actr3d.configuration import Configuration
+from actr3d.registry import Registry
 from actr3d.world.scene import Part
 
 
@@ -100,11 +101,11 @@ class Embodied(Part, Protocol):
 
 K = TypeVar("K", bound=type[Embodied])
 
-BODY_KINDS: dict[str, type[Embodied]] = {}
+BODY_KINDS: Registry[type[Embodied]] = Registry("body")
 """The kinds of bodies by class name."""
 
 
 def body_kind(kind: K) -> K:
     """Registers a class as a kind of body."""
-    BODY_KINDS[kind.__name__] = kind
+    BODY_KINDS.add(kind.__name__, kind)
     return kind

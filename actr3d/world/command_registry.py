@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import inspect
 import math
-import pkgutil
 import re
 from collections.abc import Callable, Collection
-from importlib import import_module
 from typing import Any, Generic, TypeVar
 
 from actr3d.errors import WorldError, did_you_mean
@@ -82,17 +80,6 @@ class CommandRegistry(dict[str, BodyWord[B]], Generic[B]):
     def of(self, body: B) -> tuple[str, ...]:
         """Returns the words that a body has, in the order of their registration."""
         return tuple(name for name, word in self.items() if word.available(body))
-
-
-def import_modules(package: str, path: Collection[str]) -> None:
-    """Imports all modules of a package, in the order of their names, so that they register what they define.
-
-    Args:
-        package: Its `__name__`.
-        path: Its `__path__`.
-    """
-    for module in pkgutil.iter_modules(path):
-        import_module(f"{package}.{module.name}")
 
 
 # -- checks of values

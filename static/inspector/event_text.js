@@ -2,59 +2,43 @@
 
 import { chunkText, valueText } from "../parts/chunk.js";
 import { commandText } from "../timeline/commands.js";
+import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
-/** The groups of events in the trace's filter: {id, text, kinds, first: whether they are shown by default}. */
-export const GROUPS = [
-  { id: "fire", text: "Firings", kinds: ["fire", "changed"], first: true },
-  { id: "output", text: "Prints", kinds: ["output"], first: true },
-  { id: "reward", text: "Rewards", kinds: ["reward"], first: true },
-  { id: "compile", text: "Compiled productions", kinds: ["compile"], first: true },
-  { id: "command", text: "User's commands", kinds: ["command"], first: true },
-  { id: "contact", text: "Contacts and results", kinds: ["contact", "result"], first: true },
-  { id: "plan", text: "Plans (SGOMS)", kinds: ["planning_unit", "unit_task", "method", "operator"], first: true },
-  { id: "choice", text: "Choices", kinds: ["select", "conflict"], first: false },
-  { id: "buffer", text: "Buffers", kinds: ["buffer"], first: false },
-  { id: "memory", text: "Memory", kinds: ["retrieval", "add", "chunks"], first: false },
-  { id: "request", text: "Requests and answers", kinds: ["request", "answer"], first: false },
-  { id: "vision", text: "Vision", kinds: ["search", "sight"], first: false },
-  { id: "motor", text: "Movements", kinds: ["move", "moved", "refused"], first: false },
-  { id: "learning", text: "Learned utilities", kinds: ["utility"], first: false },
-  { id: "state", text: "Attributes", kinds: ["state", "observe"], first: false },
-  { id: "run", text: "Beginnings and ends", kinds: ["start", "run", "stop", "initialize", "productions", "added", "removed"], first: false },
-];
 
-const TEXTS = {
-  changed: (data) => ["no longer", `${data.production} was chosen, but matches no longer`],
-  output: (data) => ["prints", data.text],
-  reward: (data) => ["reward", valueText(data.value)],
+/** The groups of events in the trace's filter: {id, text, kinds, first: whether they are shown by default}. The page itself adds contacts. */
+export const GROUPS = REGISTERED.map((group) => (group.id === "contact" ? { ...group, kinds: ["contact", ...group.kinds] } : group));
+
+const GROUPED = new Set(GROUPS.flatMap(({ kinds }) => kinds));
+
+/** Returns a function that checks whether the group of a kind is among those with these names; unregistered kinds are "other" events. */
+export function isInGroups(names) {
+  const kinds = new Set(GROUPS.filter(({ id }) => names.includes(id)).flatMap((group) => group.kinds));
+  const others = names.includes("other");
+  return (kind) => kinds.has(kind) || (others && !GROUPED.has(kind));
+}
+
+/** Texts that need more than the data's values. */
+const OWN_TEXTS = {
   compile: (data) => ["compiled", `${data.production} from ${(data.parents ?? []).join(" and ")}`],
   command: (_data, event) => ["user", commandText(event).join(" ")],
   contact: ({ force, lasts }) => ["touch", `begins: ${(1000 * lasts).toFixed(0)} ms, with up to ${force.toFixed(0)} N`],
-  result: (data) => ["result", pairs(data)],
   planning_unit: (data) => ["plan", `${data.name} ${data.what}${data.by ? ` by ${data.by}` : ""}`],
-  unit_task: (data) => ["unit task", `${data.name} ${data.what}`],
-  method: (data) => ["method", `${data.name} ${data.what}`],
-  operator: (data) => ["operator", `${data.name} ${data.what}`],
-  select: (data) => ["chosen", data.production],
   conflict: (data) => ["matching", Object.keys(data.utilities).join(", ") || "none"],
   buffer: (data) => ["holds", data.chunk ? chunkText(data.chunk) : "nothing"],
   retrieval: (data) => (data.failed ? ["fails", "nothing is retrieved"] : ["retrieved", data.chunk]),
   add: (data) => [data.merged ? "merges" : "adds", chunkText(data.chunk)],
   request: (data) => ["request", data.asked ?? pairs(data)],
-  answer: (data) => ["answer", `${data.word}: ${valueText(data.value)}`],
   search: (data) => [data.bottom_up ? "notices" : "searches", `${data.asked}: ${data.noticed.length} noticed${data.why ? `, ${data.why}` : ""}`],
   sight: (data) => (data.failed ? ["sees", "nothing of that kind"] : ["sees", chunkText(data.chunk)]),
-  move: (data) => ["moves", `${data.movement} (${data.group})`],
-  moved: (data) => ["moved", `${data.movement} (${data.group}): ${data.end}`],
-  refused: (data) => ["refused", `${data.movement}: ${data.why}`],
-  utility: (data) => ["utility", `${data.production} ${data.part} ${valueText(data.value)}`],
 };
 
 /** Returns [what happened, its details] of an event; a firing is described by its production alone. */
 export function eventText(event) {
   const [, , kind, data] = event;
   if (kind === "fire") return [data.production, pairs(data.bound)];
-  return (TEXTS[kind] ?? ((all) => [kind, pairs(all)]))(data ?? {}, event);
+  if (OWN_TEXTS[kind]) return OWN_TEXTS[kind](data ?? {}, event);
+  const [title, text] = TEXTS[kind] ?? [kind, ""];
+  return [title, text ? text.replace(/\{(\w+)\}/g, (_, name) => valueText(data?.[name])) : pairs(data)];
 }
 
 /** Returns names with their values in one line. */

@@ -3,7 +3,7 @@
 import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
-import { eventText, GROUPS, timeText } from "./event_text.js";
+import { eventText, GROUPS, isInGroups, timeText } from "./event_text.js";
 import { goTo } from "./go.js";
 import { Rows } from "./rows.js";
 import { useEventFilter } from "./event_filter.js";
@@ -18,10 +18,10 @@ const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).ma
 const TIME = "88px"; // wide enough for times of some hours
 const wantedWords = remembered("trace words", "");
 
-function testOf(kinds, words, agent) {
+function testOf(isShown, words, agent) {
   const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
   return (event) => {
-    if (!kinds.has(event[2])) return false;
+    if (!isShown(event[2])) return false;
     if (agent && event[1] !== agent && !isBelow(event[1], agent)) return false;
     if (wanted.length === 0) return true;
     const text = `${event[1]} ${event[2]} ${eventText(event).join(" ")}`.toLowerCase();
@@ -87,8 +87,8 @@ export function FiringTrace() {
   const systems = systemsOf(parts);
   const wanted = systems.includes(agent) ? agent : "";
   const key = `${groups.value} ${wantedWords.value} ${wanted}`;
-  const kinds = useMemo(() => new Set(GROUPS.filter(({ id }) => groups.value.includes(id)).flatMap((group) => group.kinds)), [groups.value]);
-  const test = testOf(kinds, wantedWords.value, wanted);
+  const isShown = useMemo(() => isInGroups(groups.value), [groups.value]);
+  const test = testOf(isShown, wantedWords.value, wanted);
   const filtered = useEventFilter(test, key);
   const mixed = new Mixed(filtered.numbers, touchEvents().filter(test));
   const { first, list } = events.value;

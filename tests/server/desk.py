@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tests.server.asking import COOKIE, GATE, HOST, Answer, call
-from workbench import protocol as say
 from workbench.app import make_app
 from workbench.files import ModelFolder
+from workbench.protocol import COMMAND
 from workbench.recording_index import Summary
 from workbench.recordings import Recordings
 from workbench.session import Session
@@ -95,7 +95,7 @@ class Talk:
 
     def say(self, kind: str, **more: Any) -> Any:
         """Says something; returns the result, or raises what went wrong."""
-        reply = self.desk.do(self.session.carry_out(say.ANYTHING.validate_python({"type": kind, **more}), "test"))
+        reply = self.desk.do(self.session.carry_out(COMMAND.validate_python({"type": kind, **more}), "test"))
         if reply.error is not None:
             raise RefusedError(reply.error)
         return json.loads(reply.result)

@@ -7,6 +7,7 @@ import random
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -21,9 +22,12 @@ from actr3d.running.building import build
 from actr3d.simulation import Simulation
 from actr3d.values import to_json
 from tests.server.desk import Desk, Talk
-from workbench import protocol as say
 from workbench.overlays import OVERLAYS
+from workbench.page_commands import COMMANDS, Question
+from workbench.page_commands.agents import Events, Explain, MemoryRows
+from workbench.page_commands.bodies import BodyState, Curves, View
 from workbench.worker.shown import Shown
+from workbench.worker.tops import Top
 
 MODELS = Path(__file__).parents[2] / "models"
 KINDS = tuple(OVERLAYS)
@@ -69,16 +73,24 @@ def build() -> Simulation:
 """Looks in other and other ways, feels, holds something and lets go of it."""
 
 
+def asked(shown: Shown) -> Any:
+    """Returns the part of a run that questions use."""
+    simulation = shown.simulation
+    tops = [Top(agent) for agent in simulation.minds.values()]
+    return SimpleNamespace(trace=simulation.trace, tops=lambda: tops, shown=shown, curves=shown.curves)
+
+
 def questions(shown: Shown) -> list[Any]:
     """Returns every question that a page can ask of a moment; a new kind of question is to be added here."""
     minds = shown.simulation.minds.values()
     memories = [path_of(part) for mind in minds for part in subtree(mind) if isinstance(part, Memory)]
     bodies = [*shown.simulation.world.bodies]
-    asked: list[Any] = [say.Explain(), *(say.Explain(at=share * shown.simulation.time) for share in (0.3, 0.9)), say.Events(most=20_000)]
-    asked += [say.Rows(memory=memory) for memory in memories]
-    asked += [kind(body=body) for body in bodies for kind in (say.Look, say.Body)]
-    assert {type(one) for one in asked} | {say.Rows, say.Look, say.Body, say.Curves} == {*say.QUESTIONS}
-    return asked
+    wanted: list[Any] = [Explain(), *(Explain(at=share * shown.simulation.time) for share in (0.3, 0.9)), Events(most=20_000)]
+    wanted += [MemoryRows(memory=memory) for memory in memories]
+    wanted += [kind(body=body) for body in bodies for kind in (View, BodyState)]
+    known = {kind for kind in COMMANDS.values() if issubclass(kind, Question)}
+    assert {type(one) for one in wanted} | {MemoryRows, View, BodyState, Curves} == known
+    return wanted
 
 
 def told(shown: Shown) -> dict[str, Any]:
@@ -91,13 +103,13 @@ def told(shown: Shown) -> dict[str, Any]:
     now: dict[str, Any] = {"physics": physics.hex(), "apertures": apertures, "parts": parts, "result": shown.result()}
     now |= {f"drawn {kind}": value for kind, value in drawn.items()}
     now |= {"touches": sorted(shown.touches()), "time": shown.simulation.time}
-    now |= {repr(question): shown.answer(question) for question in questions(shown)}
+    now |= {repr(question): question.answer(asked(shown)) for question in questions(shown)}
     return {name: json.loads(to_json(value)) for name, value in now.items()} | {"curves": curves_until(shown, shown.simulation.time)}
 
 
 def curves_until(shown: Shown, time: float) -> dict[float, Any]:
     """Returns the curves up to a time: what lies ahead may be known or not."""
-    answer = json.loads(to_json(shown.answer(say.Curves(most=5_000))))
+    answer = json.loads(to_json(Curves(most=5_000).answer(asked(shown))))
     names = sorted(answer["curves"])
     return {at: [answer["curves"][name][n] for name in names] for n, at in enumerate(answer["times"]) if at <= time}
 

@@ -11,7 +11,7 @@ import pytest
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.running.building import Blueprint
-from workbench.loader import Change, listing_of
+from workbench.loader import LiveCommand, listing_of
 
 MODELS = Path(__file__).parents[2] / "models"
 MODEL = '''"""Walks.
@@ -65,11 +65,11 @@ def test_the_parameters_of_what_a_file_builds() -> None:
     width = listing.parameter("width")
     assert (width.takes, width.default, width.above, width.most, width.unit) == ("number", 0.5, 0, 3, "m")
     assert (width.help, width.line) == ("The free width of the doorway [m].", 20)
-    assert width.live == Change(word="aperture")
+    assert width.live == LiveCommand(word="aperture")
     speed = listing.parameter("speed")
     assert (speed.takes, speed.default, speed.optional, speed.least, speed.unit) == ("number", None, True, 0.1, "m/s")
     assert speed.help == "How fast [m/s]; None for standing."
-    assert speed.live == Change(word="parameter", before=("walker.speed",))
+    assert speed.live == LiveCommand(word="parameter", before=("walker.speed",))
     assert listing.parameter("side").choices == ("left", "right")
     takes = {parameter.name: parameter.takes for parameter in listing.parameters}
     assert takes == {
@@ -198,4 +198,4 @@ def test_a_text_tells_of_parameters_what_the_loaded_model_does(name: str) -> Non
         signs = ((parameter.above, ">"), (parameter.least, ">="), (parameter.below, "<"), (parameter.most, "<="))
         assert sorted(f"{sign} {limit}" for limit, sign in signs if limit is not None) == sorted(one.bounds)
         assert parameter.choices == one.choices
-    assert [one.name for one in told if one.live == Change(word="aperture")] == [told[0].name if name == "doorway.py" else "aperture"]
+    assert [one.name for one in told if one.live == LiveCommand(word="aperture")] == [told[0].name if name == "doorway.py" else "aperture"]

@@ -16,11 +16,11 @@ from actr3d.world import Car, Floor, Mannequin, Scene, World
 from tests.server.desk import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
-from workbench import protocol as say
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.palette import channels, label_colours, palette
+from workbench.protocol import COMMAND
 from workbench.view_settings import Look
 
 LOOKING = """from actr3d.actr import *
@@ -230,7 +230,7 @@ def test_each_overlay_has_a_title_and_data_of_any_body_in_plain_values(kind: typ
 def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
     command = {"type": "overlay", "name": "heights", "shown": True}
     with pytest.raises(ValueError, match="there is no overlay of this name; there are: contacts, edges"):
-        say.ANYTHING.validate_python(command)
+        COMMAND.validate_python(command)
     try:
 
         @overlay("heights", "heights of bodies", shown=True)
@@ -248,7 +248,7 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
 
             def switch(self) -> None: ...
 
-        assert say.ANYTHING.validate_python(command).name == "heights"
+        assert COMMAND.validate_python(command).model_dump() == command
         assert Look().as_dict()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
     finally:
         del OVERLAYS["heights"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-import typing
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,7 +13,8 @@ import websockets
 
 from tests.server.serving import Served, served
 from tests.server.test_live import attached, heard, opened
-from workbench import protocol as say
+from workbench.page_commands import COMMANDS
+from workbench.page_commands.session import Restart, Stop
 from workbench.sockets import MOST_PAGES
 
 
@@ -68,15 +68,14 @@ def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) 
 
 
 NONSENSE: list[Any] = [None, True, -1, 0.5, 10**30, "\ud800", "x" * 20_000, "<img src=x>", [], [[]], [None] * 300, {}, {"x": {}}]
-LEFT_OUT = (say.Restart, say.Stop)
+LEFT_OUT = (Restart, Stop)
 """What ends the run that is spoken to."""
 USUAL = {"name": "width", "memory": "memory", "value": 1, "word": "teleport", "time": 0.01, "width": 0.5, "view": "free", "shown": True}
 
 
 def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(server: Served, session: str) -> None:
-    kinds: list[Any] = [*typing.get_args(typing.get_args(say.Anything)[0])]
     frames: dict[int, dict[str, Any]] = {}
-    for kind in (kind for kind in kinds if kind not in LEFT_OUT):
+    for kind in (kind for kind in COMMANDS.values() if kind not in LEFT_OUT):
         known = {"type": kind.model_fields["type"].default}
         known |= {name: USUAL[name] for name, field in kind.model_fields.items() if field.is_required()}
         for name in kind.model_fields:

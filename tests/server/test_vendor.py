@@ -15,6 +15,11 @@ from workbench.shipped import static
 VENDOR = static() / "vendor"
 MANIFEST = json.loads((VENDOR / "manifest.json").read_text(encoding="utf-8"))
 OWN = sorted(path for path in static().rglob("*") if path.suffix in (".html", ".css", ".js", ".svg") and VENDOR not in path.parents)
+MADE = {
+    (static() / "panels.js").resolve(): set((static() / "panels").resolve().glob("*.js")),
+    (static() / "trace_kinds.js").resolve(): set[Path](),
+}
+"""The modules that the server makes, and what they import."""
 ELSEWHERE = re.compile(r"""(?:https?:|wss?:)?//(?!www\.w3\.org/)[\w-]+(?:\.[\w-]+)+""")
 
 
@@ -42,7 +47,7 @@ def test_a_file_of_the_page_loads_nothing_from_elsewhere(path: Path) -> None:
 def test_what_a_module_imports_is_there(path: Path) -> None:
     for name in re.findall(r"""(?:import|from)\s*\(?\s*["']([^"']+)["']""", path.read_text(encoding="utf-8")):
         assert name.startswith("."), name
-        assert (path.parent / name).is_file() or (path.parent / name) == static() / "panels.js", name
+        assert (path.parent / name).is_file() or (path.parent / name).resolve() in MADE, name
 
 
 @pytest.mark.parametrize("path", [path for path in OWN if path.suffix == ".js"], ids=lambda path: path.name)
@@ -54,15 +59,15 @@ def test_a_module_uses_what_it_imports(path: Path) -> None:
 
 
 def imports(path: Path) -> set[Path]:
-    """Returns the modules that a module of the page imports; the list of panels, which the server makes, stands for all panels."""
-    if path == static() / "panels.js":
-        return set((static() / "panels").glob("*.js"))
+    """Returns the modules that a module of the page imports."""
+    if path in MADE:
+        return MADE[path]
     names = re.findall(r"""(?:import|from)\s*\(?\s*["'](\.[^"']+)["']""", path.read_text(encoding="utf-8"))
     return {(path.parent / name).resolve() for name in names}
 
 
 def test_no_module_imports_itself_by_way_of_others() -> None:
-    known = {path: imports(path) for path in [path for path in OWN if path.suffix == ".js"] + [static() / "panels.js"]}
+    known = {path: imports(path) for path in [path for path in OWN if path.suffix == ".js"] + [*MADE]}
     while True:  # what imports only what is known to be in no circle is in none
         free = {path for path, wanted in known.items() if not wanted & known.keys()}
         if not free:

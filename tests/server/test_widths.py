@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from workbench.loader import Change, Parameter
+from workbench.loader import LiveCommand, Parameter
 from workbench.worker.widths import widths
 
-OPENS = Change(word="aperture")
+OPENS = LiveCommand(word="aperture")
 
 
 def test_a_slider_has_the_bounds_of_the_parameter_that_sets_doorways() -> None:
-    other = Parameter(name="speed", takes="number", most=2.0, live=Change(word="parameter"))
+    other = Parameter(name="speed", takes="number", most=2.0, live=LiveCommand(word="parameter"))
     open_ones = Parameter(name="width", takes="number", above=0.0, most=3.0, live=OPENS)
     closed = Parameter(name="width", takes="number", least=0.25, below=1.2, live=OPENS)
     assert widths(["door"], [other, open_ones]) == {"door": (1, 300)}

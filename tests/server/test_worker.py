@@ -136,11 +136,12 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
     async def both() -> tuple[Any, Any]:
         import asyncio
 
-        from workbench import protocol as say
+        from workbench.page_commands.agents import Explain
+        from workbench.page_commands.session import Stop
 
-        asking = asyncio.create_task(talk.session.carry_out(say.Explain()))
+        asking = asyncio.create_task(talk.session.carry_out(Explain()))
         await asyncio.sleep(0.1)
-        return await talk.session.carry_out(say.Stop()), await asking
+        return await talk.session.carry_out(Stop()), await asking
 
     _, explained = desk.do(both())
     assert explained.error == "the run has ended"

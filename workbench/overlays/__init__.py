@@ -3,12 +3,9 @@
 What only the worker of a run needs is imported in `data`, because the server starts without it.
 """
 
-import pkgutil
-from importlib import import_module
-
+from actr3d.registry import import_modules
 from workbench.overlays.overlay import OVERLAYS, Drawn, Observed, Overlay
 
-for _module in pkgutil.iter_modules(__path__):
-    import_module(f"{__name__}.{_module.name}")
+import_modules(__name__, __path__)
 
 __all__ = ["OVERLAYS", "Drawn", "Observed", "Overlay"]

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from mujoco import MjData, MjModel
 
+from actr3d.registry import Registry
+
 if TYPE_CHECKING:
     from actr3d.camera import CameraParameters
     from actr3d.simulation import Simulation
 
-OVERLAYS: dict[str, type[Overlay]] = {}
+OVERLAYS: Registry[type[Overlay]] = Registry("overlay")
 """All overlays by name, in the order of the menu."""
 
 
@@ -97,7 +99,7 @@ def overlay(name: str, title: str, *, shown: bool = False) -> Callable[[type[Kin
 
     def register(cls: type[Kind]) -> type[Kind]:
         cls.name, cls.title, cls.shown_at_first = name, title, shown
-        OVERLAYS[name] = cls
+        OVERLAYS.add(name, cls)
         return cls
 
     return register

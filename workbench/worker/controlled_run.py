@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from actr3d.trace import Trace
+from workbench.loader import LiveCommand
 from workbench.worker.names import Names
+from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
+from workbench.worker.tops import Top
 
 
 class ControlledRun(Protocol):
@@ -32,8 +36,36 @@ class ControlledRun(Protocol):
         """The trace so far."""
         ...
 
-    def do(self, command: Any) -> None:
-        """Carries out a command that changes the run itself.
+    @property
+    def shown(self) -> Shown | None:
+        """What is shown of the current simulation, if there is one."""
+        ...
+
+    def go_to(self, time: int) -> None:
+        """Goes to another time of the run [us].
+
+        Raises:
+            SimulationError: If the run has not been there.
+        """
+        ...
+
+    def live_parameter(self, name: str, value: Any) -> LiveCommand:
+        """Returns how a parameter is changed during the run, after checking its new value.
+
+        Raises:
+            Actr3dError: If there is no such parameter, it cannot change during a run, or it cannot have this value.
+        """
+        ...
+
+    def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
+        """Gives the simulation a command; what lies ahead is kept as a branch.
+
+        Args:
+            word: The command.
+            values: Its arguments.
+            named: Its keyword arguments.
+            body: The body that it is for, if any.
+            drop: Whether what lies ahead may be lost if it cannot be kept.
 
         Raises:
             Exception: If the command cannot be carried out; its text says why.
@@ -52,12 +84,12 @@ class ControlledRun(Protocol):
         """Removes the knowledge of times after the present."""
         ...
 
-    def answer(self, question: Any) -> Any:
-        """Returns the answer to a question as plain values.
+    def tops(self) -> Sequence[Top]:
+        """Returns the top models, or the agents of a simulation."""
+        ...
 
-        Raises:
-            Exception: If the question cannot be answered; its text says why.
-        """
+    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
+        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
         ...
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:

@@ -71,8 +71,8 @@ class Do(Message, frozen=True, kw_only=True):
     """A command or question from a page."""
 
     id: int
-    say: bytes
-    """The command as JSON; see `protocol`."""
+    command: bytes
+    """A pickled `workbench.page_commands.PageCommand`, which the server has validated."""
 
 
 class Leave(Message, frozen=True, kw_only=True):

@@ -13,9 +13,7 @@ from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import Listing
-from workbench.protocol import Until
 from workbench.worker.messages import Notice, notice
-from workbench.worker.slots import check_slots
 from workbench.worker.tops import Top
 
 MOST_TOLD = 12
@@ -77,28 +75,6 @@ class Names:
         """
         for name in sorted(set(productions).difference(before)):
             self.check("production", name)
-
-
-def check_until(said: Until, names: Names, sources: Iterable[str], folder: str = "") -> None:
-    """Checks, before a run continues, that the condition it is to stop at can occur.
-
-    Args:
-        said: The stop condition.
-        names: The names in the run.
-        sources: The texts of the model.
-        folder: The folder of its helper modules.
-
-    Raises:
-        Actr3dError: If a name is unknown, the pattern is invalid, or it names a slot that no chunk can have.
-    """
-    if said.buffer:
-        names.buffer(said.buffer)
-    for what, name in (("production", said.production), ("body", said.contact)):
-        if what == "body" and name is not None and not names.bodies:
-            raise Actr3dError("there is no body in this run that could touch anything")
-        if name:
-            names.check(what, name)
-    check_slots(said.pattern or "", sources, names.modules, folder)
 
 
 def lost_breakpoints(productions: Iterable[str], names: Names) -> Iterator[Notice]:

@@ -14,7 +14,7 @@ from actr3d.actr.kernel.tree import children_of
 from actr3d.actr.loading import run_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
-from actr3d.clock import MICROSECONDS, seconds
+from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
 from actr3d.running.complaint import failure
@@ -23,14 +23,12 @@ from actr3d.running.printed import ProgramOutput
 from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
-from workbench import protocol as say
 from workbench.curves import joined
-from workbench.loader import Listing
+from workbench.loader import Listing, LiveCommand
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, names_of_program
-from workbench.worker.queries import answer
 from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
@@ -332,28 +330,40 @@ class ProgramRun:
         """The trace of all its runs."""
         return self._limits.trace
 
-    def do(self, command: Any) -> None:
-        """Goes to another time; nothing else can be done to a program: it may hold what a command would change.
+    @property
+    def shown(self) -> Shown | None:
+        """What is shown of the simulation that has ticked last."""
+        return self._shown
+
+    def live_parameter(self, name: str, value: Any) -> LiveCommand:
+        """Refuses to change a parameter: a program may hold what it would change.
 
         Raises:
-            SimulationError: If it is anything else, or the run has not been there.
+            SimulationError: Always.
+        """
+        raise _refusal(name)
+
+    def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
+        """Refuses the command: a program may hold what it would change.
+
+        Raises:
+            SimulationError: Always.
+        """
+        raise _refusal(word)
+
+    def go_to(self, time: int) -> None:
+        """Goes to another time [us].
+
+        Raises:
+            SimulationError: If the run has not been there.
             EndOfRun: To leave the program.
         """
-        if isinstance(command, say.Back):
-            to = max(0, (self._clock - 1) // self.period - command.ticks + 1) * self.period
-        elif isinstance(command, say.Seek):
-            to = round(command.time * MICROSECONDS)
-        else:
-            raise SimulationError(
-                f"'{command.type}' cannot be done: a program takes no commands while it runs; to change a simulation while it runs, "
-                "let a function `build(parameters) -> Simulation` return it"
-            )
-        if to > self._furthest:
-            raise SimulationError(f"the run has come to {seconds(self._furthest):g} s only; run it on instead")
+        if time > self._furthest:
+            raise SimulationError(f"the run has only reached {seconds(self._furthest):g} s; continue it instead")
         over = self._controller.status in ("ended", "failed")
-        self._rush = to
+        self._rush = time
         self._controller.status = "running"
-        if over or to < self._clock:
+        if over or time < self._clock:
             self._again = True
             raise _Again
 
@@ -371,19 +381,13 @@ class ProgramRun:
         """Forgets that it has been further than it is now."""
         self._furthest = self._clock
 
-    def answer(self, question: Any) -> Any:
-        """Returns the answer to a question.
+    def tops(self) -> list[Top]:
+        """Returns the latest models."""
+        return list(self._tops())
 
-        Raises:
-            Exception: If there is none; its text says why.
-        """
-        match question:
-            case say.Curves():
-                return joined(shown.curves(question, begin) for shown, begin in self._simulations)
-            case say.Look() | say.Body() if self._shown is not None:
-                return self._shown.answer(question)
-            case _:
-                return answer(question, self.trace, list(self._tops()))
+    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
+        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
+        return joined(shown.curves(names, first, last, most, begin) for shown, begin in self._simulations)
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns the state of the physics, and the widths of apertures [m]; first informs the server if the scene is another one."""
@@ -436,3 +440,10 @@ class ProgramRun:
                 self._runs += 1
                 if run.model is not None:
                     self._held.append((self._runs, run, run.model))
+
+
+def _refusal(what: str) -> SimulationError:
+    return SimulationError(
+        f"'{what}' cannot be done: a program takes no commands while it runs; to change a simulation while it runs, "
+        "let a function `build(parameters) -> Simulation` return it"
+    )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 import threading
+from collections.abc import Mapping
 from contextlib import suppress
 from time import perf_counter
 from typing import Any
@@ -10,18 +12,17 @@ from typing import Any
 import msgspec
 
 from actr3d.actr.kernel.run_limits import EndOfRun
-from actr3d.clock import MICROSECONDS, seconds
+from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
 from actr3d.printing import ModelOutput
 from actr3d.trace import Trace
 from actr3d.values import to_json
-from workbench import protocol as say
 from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import told_of
 from workbench.worker.foreknown import Foreknown, difference_notice
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
-from workbench.worker.names import check_until, lost_breakpoints
+from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
 from workbench.worker.truncation import bounded_json, event_json
@@ -205,7 +206,7 @@ class RunController:
             self.show()
             return
         try:
-            result = self._do(say.ANYTHING.validate_json(message.say))
+            result = pickle.loads(message.command).carry_out(self)
         except EndOfRun:
             self.channel.post(Reply(id=message.id))
             raise
@@ -214,64 +215,15 @@ class RunController:
             return
         self.channel.post(Reply(id=message.id, result=to_json(result).encode()))
 
-    def _do(self, said: Any) -> Any:
-        match said:
-            case say.Run():
-                self._go()
-            case say.Pause():
-                if self.status == "running":
-                    self.pause("by the user")
-            case say.Step():
-                # Steps that arrive before earlier steps are finished add up.
-                under_way = self.status == "running" and self.watch.goal is not None
-                begin = (self.watch.goal or 0) if under_way else self.run.clock
-                self._go(goal=(begin // self.run.period + said.ticks) * self.run.period, goal_reason="after a step")
-            case say.Cycle():
-                # Like steps, cycles that are requested before the previous one is finished add up.
-                if self.status == "running" and self.watch.cycles > 0 and self.watch.system == said.system:
-                    self.watch.cycles += 1
-                else:
-                    self._go(cycles=1, system=said.system)
-            case say.Until():
-                self._until(said)
-            case say.Breakpoints():
-                self.run.names().check_new(said.productions, self.watch.breakpoints)
-                self.watch.breakpoints = frozenset(said.productions)
-            case say.Speed():
-                self.pacer.set(said.factor)
-                self.show()
-            case say.Explain() | say.Rows() | say.Look() | say.Body() | say.Events() | say.Curves():
-                return self.run.answer(said)
-            case _:
-                self._reached = max(self._reached, self.run.clock)
-                self.run.do(said)
-                self.show()
-        return None
+    def go(self, **wanted: Any) -> None:
+        """Continues the run.
 
-    def _until(self, said: say.Until) -> None:
-        wanted = said.model_dump(exclude={"type"}, exclude_none=True)
-        if not wanted.keys() - {"pattern"}:
-            raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
-        start, names = self.channel.start, self.run.names()
-        check_until(said, names, (start.source, *(text for _, text in start.helpers.values())), start.folder)
-        goal = None if said.time is None else round(said.time * MICROSECONDS)
-        if goal is not None and goal <= self.run.clock:
-            raise Actr3dError(f"it is {seconds(self.run.clock):g} s already; a click on the timeline goes back")
-        touching = self.run.touches() if said.contact is not None else frozenset[tuple[str, str, str]]()
-        self._go(
-            goal=goal,
-            goal_reason=f"at {said.time} s",
-            production=said.production,
-            buffer=names.buffer(said.buffer) if said.buffer else None,
-            called=said.buffer or "",
-            pattern=said.pattern or "",
-            contact=said.contact,
-            touching=touching,
-        )
-        self.reason = self.watch.pending
-        self.show()
+        Args:
+            wanted: The conditions at which it stops; see `Watch`.
 
-    def _go(self, **wanted: Any) -> None:
+        Raises:
+            Actr3dError: If the run is over.
+        """
         if self.status in ("ended", "failed"):
             raise Actr3dError("the run is over: go back to an earlier time, or begin again")
         self.watch.begin(**wanted)
@@ -281,6 +233,28 @@ class RunController:
         self.pacer.halt()
         if "goal" not in wanted:
             self.show()
+
+    def go_to(self, time: int) -> None:
+        """Goes to another time of the run [us].
+
+        Raises:
+            Actr3dError: If the run has not been there.
+        """
+        self._reached = max(self._reached, self.run.clock)
+        self.run.go_to(time)
+        self.show()
+
+    def change(
+        self, word: str, values: tuple[Any, ...], named: Mapping[str, Any] | None = None, body: str | None = None, *, drop: bool = False
+    ) -> None:
+        """Gives the running simulation a command; see `ControlledRun.change`.
+
+        Raises:
+            Exception: If it cannot be carried out.
+        """
+        self._reached = max(self._reached, self.run.clock)
+        self.run.change(word, values, named or {}, body, drop=drop)
+        self.show()
 
     def _check_events(self) -> None:
         """Pauses the run if a new event meets a stop condition."""

@@ -1,33 +1,27 @@
-"""Computes what is shown of one simulation: its scene, overlays, curves, and answers to questions. Asking changes nothing."""
+"""Computes what is shown of one simulation: its scene, overlays and curves. Asking changes nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import cached_property
 from typing import Any
 
-from actr3d.actr.modules.answers import plain_answer
-from actr3d.camera import EXTENT_FIELDS, CameraParameters, Sight, glance
+from actr3d.camera import CameraParameters, Sight
 from actr3d.clock import microseconds, seconds
-from actr3d.errors import Actr3dError, did_you_mean
+from actr3d.errors import Actr3dError
 from actr3d.simulation import Simulation
 from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
 from actr3d.world import Aperture, Floor, World
-from actr3d.world.body import Body
 from actr3d.world.compiled import loaded, saved
-from actr3d.world.sensors import SENSORS
 from actr3d.world.sensors.touch import present
-from workbench import protocol as say
 from workbench.curves import Curves, stretch
 from workbench.loader import Parameter
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.past import Past
-from workbench.worker.queries import answer
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.tops import Top
 from workbench.worker.walked import Walked
 from workbench.worker.widths import widths
 
@@ -113,34 +107,19 @@ class Shown:
             (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
         )
 
-    # -- questions
-
-    def answer(self, question: Any) -> Any:
-        """Returns the answer to a question as plain values.
-
-        Raises:
-            Actr3dError: If there is nothing of that name, or the question cannot be answered.
-        """
-        match question:
-            case say.Look():
-                return self._look(self._body(question.body))
-            case say.Body():
-                return _stand(self._body(question.body))
-            case say.Curves():
-                return self.curves(question)
-            case _:
-                return answer(question, self.simulation.trace, [Top(mind) for mind in self.simulation.minds.values()])
-
-    def curves(self, question: say.Curves, begin: int = 0) -> dict[str, Any]:
+    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int, begin: int = 0) -> dict[str, Any]:
         """Returns curves of the known run.
 
         Args:
-            question: The names of the curves, and the interval.
+            names: The names of the curves; None for all.
+            first: Start of the interval [s].
+            last: Its end, included [s]; None for the furthest time of the run.
+            most: Maximum number of times.
             begin: The time at which the simulation began, as pages count it [us].
         """
-        first, last = stretch(question.first, question.last, self.period, begin)
-        moments = ((seconds(begin + tick * self.period), state) for tick, state in self.kept.states.within(first, last, question.most))
-        return self._curves.sampled(moments, question.names)
+        ticks = stretch(first, last, self.period, begin)
+        moments = ((seconds(begin + tick * self.period), state) for tick, state in self.kept.states.within(*ticks, most))
+        return self._curves.sampled(moments, names)
 
     @cached_property
     def _curves(self) -> Curves:
@@ -152,32 +131,3 @@ class Shown:
         mind, body = self.simulation.minds.get(name), self.simulation.world.bodies[name]
         own = None if mind is None else next((vision.eyesight for vision in visions(mind)), None)
         return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
-
-    def _look(self, body: Body) -> dict[str, Any]:
-        view = glance(body, self.eyesight(body.name))
-        fields = [{"name": field.name, "title": field.title, "unit": field.unit, "about": field.about} for field in EXTENT_FIELDS]
-        return {"body": body.name, "rows": view.rows, "fields": fields, "extents": view.as_array().tolist()}
-
-    def _body(self, name: str | None) -> Body:
-        bodies = self.simulation.world.bodies
-        if not bodies:
-            raise Actr3dError("the run has no body")
-        if name is None:
-            return next(iter(bodies.values()))
-        if name not in bodies:
-            raise Actr3dError(f"no body '{name}'{did_you_mean(name, bodies)}; there are: {', '.join(bodies)}")
-        return bodies[name]
-
-
-def _stand(body: Body) -> dict[str, Any]:
-    """Returns the pose, joints, contacts and bounding box of a body."""
-    limits = {joint.name: joint.limits for joint in body.joints.values()}
-    joints = plain_answer(SENSORS["joints"](body))
-    box = body.bounding_box("body")
-    return {
-        "body": body.name,
-        "pose": plain_answer(SENSORS["pose"](body)),
-        "joints": {name: {"now": reading, "limits": limits.get(name)} for name, reading in joints.items()},
-        "contacts": [plain_answer(touch) for touch in present(body)],
-        "box": {"lower": box.lower, "upper": box.upper, "size": box.size},
-    }

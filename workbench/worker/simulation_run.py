@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -23,9 +24,8 @@ from actr3d.running.printed import BuiltOutput
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
-from workbench import protocol as say
 from workbench.branches import new_branch, superfluous_branches
-from workbench.loader import Listing
+from workbench.loader import Listing, LiveCommand
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.messages import Branched, Facts
@@ -189,33 +189,44 @@ class SimulationRun:
         """The trace up to now."""
         return self._simulation.trace
 
-    def do(self, command: Any) -> None:
-        """Does what a user wants of the simulation.
+    @property
+    def shown(self) -> Shown:
+        """What is shown of the simulation."""
+        return self._shown
+
+    def go_to(self, time: int) -> None:
+        """Goes to the tick that is nearest to a time [us].
 
         Raises:
-            SimulationError: If it cannot be done.
-            Exception: What the world, a body or a mind raises.
+            SimulationError: If the run has not been there.
         """
-        match command:
-            case say.Back():
-                self._seek(max(0, self._simulation.ticks - command.ticks))
-            case say.Seek():
-                self._seek(round(command.time * MICROSECONDS / self.period))
-            case say.Aperture():
-                self._command("aperture", (command.width,), {"name": command.name}, None, drop=command.drop)
-            case say.Say():
-                self._command(command.word, command.values, command.named, command.body, drop=command.drop)
-            case say.Set():
-                parameter = self._listing.parameter(command.name)
-                if parameter.live is None:
-                    raise SimulationError(f"'{command.name}' cannot change while a run goes on; begin again with the new value")
-                parameter.check(command.value)
-                live = parameter.live
-                self._command(live.word, (*live.before, command.value), {}, live.body, drop=command.drop)
-            case _:
-                raise SimulationError(f"'{command.type}' is nothing that is said to a run")
+        tick = round(time / self.period)
+        self._simulation.seek(seconds(tick * self.period))
+        if self._end is None or tick != self._end[0]:
+            self._controller.went_back()
+            return
+        self._conclude()
+        self._controller.end("ended", ENDINGS[self._end[1]])
 
-    def _command(self, word: str, values: tuple[Any, ...], named: dict[str, Any], body: str | None, *, drop: bool) -> None:
+    def live_parameter(self, name: str, value: Any) -> LiveCommand:
+        """Returns how a parameter is changed during the run, after checking its new value.
+
+        Raises:
+            Actr3dError: If there is no such parameter, it cannot change during a run, or it cannot have this value.
+        """
+        parameter = self._listing.parameter(name)
+        if parameter.live is None:
+            raise SimulationError(f"'{name}' cannot change while a run goes on; begin again with the new value")
+        parameter.check(value)
+        return parameter.live
+
+    def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
+        """Gives the simulation a command; what lies ahead is kept as a branch, or, if `drop` is true, may be lost.
+
+        Raises:
+            SimulationError: If the run is over, or what lies ahead cannot be kept and may not be lost.
+            Exception: What the world, a body or an agent raises.
+        """
         if self._controller.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or begin again")
         trace = self._simulation.trace
@@ -275,14 +286,6 @@ class SimulationRun:
         if self._recording is not None:
             self._recording.fact("failed", text)
 
-    def _seek(self, tick: int) -> None:
-        self._simulation.seek(seconds(tick * self.period))
-        if self._end is None or tick != self._end[0]:
-            self._controller.went_back()
-            return
-        self._conclude()
-        self._controller.end("ended", ENDINGS[self._end[1]])
-
     def finish_output(self) -> None:
         """Traces an unfinished line."""
         self._simulation.event_log.stdout.finish()
@@ -299,13 +302,13 @@ class SimulationRun:
         if self._end is not None and self._end[0] > self._simulation.ticks:
             self._end = None
 
-    def answer(self, question: Any) -> Any:
-        """Returns what is asked.
+    def tops(self) -> list[Top]:
+        """Returns the agents."""
+        return [Top(mind) for mind in self._simulation.minds.values()]
 
-        Raises:
-            Exception: If there is none; its text says why.
-        """
-        return self._shown.answer(question)
+    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
+        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
+        return self._shown.curves(names, first, last, most)
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns the state of the physics, and how wide apertures are."""
@@ -328,7 +331,7 @@ class SimulationRun:
 
     def names(self) -> Names:
         """Returns at what it can be stopped."""
-        return names_of(map(Top, self._simulation.minds.values()), self._simulation.world.bodies)
+        return names_of(self.tops(), self._simulation.world.bodies)
 
     def touches(self) -> Touches:
         """Returns what touches a body now, the ground left out."""

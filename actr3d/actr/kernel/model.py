@@ -294,6 +294,17 @@ class Model(TreeNode):
 
     # -- what a trace receives
 
+    def emit(self, kind: str, **data: Any) -> None:
+        """Records an event of this part in the trace, if there is one that records everything.
+
+        Args:
+            kind: The kind of event; `actr3d.kinds.trace_kind` registers one.
+            data: Its data; plain values, lists and dicts.
+        """
+        trace = self.sch.trace
+        if trace is not None and trace.all:
+            trace.emit(self.sch.now_us, self._path, kind, data)
+
     def _trace_state(self, trace: Trace) -> None:
         """Records the current value of every attribute, so that a trace that starts late is complete from its start."""
         if trace.all:
@@ -309,8 +320,7 @@ class Model(TreeNode):
         """Records a request to this module."""
         trace = self.sch.trace
         if trace is not None and trace.all:
-            data = {"call": call, **{key: traceable(value) for key, value in particulars.items()}}
-            trace.emit(self.sch.now_us, self._path, "request", data)
+            self.emit("request", call=call, **{key: traceable(value) for key, value in particulars.items()})
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         """Records one attribute's new value."""

@@ -8,8 +8,10 @@ from typing import Any, cast
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.modules.registry import module
 
 
+@module
 class ImaginalModule(WithParameters, Model):
     """Sets, changes and clears a buffer, each after a delay; calls are ignored while it is busy.
 

@@ -8,8 +8,10 @@ from typing import Any
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.modules.registry import module
 
 
+@module
 class SOSVision(WithParameters, Model):
     """Searches for objects that match a pattern, and puts one of those that it notices into a buffer.
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
+from actr3d.actr.modules.registry import module
 
 
+@module
 class TextOutput(Model):
     """Prints what an agent writes."""
 

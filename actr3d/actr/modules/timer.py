@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from actr3d.actr.kernel.events import Trigger
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.modules.registry import module
 
 
+@module
 class Timer(WithParameters, Model):
     """Counts pulses; pulse n + 1 lasts a t_n plus noise with standard deviation a b t_n.
 

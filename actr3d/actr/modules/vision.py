@@ -11,8 +11,10 @@ from actr3d.actr.declarative.finst import Finst
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.modules.registry import module
 
 
+@module
 class Vision(WithParameters, Model):
     """Sees the objects of the environment that have `x` and `y`, unless their `visible` is False.
 

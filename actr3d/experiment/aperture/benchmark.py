@@ -10,6 +10,7 @@ from dataclasses import asdict, replace
 from statistics import mean
 from typing import Any
 
+from actr3d.bench.figures import benchmark
 from actr3d.experiment.aperture.constraints import Constraint, Findings, turning_point
 from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
 
@@ -102,6 +103,7 @@ def _table(title: str, rows: list[dict[str, Any]], beside: str, scale: float = 1
     return lines
 
 
+@benchmark("aperture")
 def main(*, json_output: bool, trials: int = TRIALS) -> int:
     """Measures and prints; returns the exit code: 0 if the bar and all constraints are met, and all agents reach the wall."""
     measured = measure(trials)

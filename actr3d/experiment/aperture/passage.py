@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.experiment.aperture.clearance import Clearance
+from actr3d.simulation.measure import measure
 from actr3d.world import World
 from actr3d.world.scene_objects import Aperture
 
@@ -84,6 +85,7 @@ class _Sample(NamedTuple):
     force: float
 
 
+@measure
 class Passage:
     """Measures one body at one aperture, at every physics step.
 

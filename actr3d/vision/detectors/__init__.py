@@ -3,10 +3,10 @@
 A new detector is a function with the decorator `@detector`: in a file of this folder, or in any other module, such as a model's file.
 """
 
+from actr3d.registry import import_modules
 from actr3d.vision.detectors.obstacle import Obstacle
 from actr3d.vision.detectors.opening import Opening
 from actr3d.vision.detectors.registry import DETECTORS, Detector, detector
-from actr3d.world.command_registry import import_modules
 
 import_modules(__name__, __path__)
 

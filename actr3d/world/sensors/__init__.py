@@ -3,8 +3,8 @@
 A new sensor is a function with the decorator `@sensor`: in a file of this folder, or in any other module that is imported.
 """
 
+from actr3d.registry import import_modules
 from actr3d.world.body import SENSORS
-from actr3d.world.command_registry import import_modules
 
 import_modules(__name__, __path__)
 

@@ -1,10 +1,8 @@
-"""The commands of bodies: one function each, registered under its name.
+"""The commands that move bodies.
 
 A command holds until another one of its kind replaces it. Motion starts at once while the body touches nothing; otherwise
 its bounded forces start it. A stopped base or joint stops dead, and holds its place. Numbers may be given as text, because
 patterns bind text.
-
-A new command is a function with the decorator `@actuator`, in any module that is imported.
 """
 
 from __future__ import annotations

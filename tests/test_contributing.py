@@ -1,0 +1,117 @@
+"""The files of CONTRIBUTING.md: each is written to a copy of the project, and is known there without any other change."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.manual import FENCE, ROOT
+
+CHECKS = {
+    "actr3d/world/sensors/top.py": """
+        from actr3d.world import Car, Floor, Scene, World
+        assert World(Scene(parts=(Floor(), Car()))).bodies["car"].get("top") > 1.4
+    """,
+    "actr3d/world/actuators/stride.py": """
+        from actr3d.world import Car, Floor, Mannequin, Scene, World
+        bodies = World(Scene(parts=(Floor(), Car(position=(9, 9)), Mannequin(name="walker")))).bodies
+        assert "stride" not in bodies["car"].actuators
+        bodies["walker"].set("stride", 1.0)
+    """,
+    "actr3d/world/bodies/ball.py": """
+        from actr3d.world import Ball, Floor, Scene, World
+        assert World(Scene(parts=(Floor(), Ball(radius=0.2)))).bodies["ball"].get("top") == 0.4
+    """,
+    "actr3d/actr/modules/alarm.py": """
+        from actr3d.actr import *
+        from actr3d.kinds import KINDS
+        class Sleeper(ACTR):
+            goal = Buffer()
+            alarm = Alarm(0.3)
+            def init():
+                goal.set("sleep")
+            def wake(goal="sleep", alarm="ringing:True"):
+                goal.clear()
+        sleeper = Sleeper()
+        trace = sleeper.traced()
+        sleeper.run()
+        (ring,) = trace.select("ring")
+        assert (ring.time, ring.source, ring.data) == (0.3, "alarm", {"after": 0.3})
+        assert KINDS["ring"].group == "other"
+    """,
+    "actr3d/experiment/distance.py": """
+        import actr3d.experiment.distance
+        from actr3d.simulation import Simulation
+        from actr3d.simulation.measure import MEASURES
+        from actr3d.world import Floor, Mannequin, Scene
+        simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), seed=1)
+        simulation.measure(MEASURES["Distance"]("walker"))
+        simulation.command("walk", 1.0, body="walker")
+        simulation.run(1)
+        assert simulation.result().distance_m > 0.8
+    """,
+    "workbench/page_commands/firings.py": """
+        from types import SimpleNamespace
+        from actr3d.trace import TraceEvent
+        from workbench.protocol import COMMAND
+        question = COMMAND.validate_python({"type": "firings"})
+        events = [TraceEvent(0, "agent", "fire", {"production": name}) for name in ("go", "go", "stop")]
+        assert question.answer(SimpleNamespace(trace=events)) == {"go": 2, "stop": 1}
+        assert not question.takes_control
+    """,
+    "workbench/overlays/heads.py": """
+        from actr3d.camera import CameraParameters
+        from actr3d.simulation import Simulation
+        from actr3d.world import Car, Floor, Scene
+        from workbench.overlays import OVERLAYS, Observed
+        from workbench.protocol import COMMAND
+        COMMAND.validate_python({"type": "overlay", "name": "heads", "shown": True})
+        observed = Observed(Simulation(Scene(parts=(Floor(), Car()))), lambda body: CameraParameters(), dict)
+        assert OVERLAYS["heads"].data(observed)["car"][3] > 1.4
+    """,
+    "actr3d/bench/copying.py": """
+        from actr3d.cli import main
+        assert main(["bench", "copying"]) == 0
+    """,
+    "static/panels/clock.js": """
+        from workbench.sockets import panels
+        assert 'from "./panels/clock.js"' in panels().body.decode()
+    """,
+}
+"""By file: what is true with it, in a process of its own."""
+
+
+def files() -> dict[str, str]:
+    """Returns the files of the page by path."""
+    blocks = FENCE.findall((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"))
+    return {match[1]: text for _, _, rest, text in blocks if (match := re.search(r'title="(.+/.+)"', rest))}
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Returns a copy of the project with the files of the page."""
+    folder = tmp_path_factory.mktemp("contributing")
+    for package in ("actr3d", "workbench", "static"):
+        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+    for name, text in files().items():
+        assert not (folder / name).exists()
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+def test_every_file_of_the_page_is_checked() -> None:
+    assert files().keys() == CHECKS.keys()
+
+
+@pytest.mark.parametrize("file", CHECKS)
+def test_a_new_thing_is_one_file(file: str, copy: Path) -> None:
+    lines = CHECKS[file].strip("\n").splitlines()
+    text = "\n".join(line[8:] for line in lines)
+    (copy / "check.py").write_text(f"import actr3d\nassert actr3d.__path__[0] == {str(copy / 'actr3d')!r}\n{text}\n", encoding="utf-8")
+    done = subprocess.run([sys.executable, "check.py"], cwd=copy, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,101 @@
+"""Questions about the agents of a run: explanations, contents of memories, past events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field
+
+from workbench.page_commands.command import Name, Question, Seconds, page_command, unknown
+
+if TYPE_CHECKING:
+    from actr3d.actr.kernel.model import Model
+    from actr3d.actr.procedural.production_system import ProductionSystem
+    from workbench.worker.controlled_run import ControlledRun
+
+
+@page_command
+class Explain(Question):
+    """Explains productions and retrievals of all agents or of one, now or at a past time."""
+
+    type: Literal["explain"] = "explain"
+    at: Seconds | None = None
+    agent: Name | None = None
+    production: Name | None = None
+
+    def answer(self, run: ControlledRun) -> list[dict[str, Any]]:
+        from actr3d.actr.kernel.tree import path_of
+        from actr3d.actr.modules.answers import plain_answer
+
+        agents = {top.name(path_of(agent)): (top, agent) for top in run.tops() for agent in _agents(top.model)}
+        if self.agent is not None and self.agent not in agents:
+            raise unknown("agent", self.agent, agents)
+        asked = list(agents.values()) if self.agent is None else [agents[self.agent]]
+        explained: list[dict[str, Any]] = []
+        for top, agent in asked:
+            explanation = agent.explain(self.at)
+            reasons = [reason for reason in explanation.productions if self.production in (None, reason.name)]
+            plain = plain_answer(explanation)
+            plain["productions"] = [{**plain_answer(reason), "seen": reason.seen, "text": str(reason)} for reason in reasons]
+            plain["retrievals"] = [{**plain_answer(reason), "text": str(reason)} for reason in explanation.retrievals]
+            explained.append(top.named(plain))
+        if self.production is not None and not any(one["productions"] for one in explained):
+            raise unknown("production", self.production, (production.name for _, agent in asked for production in agent._productions))
+        return explained
+
+
+def _agents(model: Model) -> Iterator[ProductionSystem]:
+    """Yields the production systems that are not part of another production system."""
+    from actr3d.actr.kernel.tree import children_of
+    from actr3d.actr.procedural.production_system import ProductionSystem
+
+    if isinstance(model, ProductionSystem):
+        yield model
+    else:
+        for child in children_of(model):
+            yield from _agents(child)
+
+
+@page_command
+class MemoryRows(Question):
+    """Returns the chunks of a memory with their current activations."""
+
+    type: Literal["memory"] = "memory"
+    memory: Name
+    words: Annotated[str, Field(max_length=200)] = ""
+    most: int = Field(default=200, ge=1, le=5000)
+
+    def answer(self, run: ControlledRun) -> dict[str, Any]:
+        from actr3d.actr.declarative.memory import Memory
+        from actr3d.actr.explain.memory_table import memory_rows
+        from actr3d.actr.modules.answers import plain_answer
+
+        memories = {name: part for top in run.tops() for name, part in top.parts() if isinstance(part, Memory)}
+        if self.memory not in memories:
+            raise unknown("memory", self.memory, memories)
+        memory = memories[self.memory]
+        rows = [plain_answer(row) for row in memory_rows(memory, self.words, self.most)]
+        return {"memory": self.memory, "size": len(memory.dm), "threshold": memory.threshold, "rows": rows}
+
+
+@page_command
+class Events(Question):
+    """Returns events of the run from a number on."""
+
+    type: Literal["events"] = "events"
+    first: int = Field(default=0, ge=0)
+    most: int = Field(default=5000, ge=1, le=20_000)
+    kinds: tuple[Name, ...] | None = Field(default=None, max_length=50)
+
+    def answer(self, run: ControlledRun) -> dict[str, Any]:
+        trace = run.trace
+        events = [] if trace is None else trace.since(self.first)[: self.most]
+        wanted = [(number, event) for number, event in enumerate(events, self.first) if self.kinds is None or event.kind in self.kinds]
+        return {
+            "first": self.first,
+            "next": self.first + len(events),
+            "total": 0 if trace is None else len(trace),
+            "numbers": [number for number, _ in wanted],
+            "events": [[event.time_us, event.source, event.kind, event.data] for _, event in wanted],
+        }

@@ -1,0 +1,94 @@
+"""Questions about the bodies of a run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from actr3d.errors import Actr3dError
+from workbench.page_commands.command import Name, Question, Seconds, page_command, unknown
+
+if TYPE_CHECKING:
+    from actr3d.world.body import Body
+    from workbench.worker.controlled_run import ControlledRun
+    from workbench.worker.shown import Shown
+
+
+def _found(run: ControlledRun, name: str | None) -> tuple[Shown, Body]:
+    """Returns what is shown of a simulation, and one of its bodies; the first without a name."""
+    shown = run.shown
+    bodies = {} if shown is None else shown.simulation.world.bodies
+    if shown is None or not bodies:
+        raise Actr3dError("the run has no body")
+    if name is None:
+        return shown, next(iter(bodies.values()))
+    if name not in bodies:
+        raise unknown("body", name, bodies)
+    return shown, bodies[name]
+
+
+@page_command
+class View(Question):
+    """Returns what a body's eye sees now, row by row."""
+
+    type: Literal["view"] = "view"
+    body: Name | None = None
+
+    def answer(self, run: ControlledRun) -> dict[str, Any]:
+        from actr3d.camera import EXTENT_FIELDS, glance
+
+        shown, body = _found(run, self.body)
+        view = glance(body, shown.eyesight(body.name))
+        fields = [{"name": field.name, "title": field.title, "unit": field.unit, "about": field.about} for field in EXTENT_FIELDS]
+        return {"body": body.name, "rows": view.rows, "fields": fields, "extents": view.as_array().tolist()}
+
+
+@page_command
+class BodyState(Question):
+    """Returns the current state of a body: joints with their limits, contacts, bounding box, position."""
+
+    type: Literal["body"] = "body"
+    body: Name | None = None
+
+    def answer(self, run: ControlledRun) -> dict[str, Any]:
+        from actr3d.actr.modules.answers import plain_answer
+        from actr3d.world.sensors import SENSORS
+        from actr3d.world.sensors.touch import present
+
+        _, body = _found(run, self.body)
+        limits = {joint.name: joint.limits for joint in body.joints.values()}
+        joints = plain_answer(SENSORS["joints"](body))
+        box = body.bounding_box("body")
+        return {
+            "body": body.name,
+            "pose": plain_answer(SENSORS["pose"](body)),
+            "joints": {name: {"now": reading, "limits": limits.get(name)} for name, reading in joints.items()},
+            "contacts": [plain_answer(touch) for touch in present(body)],
+            "box": {"lower": box.lower, "upper": box.upper, "size": box.size},
+        }
+
+
+@page_command
+class Curves(Question):
+    """Returns curves of the run over time, up to the furthest time that it has reached, for plots.
+
+    The answer is `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`. `names` lists all curves, with
+    angles in degrees; `curves` holds the requested ones, with one value for each time, or null if there is no value (for example the
+    clearance of a body that is not in the doorway). Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
+    values are those at the ends of ticks, including the contact force. After going back, a run still returns what lies ahead, until it
+    continues differently. `/api/recordings/{recording}/curves` returns the same for a recording.
+    """
+
+    type: Literal["curves"] = "curves"
+    names: tuple[Name, ...] | None = Field(default=None, max_length=500)
+    """The names of the curves; None for all."""
+    first: Seconds = 0.0
+    """Start of the interval [s]: a page need not ask again for what it has."""
+    last: Seconds | None = None
+    """End of the interval, included [s]; None for the furthest time of the run."""
+    most: int = Field(default=1_000, ge=2, le=5_000)
+    """Maximum number of times, evenly spaced; the last moment of the interval is included. A shorter interval is returned completely."""
+
+    def answer(self, run: ControlledRun) -> dict[str, Any]:
+        return run.curves(self.names, self.first, self.last, self.most)

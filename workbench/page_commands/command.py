@@ -1,0 +1,98 @@
+"""Defines what all commands and questions of a page have in common, and their registry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from actr3d.errors import Actr3dError, did_you_mean
+from actr3d.registry import Registry
+
+if TYPE_CHECKING:
+    from workbench.session import Session
+    from workbench.worker.controlled_run import ControlledRun
+    from workbench.worker.messages import Reply
+    from workbench.worker.run_controller import RunController
+
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+Text = Annotated[str, Field(max_length=1_000_000)]
+Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
+PlainValue = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
+"""A value that can be recorded."""
+
+
+class PageMessage(BaseModel):
+    """Base of everything that a page or a program sends."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class PageCommand(PageMessage):
+    """Base of the commands: what a user wants of a session or its run. A command is validated in the server, and sent to the worker.
+
+    Each has a field `type`, a `Literal` with its name as the default.
+    """
+
+    takes_control: ClassVar[bool] = True
+    """Whether the sender is shown to others as the one who controls the session."""
+    of_shown_run: ClassVar[bool] = False
+    """Whether it is for the run on screen even if a newer run is being built; otherwise it is for the newest run."""
+
+    async def serve(self, session: Session) -> Reply:
+        """Does in the server what the command is for: by default, the worker of the run carries it out.
+
+        Raises:
+            Actr3dError: If it cannot be done.
+        """
+        return await session.ask(self)
+
+    def carry_out(self, controller: RunController) -> Any:
+        """Does in the worker, between two ticks, what the command is for; returns plain values.
+
+        Raises:
+            Exception: If it cannot be done; the text says why.
+        """
+        raise NotImplementedError
+
+
+class Question(PageCommand):
+    """Base of the questions, which change nothing."""
+
+    takes_control: ClassVar[bool] = False
+    of_shown_run: ClassVar[bool] = True
+
+    def carry_out(self, controller: RunController) -> Any:
+        """Answers the question."""
+        return self.answer(controller.run)
+
+    def answer(self, run: ControlledRun) -> Any:
+        """Returns the answer as plain values.
+
+        Raises:
+            Actr3dError: If there is nothing of a name, or the question cannot be answered.
+        """
+        raise NotImplementedError
+
+
+C = TypeVar("C", bound="type[PageCommand]")
+
+COMMANDS: Registry[type[PageCommand]] = Registry("page command")
+"""All commands and questions by name."""
+
+
+def page_command(command: C) -> C:
+    """Registers a command or question under the default of its field `type`, a `Literal`.
+
+    Raises:
+        ValueError: If there is a command of this name already.
+    """
+    COMMANDS.add(str(command.model_fields["type"].default), command)
+    return command
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> Actr3dError:
+    """Returns the error for a name that does not exist, with the names that do."""
+    names = list(known)
+    return Actr3dError(f"no {what} '{name}'{did_you_mean(name, names)}; there are: {', '.join(names) or 'none'}")

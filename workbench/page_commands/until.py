@@ -1,0 +1,66 @@
+"""The command that runs until a condition is true."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field
+
+from actr3d.clock import MICROSECONDS, seconds
+from actr3d.errors import Actr3dError
+from workbench.page_commands.command import Name, PageCommand, Seconds, page_command
+
+if TYPE_CHECKING:
+    from workbench.worker.run_controller import RunController
+
+
+@page_command
+class Until(PageCommand):
+    """Runs until one of the given conditions is true."""
+
+    type: Literal["until"] = "until"
+    time: Seconds | None = None
+    """This time is reached [s]."""
+    production: Name | None = None
+    """A production of this name fires."""
+    buffer: Name | None = None
+    """The buffer at this path matches `pattern`."""
+    pattern: Annotated[str, Field(max_length=2000)] | None = None
+    contact: Annotated[str, Field(max_length=200)] | None = None
+    """This body touches something other than the ground; an empty text means any body."""
+
+    def carry_out(self, controller: RunController) -> None:
+        """Checks, before the run continues, that each condition can occur.
+
+        Raises:
+            Actr3dError: If a name is unknown, the pattern is invalid, it names a slot that no chunk can have, or the time has passed.
+        """
+        from workbench.worker.slots import check_slots
+
+        if not self.model_dump(exclude={"type", "pattern"}, exclude_none=True):
+            raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
+        run, start = controller.run, controller.channel.start
+        names = run.names()
+        buffer = names.buffer(self.buffer) if self.buffer else None
+        if self.production:
+            names.check("production", self.production)
+        if self.contact is not None and not names.bodies:
+            raise Actr3dError("there is no body in this run that could touch anything")
+        if self.contact:
+            names.check("body", self.contact)
+        check_slots(self.pattern or "", (start.source, *(text for _, text in start.helpers.values())), names.modules, start.folder)
+        goal = None if self.time is None else round(self.time * MICROSECONDS)
+        if goal is not None and goal <= run.clock:
+            raise Actr3dError(f"it is {seconds(run.clock):g} s already; a click on the timeline goes back")
+        controller.go(
+            goal=goal,
+            goal_reason=f"at {self.time} s",
+            production=self.production,
+            buffer=buffer,
+            called=self.buffer or "",
+            pattern=self.pattern or "",
+            contact=self.contact,
+            touching=run.touches() if self.contact is not None else frozenset[tuple[str, str, str]](),
+        )
+        controller.reason = controller.watch.pending
+        controller.show()
