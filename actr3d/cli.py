@@ -235,7 +235,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _bench(options: argparse.Namespace) -> int:
-    from actr3d.bench.figures import find_benchmarks  # benchmarks are slow to import
+    from actr3d.bench import find_benchmarks  # benchmarks are slow to import
 
     known = find_benchmarks()
     if options.name is None:

@@ -29,7 +29,7 @@ def _of_library(code: CodeType) -> bool:
 
 def warn_modeller(message: str) -> None:
     """Warns (`ModelWarning`) at the innermost running line that is not the library's: the modeller's."""
-    frame = sys._getframe(1)
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] # Python documents it
     while frame.f_back is not None and _of_library(frame.f_code):
         frame = frame.f_back
     warn_at_frame(message, frame)

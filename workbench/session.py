@@ -5,15 +5,14 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Protocol
 
 import msgspec
 
 from actr3d.errors import Actr3dError
 from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
-from workbench.page_commands.command import PageCommand
 from workbench.pending_requests import Waiting
 from workbench.recording_index import begun
 from workbench.retention import erase, never_begun
@@ -22,6 +21,18 @@ from workbench.view_settings import Look
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import WorkerMonitor
+
+
+class Command(Protocol):
+    """A page command, as a session sees it; see `workbench.page_commands`."""
+
+    takes_control: ClassVar[bool]
+    of_shown_run: ClassVar[bool]
+
+    async def serve(self, session: Any) -> Reply:
+        """Does in the server what the command is for."""
+        ...
+
 
 Watcher = Callable[[Facts | State | Look | None], None]
 
@@ -118,7 +129,7 @@ class Session:
             start = start_of(self.path, wanted, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
             attempt = Attempt(start, await self._workers.launch())
-            self._keep(WorkerMonitor(attempt.worker, start, self).serve())
+            self.run_task(WorkerMonitor(attempt.worker, start, self).serve())
             if start.attempt <= self._given_up:  # stopped in the meantime
                 self._asked.add(attempt.worker)
                 attempt.worker.kill()
@@ -260,7 +271,7 @@ class Session:
             if useless is not None:
                 erase(Path(useless))
 
-        self._keep(end())
+        self.run_task(end())
 
     async def stop(self) -> None:
         """Ends the workers, whatever they are doing; after at most two seconds they are gone."""
@@ -282,7 +293,7 @@ class Session:
 
     # -- commands and questions
 
-    async def carry_out(self, command: PageCommand, who: str = "") -> Reply:
+    async def carry_out(self, command: Command, who: str = "") -> Reply:
         """Carries out a command or answers a question; the reply holds the result or the error.
 
         Args:
@@ -330,7 +341,7 @@ class Session:
         self._tell_watchers(self.look)
         self._changed(facts=True)
 
-    async def ask(self, command: PageCommand) -> Reply:
+    async def ask(self, command: Command) -> Reply:
         """Has a worker carry out a command: the worker of the run on screen if it is for that run, otherwise that of the newest run.
 
         After a user has started a new run, commands go to it, although the previous run is on screen until the new one is built.
@@ -342,7 +353,7 @@ class Session:
                 return await self._waiting.ask(loading.worker, command)
         return await self._waiting.ask(self._worker, command)
 
-    async def ask_all(self, command: PageCommand) -> Reply:
+    async def ask_all(self, command: Command) -> Reply:
         """Has the worker of the run on screen carry out a command, and that of the run being built, too."""
         async with self._beginning:
             loading = self._loading
@@ -358,7 +369,8 @@ class Session:
             if self._worker is not None:
                 self._worker.send(Draw(kinds=kinds))
 
-    def _keep(self, work: Any) -> None:
+    def run_task(self, work: Coroutine[Any, Any, Any]) -> None:
+        """Runs a coroutine in the background; it is cancelled when the session is closed."""
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)

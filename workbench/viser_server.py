@@ -29,12 +29,11 @@ def start_viser(secret: str) -> Any:
 
     rich.get_console().quiet = True  # viser prints its own address, which users must not open
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    inner: Any = server._websock_server
+    inner: Any = server._websock_server  # pyright: ignore[reportPrivateUsage] # viser has no other way
 
     async def check(client: Any) -> None:
         if not secrets.compare_digest(header_of(server, client, BRIDGE_HEADER), secret):
-            connection = inner._live_connections.get(client.client_id)
-            inner._live_connections.pop(client.client_id, None)
+            connection = inner._live_connections.pop(client.client_id, None)
             inner._client_state_from_id.pop(client.client_id, None)
             if connection is not None:
                 await connection.close(1008, "only the workbench's bridge may connect")

@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from actr3d.bench.figures import Figure, benchmark, little_garbage, ratio, report, seconds_of
+from actr3d.benchmark import Figure, benchmark, little_garbage, ratio, report, seconds_of
 from actr3d.camera import GeometricCamera
 
 RAYS = 10_000

@@ -18,7 +18,7 @@ from typing import Any
 
 from actr3d.actr import ACTR, Buffer, Memory
 from actr3d.actr.loading import load_text
-from actr3d.bench.figures import Figure, benchmark, ratio, report, seconds_of
+from actr3d.benchmark import Figure, benchmark, ratio, report, seconds_of
 
 THREE = """
 from python_actr import *

@@ -17,7 +17,7 @@ import mujoco
 
 from actr3d.actr.loading import load_text
 from actr3d.bench import camera
-from actr3d.bench.figures import Figure, benchmark, processor_time_of, report
+from actr3d.benchmark import Figure, benchmark, processor_time_of, report
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, WorldState
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import gc
 from pathlib import Path
 
-from actr3d.bench.figures import Figure, benchmark, report, seconds_of
 from actr3d.bench.lockstep import typical
+from actr3d.benchmark import Figure, benchmark, report, seconds_of
 
 TICKS = 1_000_000
 """The number of ticks: 10,000 s of simulated time."""

@@ -113,7 +113,7 @@ class Agents:
     def take(self, request: Request, answer: Any) -> None:
         """Gives an agent an answer, available from the next tick on."""
         # `_take` is private because productions see every public name of a model.
-        self._sch.call_after(0, request.port._take, (request, answer))
+        self._sch.call_after(0, request.port._take, (request, answer))  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
     def trace_event(self, trace: Trace, kind: str, data: dict[str, Any]) -> None:
         """Traces an event of the whole run."""

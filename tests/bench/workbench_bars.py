@@ -23,7 +23,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any, TypeVar
 
-from actr3d.bench.figures import Figure, report
+from actr3d.benchmark import Figure, report
 from tests.bench.pages import CLICKS, Client, attached, await_scene, looking, opened
 from tests.browser.looking import browser_path, launched
 from tests.server.serving import MODELS, Served, served

@@ -33,6 +33,7 @@ class Explain(Question):
             raise unknown("agent", self.agent, agents)
         asked = list(agents.values()) if self.agent is None else [agents[self.agent]]
         explained: list[dict[str, Any]] = []
+        names: list[str] = []
         for top, agent in asked:
             explanation = agent.explain(self.at)
             reasons = [reason for reason in explanation.productions if self.production in (None, reason.name)]
@@ -40,8 +41,9 @@ class Explain(Question):
             plain["productions"] = [{**plain_answer(reason), "seen": reason.seen, "text": str(reason)} for reason in reasons]
             plain["retrievals"] = [{**plain_answer(reason), "text": str(reason)} for reason in explanation.retrievals]
             explained.append(top.named(plain))
+            names += [reason.name for reason in explanation.productions]
         if self.production is not None and not any(one["productions"] for one in explained):
-            raise unknown("production", self.production, (production.name for _, agent in asked for production in agent._productions))
+            raise unknown("production", self.production, names)
         return explained
 
 

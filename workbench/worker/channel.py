@@ -133,7 +133,7 @@ class Channel:
 
     def _where(self) -> At:
         """Returns the position of the main thread in the modeller's own files."""
-        frame: FrameType | None = sys._current_frames().get(self._main or 0)
+        frame: FrameType | None = sys._current_frames().get(self._main or 0)  # pyright: ignore[reportPrivateUsage] # Python documents it
         lines: list[traceback.FrameSummary] = [] if frame is None else list(traceback.extract_stack(frame))
         folder = self.start.folder + os.sep
         own = [line for line in lines if line.filename == self.start.path or line.filename.startswith(folder)]

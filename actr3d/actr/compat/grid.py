@@ -447,7 +447,7 @@ class World(Model):
         if color is not None:
             body.color = color
         body.__dict__["_agent"] = agent
-        body._place(cell)  # private, because productions see every public name of a model
+        body._place(cell)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
         body.dir = dir
 
     def _free_name(self) -> str:

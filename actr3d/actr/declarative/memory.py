@@ -365,17 +365,17 @@ def _costs(partial: Partial) -> bool:
 
 def latest_retrieval(memory: Memory) -> Retrieval | None:
     """Returns the record of a memory's last request; None before the first."""
-    return memory._last
+    return memory._last  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def buffer_of(memory: Memory) -> Any:
     """Returns the buffer for retrieved chunks."""
-    return memory._buffer
+    return memory._buffer  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def collect(memory: Memory, chunk: Chunk) -> None:
     """Adds a chunk to a memory like `Memory.add`, but without resetting its `error`."""
-    memory._collect(chunk)
+    memory._collect(chunk)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def own_activation(memory: Memory) -> Callable[[Any], float] | None:

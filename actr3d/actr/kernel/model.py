@@ -320,7 +320,8 @@ class Model(TreeNode):
         """Records a request to this module."""
         trace = self.sch.trace
         if trace is not None and trace.all:
-            self.emit("request", call=call, **{key: traceable(value) for key, value in particulars.items()})
+            data = {"call": call, **{key: traceable(value) for key, value in particulars.items()}}
+            trace.emit(self.sch.now_us, self._path, "request", data)
 
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         """Records one attribute's new value."""
@@ -420,17 +421,17 @@ def is_converted(model: object) -> bool:
 def ensure_converted(model: Model, parent: Model | None = None) -> None:
     """Converts a model, as a child of `parent` if given, unless it has been converted before."""
     if not is_converted(model):
-        model._convert(parent)
+        model._convert(parent)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def profile_of(model: Model) -> Profile | None:
     """Returns the profile of a model; None for that of Python ACT-R."""
-    return model._profile
+    return model._profile  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def state_of(model: Model) -> dict[str, Any]:
     """Returns the attributes that describe a model, as a trace keeps them."""
-    return model._state()
+    return model._state()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def written_for_python_actr(kind: type) -> bool:

@@ -71,7 +71,7 @@ class WithParameters:
 
 def settable_of(part: WithParameters) -> set[str]:
     """Returns the names that may be meant by a misspelt attribute of a part."""
-    return part._settable()  # private, because productions see every public name of a model
+    return part._settable()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def warn_of_slip(part: WithParameters, name: str) -> None:

@@ -228,10 +228,11 @@ class Scheduler:
             if time < self.now_us:
                 time = self.now_us
             self.queue.push(time, event, priority, seconds(time - self.now_us))
-        for name, trigger in other._named.items():  # of this class, too
+        named = other._named  # of this class, too
+        for name, trigger in named.items():
             self.named(name).waiting += trigger.waiting
         self.incoming += other.incoming
-        other._named.clear()
+        named.clear()
         other.incoming.clear()
         self.round_ms = self.round_ms or other.round_ms
         self.harvests = self.harvests or other.harvests

@@ -98,7 +98,7 @@ def path_of(part: TreeNode) -> str:
 
     Below the top model of a trace's second run they begin with `top#2`. A part that has left the tree keeps its path.
     """
-    return part._path  # private, because productions see every public name of a model
+    return part._path  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def path_within(part: TreeNode, name: str) -> str:

@@ -82,7 +82,7 @@ def slots_held(parts: Iterable[object]) -> set[Any]:
     found: set[Any] = set()
     for part in parts:
         if isinstance(part, Buffer):
-            found.update(part.chunk or (), part._slots)  # private, because productions see every public name of a model
+            found.update(part.chunk or (), part._slots)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
         elif isinstance(part, Memory):
             for chunk in part.dm:
                 found.update(chunk)

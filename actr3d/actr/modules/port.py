@@ -153,7 +153,7 @@ class Searching(Port):
 
 def latest_searches(module: Searching) -> list[tuple[int, Mapping[str, Any], str]]:
     """Returns the last top-down and bottom-up search of a module: the time of its view [us], what was in it, and the outcome."""
-    return module._latest_searches()  # private, because productions see every public name of a model
+    return module._latest_searches()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 class BodyPort(Port):
@@ -253,7 +253,7 @@ def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
 
 def place_of_caller() -> str:
     """Returns `file:line` of the innermost running line outside the library."""
-    frame = sys._getframe(2)
+    frame = sys._getframe(2)  # pyright: ignore[reportPrivateUsage] # Python documents it
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_LIBRARY):
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"

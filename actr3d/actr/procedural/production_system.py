@@ -301,15 +301,15 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
 
 def standing_choice(system: ProductionSystem) -> ConflictSet | None:
     """Returns the latest conflict set until the chosen production fires; one in which none was chosen, until the next."""
-    choice = system._latest_choice()
+    choice = system._latest_choice()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
     return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
 
 
 def utility_parts(system: ProductionSystem, production: Production) -> dict[str, float | None]:
     """Returns what each utility module adds to a production's utility now; None for what is known only when a choice is made."""
-    return system._utility_parts(production)
+    return system._utility_parts(production)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def utility_part_names(system: ProductionSystem) -> list[str]:
     """Returns the names of the utility modules of a system."""
-    return system._part_names()
+    return system._part_names()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model

@@ -10,7 +10,7 @@ from dataclasses import asdict, replace
 from statistics import mean
 from typing import Any
 
-from actr3d.bench.figures import benchmark
+from actr3d.benchmark import benchmark
 from actr3d.experiment.aperture.constraints import Constraint, Findings, turning_point
 from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
 

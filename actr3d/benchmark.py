@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import gc
 import json
-import pkgutil
 import time
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib import import_module
 from statistics import median
 from typing import Literal, TypeVar
 
-import actr3d.bench
-import actr3d.experiment
 from actr3d.registry import Registry
 
 B = TypeVar("B", bound=Callable[..., int])
@@ -36,14 +32,6 @@ def benchmark(name: str) -> Callable[[B], B]:
         return function
 
     return register
-
-
-def find_benchmarks() -> dict[str, Callable[..., int]]:
-    """Imports all modules of `actr3d.bench` and `actr3d.experiment`, and returns the benchmarks that they register."""
-    for package in (actr3d.bench, actr3d.experiment):
-        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            import_module(module.name)
-    return BENCHMARKS
 
 
 @dataclass(frozen=True, kw_only=True)
