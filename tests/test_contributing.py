@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.manual import FENCE, ROOT
+from tests.helpers.manual import FENCE, ROOT
 
 CHECKS = {
     "actr3d/world/sensors/top.py": """

@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "registry", "kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -29,7 +29,8 @@ PARTS: dict[str, set[str]] = {
     "fields": set(),
     "warnings": {"errors"},
     "values": set(),
-    "kinds": set(),
+    "registry": set(),
+    "kinds": {"registry"},
     "trace": {"errors", "clock", "values", "kinds"},
     "actr": BASE,
     "world": BASE,
@@ -40,11 +41,12 @@ PARTS: dict[str, set[str]] = {
     "recording": BASE | BODILY,
     "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
     "running": BASE | BODILY | SENSES | RUNNING | {"printing"},
-    "experiment": BASE | BODILY | SENSES | RUNNING | {"running"},
-    "bench": BASE | BODILY | SENSES | RUNNING | {"running", "experiment"},
+    "benchmark": {"registry"},
+    "experiment": BASE | BODILY | SENSES | RUNNING | {"running", "benchmark"},
+    "bench": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "benchmark"},
     "printing": set(),
     "output": {"printing"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "output", "printing"},
+    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "benchmark", "output", "printing"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING | {"experiment"},
 }

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from manual import FENCE, PAGES, ROOT, check, compare, has_code
-from moving import moving, until
 
 from actr3d.vision import DETECTORS
+from tests.helpers.manual import FENCE, PAGES, ROOT, check, compare, has_code
+from tests.helpers.motor_bodies import moving, until
 
 
 @pytest.fixture

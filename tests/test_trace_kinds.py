@@ -10,9 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from looking import seeing_for
-from moving import moving
-from walkers import driving
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
 from actr3d.actr.kernel.run_limits import RunLimits
@@ -22,6 +19,9 @@ from actr3d.errors import ParameterError
 from actr3d.experiment.aperture import Passage
 from actr3d.kinds import KINDS, LEVELS
 from actr3d.trace import Trace, TraceEvent
+from tests.helpers.motor_bodies import moving
+from tests.helpers.vision_scenes import seeing_for
+from tests.helpers.walkers import driving
 
 ROOT = Path(__file__).parent.parent
 EVERYTHING = """

@@ -332,7 +332,7 @@ class Simulation:
         self._enter()
         to = whole_ticks(time, self._period, "seek")
         if to > self.timeline.furthest:
-            raise SimulationError(f"seek({time:g}): the run has come to {self.furthest:g} s only; run it on instead")
+            raise SimulationError(f"seek({time:g}): the run has only reached {self.furthest:g} s; continue it instead")
         with self._random:
             self.timeline.seek(to)
         self.event_log.check()

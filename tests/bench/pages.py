@@ -12,7 +12,7 @@ from typing import Any
 import websockets
 from websockets.typing import Subprotocol
 
-from tests.server.serving import Served
+from tests.helpers.workbench_server import Served
 
 LONGEST = 60.0
 """Nothing that is waited for takes longer [s]."""

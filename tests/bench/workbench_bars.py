@@ -25,8 +25,8 @@ from typing import Any, TypeVar
 
 from actr3d.benchmark import Figure, report
 from tests.bench.pages import CLICKS, Client, attached, await_scene, looking, opened
-from tests.browser.looking import browser_path, launched
-from tests.server.serving import MODELS, Served, served
+from tests.helpers.page import browser_path, launched
+from tests.helpers.workbench_server import MODELS, Served, served
 
 T = TypeVar("T")
 MODEL = "aperture_passage.py"

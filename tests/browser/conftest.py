@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, Route
 
-from tests.browser.looking import PATIENCE, chromium
-from tests.server.serving import Served, served
+from tests.helpers.page import PATIENCE, chromium
+from tests.helpers.workbench_server import Served, served
 
 REFUSED = re.compile("Failed to load resource: the server responded with a status of 40[0-9]")
 """What Chromium writes to its console of an answer that says why something is not done."""

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import open_tab, shows
-from tests.server.serving import Served
+from tests.helpers.page import open_tab, shows
+from tests.helpers.workbench_server import Served
 
 LOOK = (Path(__file__).parent / "access.js").read_text(encoding="utf-8")
 

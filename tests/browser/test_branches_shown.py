@@ -8,8 +8,8 @@ from typing import Any
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import open_tab, shows
-from tests.server.serving import Served
+from tests.helpers.page import open_tab, shows
+from tests.helpers.workbench_server import Served
 
 
 def say(page: Page, **command: Any) -> None:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import choose, drawn, open_tab, shows, until
-from tests.server.serving import Served
+from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.workbench_server import Served
 
 ENDED = """async () => {
   const { alive, session, state } = await import("/static/store.js");

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Dialog, Page, expect
 
-from tests.browser.looking import choose, drawn, open_tab, shows, until
-from tests.server.serving import Served, served
+from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.workbench_server import Served, served
 
 CODE = ".code .cm-content"
 MIND = Path(__file__).parents[2] / "models" / "counting.py"

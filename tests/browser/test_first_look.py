@@ -8,8 +8,8 @@ from pathlib import Path
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.looking import drawn, open_tab, shows, until
-from tests.server.serving import Served
+from tests.helpers.page import drawn, open_tab, shows, until
+from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
-from tests.browser.looking import choose, drawn, open_tab, shows, until
-from tests.server.serving import Served
+from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
 SLOW = """

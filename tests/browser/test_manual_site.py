@@ -17,7 +17,7 @@ from starlette.applications import Starlette
 from starlette.routing import Mount
 from starlette.staticfiles import StaticFiles
 
-from tests.browser.looking import open_tab, until
+from tests.helpers.page import open_tab, until
 from workbench.auth import Gate, Guard, Token
 from workbench.cli import _listen as listen  # pyright: ignore[reportPrivateUsage] # the socket that the command opens
 from workbench.shipped import static

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.looking import open_tab, shows, until
-from tests.server.serving import MODELS, Served
+from tests.helpers.page import open_tab, shows, until
+from tests.helpers.workbench_server import MODELS, Served
 
 Pages = Callable[..., Page]
 

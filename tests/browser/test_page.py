@@ -8,8 +8,8 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from tests.browser.looking import choose, open_tab, shows
-from tests.server.serving import Served
+from tests.helpers.page import choose, open_tab, shows
+from tests.helpers.workbench_server import Served
 
 
 @pytest.mark.scene

@@ -8,9 +8,9 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.looking import drawn, open_tab, shows, until
 from tests.browser.test_runs_panel import recorded, row
-from tests.server.serving import Served
+from tests.helpers.page import drawn, open_tab, shows, until
+from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
 

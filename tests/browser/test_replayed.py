@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
-from tests.browser.looking import PATIENCE, drawn, until
-from tests.server.serving import served
+from tests.helpers.page import PATIENCE, drawn, until
+from tests.helpers.workbench_server import served
 from tests.server.test_html_replay import ZOO
 from workbench.html_replay import make
 from workbench.html_replay.shapes import Shapes

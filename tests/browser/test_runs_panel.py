@@ -13,9 +13,9 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from actr3d.recording import Recording
-from tests.browser.looking import open_tab, until
-from tests.forging import forge
-from tests.server.serving import Served
+from tests.helpers.page import open_tab, until
+from tests.helpers.recording_forgery import forge
+from tests.helpers.workbench_server import Served
 
 
 def recorded(workbench: Served, model: str, **settings: Any) -> str:

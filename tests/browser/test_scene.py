@@ -15,8 +15,8 @@ import zstandard
 from PIL import Image
 from playwright.sync_api import Browser, Page, Route, WebSocket, expect
 
-from tests.browser.looking import until
-from tests.server.serving import MODELS, Served, served
+from tests.helpers.page import until
+from tests.helpers.workbench_server import MODELS, Served, served
 
 pytestmark = pytest.mark.scene
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.looking import choose, open_tab, shows
-from tests.server.serving import Served
+from tests.helpers.page import choose, open_tab, shows
+from tests.helpers.workbench_server import Served
 
 MIND = """
 import os

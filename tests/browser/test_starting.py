@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, Route, expect
 
-from tests.browser.looking import open_tab, shows
+from tests.helpers.page import open_tab, shows
 
 
 def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> None:

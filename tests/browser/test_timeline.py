@@ -12,8 +12,8 @@ from xml.etree import ElementTree
 import pytest
 from playwright.sync_api import FloatRect, Page, expect
 
-from tests.browser.looking import drawn, shows, until
-from tests.server.serving import Served
+from tests.helpers.page import drawn, shows, until
+from tests.helpers.workbench_server import Served
 
 NAMES = 150
 """How wide the column of names is at first [px]."""

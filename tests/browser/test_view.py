@@ -17,8 +17,8 @@ from playwright.sync_api import Browser, Frame, Page, expect
 
 from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
 from actr3d.world.world import World
-from tests.browser.looking import PATIENCE, drawn, shows, until
-from tests.server.serving import Served
+from tests.helpers.page import PATIENCE, drawn, shows, until
+from tests.helpers.workbench_server import Served
 from workbench.scene_framing import Stage
 
 pytestmark = pytest.mark.scene

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.server.desk import Desk
+from tests.helpers.sessions import Desk
 
 
 @pytest.fixture(scope="session")

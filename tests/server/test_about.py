@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.server.desk import Desk
-from tests.server.serving import MODELS
+from tests.helpers.sessions import Desk
+from tests.helpers.workbench_server import MODELS
 from workbench.about import LONGEST, about_of
 from workbench.loader import listing_of
 

@@ -16,7 +16,7 @@ import websockets
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
-from tests.server.asking import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, TOKEN, Answer, Header, ask, connect
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, TOKEN, Answer, Header, ask, connect
 from workbench import cli
 from workbench.app import make_app
 from workbench.auth import LARGEST, Gate, Guard, MutableMapping, Receive, Scope, Send, Token

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.server.desk import Desk, Talk
+from tests.helpers.sessions import Desk, Talk
 from workbench.protocol import COMMAND
 from workbench.session import Session
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from actr3d.recording import Recorded
-from tests.server.desk import Desk, RefusedError, Talk
+from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_curves import PUSHED
 from workbench import branches
 from workbench.recording_index import summary_json

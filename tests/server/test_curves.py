@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from actr3d.recording import Recorded
-from tests.server.desk import Desk, Talk
+from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, ended, recording
 from workbench.curves import NOTHING
 from workbench.forms import curves_of

@@ -22,8 +22,8 @@ import numpy as np
 import pytest
 
 from actr3d.recording import Recorded, Recording
-from tests.server.asking import COOKIE, GATE, HOST, Answer, call
-from tests.server.desk import Desk
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, Answer, call
+from tests.helpers.sessions import Desk
 from tests.server.test_recorded_runs import APERTURE, ended
 from tests.server.test_runs import firing, written
 from workbench.app import make_app

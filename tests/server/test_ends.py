@@ -14,8 +14,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from tests.server.desk import PATIENCE
-from tests.server.serving import Served, served
+from tests.helpers.sessions import PATIENCE
+from tests.helpers.workbench_server import Served, served
 from tests.server.test_worker import gone
 
 LOOP = "import os, time\nopen('{mark}', 'w').write(str(os.getpid()))\nwhile True:\n    pass\n"

@@ -17,9 +17,9 @@ import pytest
 from actr3d.recording import Recorded
 from actr3d.recording.key import key_file
 from actr3d.world.compiled import to_text
-from tests.forging import forge
-from tests.server.asking import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
-from tests.server.desk import Desk, RefusedError, Talk
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
+from tests.helpers.recording_forgery import forge
+from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_runs import firing, written
 from workbench import listing
 from workbench.app import make_app

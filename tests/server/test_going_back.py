@@ -21,7 +21,7 @@ from actr3d.printing import ModelOutput, printing_to
 from actr3d.running.building import build
 from actr3d.simulation import Simulation
 from actr3d.values import to_json
-from tests.server.desk import Desk, Talk
+from tests.helpers.sessions import Desk, Talk
 from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
 from workbench.page_commands.agents import Events, Explain, MemoryRows

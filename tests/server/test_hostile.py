@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from actr3d.values import plain, to_json
-from tests.server.desk import PATIENCE, Desk
+from tests.helpers.sessions import PATIENCE, Desk
 from tests.server.test_worker import gone, of, runs_again
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import whole

@@ -14,7 +14,7 @@ import pytest
 
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
-from tests.server.desk import Desk
+from tests.helpers.sessions import Desk
 from tests.server.test_overlays import LOOKING
 from tests.server.test_recorded_runs import recording
 from workbench.html_replay import make, shapes

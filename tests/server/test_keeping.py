@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from actr3d.errors import RecordingError
-from tests.server.desk import Desk
+from tests.helpers.sessions import Desk
 from workbench.files import OWN
 from workbench.recordings import NoSuchRecordingError, Recordings
 from workbench.retention import Keeping, is_unnamed

@@ -19,9 +19,10 @@ import websockets
 from hypothesis import HealthCheck, settings
 from websockets.typing import Subprotocol
 
-from tests.server.asking import GATE
-from tests.server.serving import Served, served
+from tests.helpers.asgi_client import GATE
+from tests.helpers.workbench_server import Served, served
 from workbench.app import make_app
+from workbench.page_commands import COMMANDS
 
 
 @pytest.fixture(scope="session")
@@ -235,7 +236,7 @@ def test_every_route_is_in_the_description_or_is_a_page(server: Served) -> None:
 
 def test_the_description_names_every_command(server: Served) -> None:
     told = server.get("/api/openapi.json").json()
-    assert {"Run", "Pause", "Step", "Cycle", "Back", "Until", "Seek", "Aperture", "Explain", "Look"} <= told["components"]["schemas"].keys()
+    assert {command.__name__ for command in COMMANDS.values()} <= told["components"]["schemas"].keys()
     assert told["components"]["schemas"]["Speed"]["properties"]["factor"]["anyOf"][0]["minimum"] == 0.05
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.server.asking import COOKIE, GATE, HOST, ask
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, ask
 from workbench import app
 
 

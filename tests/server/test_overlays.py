@@ -13,7 +13,7 @@ import pytest
 from actr3d.camera import CameraParameters
 from actr3d.simulation import Simulation
 from actr3d.world import Car, Floor, Mannequin, Scene, World
-from tests.server.desk import Desk, Talk
+from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay

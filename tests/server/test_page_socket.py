@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import websockets
 
-from tests.server.serving import Served, served
+from tests.helpers.workbench_server import Served, served
 from tests.server.test_live import attached, heard, opened
 from workbench.page_commands import COMMANDS
 from workbench.page_commands.session import Restart, Stop

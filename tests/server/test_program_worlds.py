@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.server.desk import Desk, RefusedError, Talk
+from tests.helpers.sessions import Desk, RefusedError, Talk
 
 EXAMPLE = """from actr3d.actr import *
 from actr3d.simulation import BodyPort, Simulation

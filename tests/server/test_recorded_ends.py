@@ -9,7 +9,7 @@ import pytest
 from actr3d.cli import main
 from actr3d.recording import Recorded
 from actr3d.running.replay import replay
-from tests.server.desk import Desk
+from tests.helpers.sessions import Desk
 
 MODEL = """import sys
 from actr3d.actr import *

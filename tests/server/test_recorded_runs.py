@@ -9,7 +9,7 @@ import pytest
 
 from actr3d.recording import Recorded
 from actr3d.running.replay import replay
-from tests.server.desk import Desk, RefusedError, Talk
+from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.csv_files import write_states_csv
 
 MODELS = Path(__file__).parents[2] / "models"

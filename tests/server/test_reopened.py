@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from actr3d.errors import Actr3dError
-from tests.server.desk import Desk, Talk
-from tests.server.serving import MODELS
+from tests.helpers.sessions import Desk, Talk
+from tests.helpers.workbench_server import MODELS
 
 BUILT = """
 from actr3d.actr import *

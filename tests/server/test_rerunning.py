@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.server.desk import PATIENCE, Desk
+from tests.helpers.sessions import PATIENCE, Desk
 from workbench.rerunning import BusyError, Reruns
 
 BUILT = """import os, time

@@ -13,7 +13,7 @@ import pytest
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded, Recording
 from actr3d.trace import TraceEvent
-from tests.server.desk import Desk
+from tests.helpers.sessions import Desk
 from workbench.recording_diff import CONTEXT, compare
 from workbench.recording_index import Summary
 

@@ -13,7 +13,7 @@ from actr3d.actr.loading import run_text
 from actr3d.running.building import build
 from actr3d.running.printed import ProgramOutput
 from actr3d.trace import Trace
-from tests.server.desk import Desk, RefusedError, Talk
+from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.files import ModelFolder
 from workbench.session import Session
 
@@ -272,7 +272,7 @@ def test_a_program_goes_back_after_its_end_and_forth(desk: Desk, tmp_path: Path)
     for time in (0.2, 0.4, 0.0, 0.3):
         talk.say("seek", time=time)
         talk.until("paused", time=time)
-    with pytest.raises(RefusedError, match="has come to"):
+    with pytest.raises(RefusedError, match="has only reached"):
         talk.say("seek", time=99.0)
     with pytest.raises(RefusedError, match="takes no commands"):
         talk.say("aperture", width=1)

@@ -10,7 +10,7 @@ import pytest
 import uvicorn
 import websockets
 
-from tests.server.asking import GATE, TOKEN
+from tests.helpers.asgi_client import GATE, TOKEN
 from workbench import auth
 from workbench import server as workbench_server
 from workbench.auth import Guard, Receive, Scope, Send

@@ -23,7 +23,7 @@ from typing import Any
 import httpx
 import pytest
 
-from tests.server.serving import Served, served
+from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import DESCRIPTION, OPERATIONS, resolved, valid
 
 SOURCE = "counting.py"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.server.desk import Desk, Talk
+from tests.helpers.sessions import Desk, Talk
 
 WALKING = """from helper import COUNT
 from actr3d.actr import *

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.server.desk import Desk, RefusedError
-from tests.server.serving import MODELS
+from tests.helpers.sessions import Desk, RefusedError
+from tests.helpers.workbench_server import MODELS
 
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
 COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from actr3d.recording import Recorded
-from tests.server.desk import Desk, RefusedError, Talk
+from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.jobs import Job, doing
 from workbench.worker.messages import Start
 

@@ -1,0 +1,75 @@
+"""Production compilation: what is learned, and what its utility becomes in either profile."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import actr3d.actr as library
+from actr3d.actr.kernel.model import is_converted
+from tests.helpers.python_actr_reference import model_file
+from tests.helpers.small_agents import near
+
+
+def compiling(profile: str, until: float) -> Any:
+    agent = model_file("recalling").make(library, library.Buffer(), profile)()
+    agent.run(until)
+    return agent
+
+
+def test_what_is_compiled() -> None:
+    agent = compiling("python-actr", 0.4)
+    assert [p.name for p in agent._productions] == ["answer", "ask", "stop", "ask-answer-1", "ask-answer-2"]
+    first = agent._productions[3]
+    assert first.pattern_specs == {"goal": "ask one"}
+    assert first.pre.name == "ask"
+    assert first.post.name == "answer"
+
+
+def test_a_compiled_rule_does_both_at_once_without_memory() -> None:
+    agent = compiling("python-actr", 30)
+    assert agent.goal.chunk is None
+    agent._productions[3].base_utility = 100
+    requests = agent.memory._request_count
+    agent.goal.set("ask one")
+    agent.run(0.05)
+    assert agent.goal.chunk == library.Chunk("ask two")
+    assert agent.memory._request_count == requests
+
+
+def test_python_act_r_leaves_it_at_nothing_until_it_earns_something() -> None:
+    agent = compiling("python-actr", 2.0)
+    assert len(agent.compiling.compiled) == 2
+    assert [agent.get_activation(p) for p in agent.compiling.compiled.values()] == [0, 0]
+
+
+@pytest.mark.parametrize("times", [1, 2, 3, 4])
+def test_act_r_7_moves_it_to_its_first_parents_each_time_it_is_made_again(times: int) -> None:
+    agent = model_file("recalling").make(library, library.Buffer(), "act-r-7")()
+    expected = 0.0
+    made = 0
+    while made < times:
+        before = len(agent.compiling.compiled) if is_converted(agent) else 0
+        agent.run(0.001)
+        rule: Any = next(iter(agent.compiling.compiled.values()), None)
+        if rule is None:
+            continue
+        if before == 0:
+            made = 1
+            assert agent.get_activation(rule) == 0
+        elif agent.get_activation(rule) != near(expected):
+            made += 1
+            expected += 0.2 * (agent.get_activation("ask") - expected)
+        assert agent.get_activation(rule) == near(expected)
+    assert made == times
+
+
+def test_a_profile_without_learning_modules() -> None:
+    class NoLearning(library.ACTR):
+        profile = "act-r-7"
+        compiling = library.PMCompile(keep="goal", request="memory.request", retrieve="retrieval")
+
+    agent: Any = NoLearning()
+    agent.run(0.1)
+    assert agent.compiling.compiled == {}

@@ -1,0 +1,66 @@
+"""Saying how each condition of a production stands, also of those after the first that fails."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.helpers.explanations import agent_of
+
+SOURCE = """
+def small(thing, bound):
+    return int(bound['now']) < 4
+
+class Agent(ACTR):
+    goal = Buffer()
+    other = Buffer()
+    def init():
+        goal.set('task:add now:3 last:5')
+    def fires(goal='task:add now:?now last:!?now', other=None):
+        pass
+    def fails(goal='task:subtract now:?now more:?more last:!?more', other='value:?more'):
+        pass
+    def asks(goal=['task:add now:?now', small]):
+        pass
+    def asks_nothing(goal=['task:subtract now:?now', small]):
+        pass
+"""
+
+
+def told(agent: Any, name: str, at: float | None = None) -> list[tuple[str, bool | None, str]]:
+    return [(one.condition, one.holds, one.found) for one in agent.explain(at).production(name).conditions]
+
+
+def test_conditions_are_told_one_by_one() -> None:
+    agent = agent_of(SOURCE)
+    agent.traced()
+    agent.run(0.02)
+    for at in (None, 0.01):
+        assert told(agent, "fires", at) == [
+            ("goal: task:add", True, "'add'"),
+            ("goal: now:?now", True, "'3'"),
+            ("other: None", True, "nothing in it"),
+            ("goal: last:!?now", True, "'5'"),
+        ]
+        assert told(agent, "asks", at)[-1] == ("goal: small()", True, "it agreed")
+
+
+def test_what_comes_after_the_failing_condition_is_told_as_far_as_it_can_be() -> None:
+    agent = agent_of(SOURCE)
+    agent.traced()
+    agent.run(0.02)
+    for at in (None, 0.01):
+        assert told(agent, "fails", at) == [
+            ("goal: task:subtract", False, "'add'"),
+            ("goal: now:?now", True, "'3'"),
+            ("goal: more:?more", False, "no slot 'more'"),
+            ("goal: last:!?more", None, "?more is not bound"),
+            ("other: value:?more", False, "other is empty"),
+        ]
+        reason = agent.explain(at).production("fails")
+        assert reason.condition == "goal: task:subtract"
+        assert reason.bindings == {}, "a production is left at the first condition that fails"
+        assert told(agent, "asks_nothing", at)[-1] == (
+            "goal: small()",
+            None,
+            "what is not known (it is asked only where all before it holds)",
+        )

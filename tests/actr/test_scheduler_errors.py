@@ -1,0 +1,104 @@
+"""What the scheduler says of what it cannot do, and how it goes on afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from actr3d.actr import Model
+from actr3d.errors import ModelWarning, SchedulerError
+from tests.helpers.scheduler_models import Part, seen
+
+
+@pytest.mark.parametrize(
+    ("what", "message"),
+    [
+        (-0.5, r"a delay must not be negative \(got -0\.5 s\)"),
+        (float("nan"), r"a delay must be a finite number of seconds \(got nan\)"),
+        (float("inf"), r"a delay must be a finite number of seconds \(got inf\)"),
+        ({"delay": "soon"}, r"a delay must be a finite number of seconds \(got 'soon'\)"),
+        ({"dealy": 1}, r"cannot wait for \{'dealy': 1\}: no 'dealy'; did you mean 'delay'\?"),
+        ({"priority": "high"}, r"a priority must be a number \(got 'high'\)"),
+        (object, r"cannot wait for <class 'object'>; yield a number of seconds, a trigger or its name, a method"),
+        ((1, object), r"cannot wait for <class 'object'>"),
+        ((), r"cannot wait for \(\); nothing is in it"),
+        (1j, r"cannot wait for 1j"),
+    ],
+)
+def test_what_cannot_be_waited_for_names_generator_file_and_line(what: Any, message: str) -> None:
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            yield 0.1
+            yield what
+
+    with pytest.raises(SchedulerError, match=rf"World\.start \(.*test_scheduler_errors\.py:\d+\): {message}"):
+        World().run(1)
+
+
+def test_yield_none_ends_the_generator_and_says_so() -> None:
+    class World(Part):
+        def start(self) -> Iterator[Any]:
+            yield 0.1
+            yield self.note("told")
+            self.note("never")
+
+    world = World()
+    with pytest.warns(ModelWarning, match=r"World\.start yields None, which ends it here") as caught:
+        world.run(1)
+    assert caught[0].filename == __file__
+    assert seen(world) == [("told", 0.1)]
+
+
+@pytest.mark.parametrize("limit", [-1, float("nan"), float("inf"), "1"])
+def test_a_limit_that_is_no_time(limit: Any) -> None:
+    with pytest.raises(SchedulerError, match=r"the limit of a run must (be a finite number of seconds|not be negative) \(got"):
+        Model().run(limit)
+
+
+def test_a_livelock_is_an_error_that_names_the_culprit() -> None:
+    class World(Model):
+        def start(self) -> Iterator[Any]:
+            while True:
+                yield 0
+
+    with pytest.raises(SchedulerError, match=r"stands still at 0 s: 200,000 events.*World\.start \(.*test_scheduler_errors\.py:\d+\)"):
+        World().run(1)
+
+
+@pytest.mark.parametrize("traced", [False, True])
+def test_run_inside_run_lets_time_pass_and_says_so(traced: bool) -> None:
+    class World(Part):
+        def start(self) -> Iterator[Any]:
+            self.sch.add(lambda: self.note("other"), 0.6)
+            yield 0.1
+            self.run(1)
+            self.note("after inner run")
+            yield 1
+            self.note("end")
+
+    world = World()
+    if traced:
+        world.traced()
+    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as said:
+        world.run(3)
+    assert [w.filename for w in said] == [__file__]
+    assert seen(world) == [("other", 0.6), ("after inner run", 1.1), ("end", 2.1)]
+    assert world.now() == 3
+
+
+def test_an_error_in_an_event_leaves_a_scheduler_that_can_go_on() -> None:
+    class World(Part):
+        def start(self) -> Iterator[Any]:
+            self.sch.add(lambda: self.note("later"), 2)
+            yield 1
+            raise RuntimeError("once")
+
+    world = World()
+    with pytest.raises(RuntimeError, match="once"):
+        world.run(5)
+    assert world.now() == 1
+    world.run(5)
+    assert seen(world) == [("later", 2)]
+    assert world.now() == 6

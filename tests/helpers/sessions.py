@@ -1,0 +1,155 @@
+"""Sessions with real workers, for tests that speak to them from outside their event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, Answer, call
+from workbench.app import make_app
+from workbench.files import ModelFolder
+from workbench.protocol import COMMAND
+from workbench.recording_index import Summary
+from workbench.recordings import Recordings
+from workbench.session import Session
+from workbench.sessions import Sessions
+from workbench.worker.workers import Workers
+
+T = TypeVar("T")
+PATIENCE = 180.0
+"""So long a test waits for what must come [s]; machines are slow at times."""
+
+
+class Desk:
+    """An event loop of its own with workers, and sessions for each test.
+
+    Args:
+        memory: How much memory a model may take [MB].
+    """
+
+    def __init__(self, memory: int = 1500) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        self.workers = Workers(memory)
+        self._open: list[Sessions] = []
+        self._loop.call_soon_threadsafe(self.workers.begin)
+
+    def do(self, work: Coroutine[Any, Any, T]) -> T:
+        """Does something in the event loop, and returns what comes of it."""
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE)
+
+    def sessions(self, folder: Path) -> Sessions:
+        """Returns sessions with the models of a folder."""
+        sessions = Sessions(ModelFolder(folder), Recordings(folder), self.workers)
+        self._open.append(sessions)
+        return sessions
+
+    def ask(self, folder: Path, path: str, **more: Any) -> Answer:
+        """Sends a request to an application with the models of a folder, and returns the answer."""
+        app = make_app(folder, GATE)
+        app.state.sessions = self.sessions(folder)
+        return self.do(call(app, path, HOST, COOKIE, **more))
+
+    def listed(self, folder: Path, first: int = 0, most: int = 1000) -> tuple[int, list[Summary]]:
+        """Returns how many recordings a folder has, and the summaries of some."""
+        return self.do(self.sessions(folder).listing.some(first, most))
+
+    def begin(self, folder: Path, source: str, *, name: str = "model.py", wait: str | None = "paused", **options: Any) -> Talk:
+        """Begins a session with a model of this text."""
+        (folder / name).write_text(source, encoding="utf-8")
+        sessions = self.sessions(folder)
+        given: dict[str, Any] = {"seed": 1, "record": False, "run": False, **options}
+        settings = given.pop("settings", {})
+        talk = Talk(self, self.do(sessions.open(name, settings, **given)), sessions)
+        if wait is not None:
+            talk.until(wait)
+        return talk
+
+    def close_sessions(self) -> None:
+        """Ends the sessions of a test."""
+        for sessions in self._open:
+            self.do(sessions.close_all())
+        self._open.clear()
+
+    def close(self) -> None:
+        """Ends everything."""
+        self.do(self.workers.close())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+
+class Talk:
+    """Speaks with one session."""
+
+    def __init__(self, desk: Desk, session: Session, sessions: Sessions) -> None:
+        self.desk = desk
+        self.session = session
+        self.sessions = sessions
+
+    def say(self, kind: str, **more: Any) -> Any:
+        """Says something; returns the result, or raises what went wrong."""
+        reply = self.desk.do(self.session.carry_out(COMMAND.validate_python({"type": kind, **more}), "test"))
+        if reply.error is not None:
+            raise RefusedError(reply.error)
+        return json.loads(reply.result)
+
+    def until(self, status: str, **more: float) -> dict[str, Any]:
+        """Waits for a status, and for numbers to be what they should; returns the state."""
+        return self.wait(
+            lambda: self.state["status"] == status and all(abs(self.state[name] - value) < 1e-9 for name, value in more.items())
+        )
+
+    def wait(self, condition: Callable[[], Any]) -> dict[str, Any]:
+        """Waits until something is so; returns the state."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            if self.session.state is not None and condition():
+                return self.state
+            time.sleep(0.005)
+        raise AssertionError(f"it did not come: {self.facts}, {self.session.state and self.state}, {self.notices}")
+
+    def summary(self, name: str) -> Summary:
+        """Returns what is known of a recording."""
+        return self.desk.do(self.sessions.listing.one(name))
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The newest state."""
+        return json.loads(self.session.state_json())
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What is known of the session."""
+        return json.loads(self.session.facts_json())
+
+    @property
+    def notices(self) -> list[dict[str, Any]]:
+        """What the user was told."""
+        return [json.loads(notice) for _, notice in list(self.session.notices)]
+
+    @property
+    def events(self) -> list[list[Any]]:
+        """All events that the server knows."""
+        assert self.session.log.first == 0
+        return [json.loads(event) for event in list(self.session.log._events)]
+
+    def wait_for_notice(self, text: str) -> dict[str, Any]:
+        """Waits for something that the user is told; returns it."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            for notice in self.notices:
+                if text in notice["text"]:
+                    return notice
+            time.sleep(0.01)
+        raise AssertionError(f"'{text}' was not told: {self.notices}")
+
+
+class RefusedError(Exception):
+    """The session has refused something."""

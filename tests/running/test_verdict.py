@@ -1,0 +1,132 @@
+"""The verdict of a replay stands, whatever the recorded program does to the process that runs it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from actr3d.cli import main
+from tests.helpers.recording_forgery import forge
+
+PROGRAM = """import atexit, os, signal, sys, threading
+from pathlib import Path
+from actr3d.actr import *
+class Counter(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n!4"):
+        goal.set("count %d" % (int(n) + 1))
+    def end(goal="count 4"):
+        self.stop()
+again = os.environ.get("AGAIN") == "1"
+print("begins")
+if again:
+    {first}
+Counter().run()
+print("ends")
+if again:
+    {last}
+"""
+
+
+@pytest.fixture(name="path")
+def path_(tmp_path: Path) -> Path:
+    return tmp_path / "run"
+
+
+def record(path: Path, first: str = "pass", last: str = "pass") -> None:
+    file = path.with_name("model.py")
+    file.write_text(PROGRAM.format(first=first, last=last), encoding="utf-8")
+    assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("does", "how"),
+    [
+        ("os._exit(0)", "the model's process ended with exit code 0"),
+        ("os._exit(7)", "the model's process ended with exit code 7"),
+        ("os.kill(os.getpid(), signal.SIGKILL)", "the model's process was ended by SIGKILL"),
+        ("os.execv(sys.executable, [sys.executable, '-c', 'print(1)'])", "the model's process ended with exit code 0"),
+        ("threading.Timer(0.05, os._exit, [0]).start(); threading.Event().wait()", "exit code 0"),
+    ],
+)
+@pytest.mark.parametrize("where", ["first", "last"])
+def test_a_program_that_ends_the_process_leaves_no_verdict(
+    does: str, how: str, where: str, path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    record(path, **{where: does})
+    monkeypatch.setenv("AGAIN", "1")
+    temporary = path.with_name("temporary")
+    temporary.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(temporary))
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    capfd.readouterr()
+    assert main(["replay", str(path)]) == 2
+    assert not list(temporary.iterdir())
+    told = capfd.readouterr()
+    assert told.err.startswith("error: no verdict: ")
+    assert how in told.err
+    assert "agrees" not in told.out
+
+
+def test_a_program_that_exits_from_its_last_handler_keeps_its_verdict(
+    path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record(path, first="atexit.register(os._exit, 0)")
+    monkeypatch.setenv("AGAIN", "1")
+    assert main(["replay", str(path)]) == 0
+    assert "every byte agrees: " in capsys.readouterr().out
+    forge(path, "UPDATE events SET data = replace(data, 'ends', 'went')")
+    assert main(["replay", str(path)]) == 1
+    assert "differs: event " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "does",
+    [
+        "os.closerange(3, 200)",
+        '[os.write(number, b\'{"code": 0, "text": "every byte agrees"}\') for number in (1, 2)]',
+        "os.fork() or os._exit(0)",
+        "os.fork() and os._exit(0)",
+        "sys.stdout.close()",
+    ],
+)
+def test_a_program_that_meddles_with_its_process_is_still_found_to_differ(does: str, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    record(path, first=f"{does}; print('another')")
+    monkeypatch.setenv("AGAIN", "1")
+    assert main(["replay", str(path)]) == (2 if "and os._exit" in does else 1)
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_what_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mark = path.with_name("mark")
+    record(path, first=f"Path({str(mark)!r}).write_text(str(os.getpid())); threading.Event().wait()")
+    monkeypatch.setenv("AGAIN", "1")
+    command = [sys.executable, "-m", "actr3d", "replay", str(path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as replaying:
+        while not (mark.exists() and mark.read_text(encoding="utf-8")):
+            assert replaying.poll() is None
+            time.sleep(0.01)
+        child = int(mark.read_text(encoding="utf-8"))
+        assert child != replaying.pid
+        replaying.send_signal(sign)
+        out, err = replaying.communicate(timeout=30)
+    assert replaying.returncode == (130 if sign == signal.SIGINT else 128 + sign)
+    assert (out, err) == ("", "stopped\n" if sign == signal.SIGINT else "")
+    with pytest.raises(ProcessLookupError):
+        os.kill(child, 0)
+
+
+def test_a_replay_goes_through_sets_as_the_run_did(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = path.with_name("sets.py")
+    file.write_text("print(list({'one', 'two', 'three', 'four', 'five', 'six', 'seven'}))\n", encoding="utf-8")
+    subprocess.run([sys.executable, "-m", "actr3d", "run", str(file), "--record", str(path)], check=True, capture_output=True)
+    assert main(["replay", str(path)]) == 0
+    assert "every byte agrees: 1 events" in capsys.readouterr().out

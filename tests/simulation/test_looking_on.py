@@ -1,0 +1,216 @@
+"""What is there for who looks on: a trace from a number on, memories as tables, glances, held-up programs; the run never knows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import pytest
+
+from actr3d.actr import ACTR, Buffer, DMBaseLevel, DMNoise, DMSpreading, Memory
+from actr3d.actr.declarative.activation import MemorySubModule
+from actr3d.actr.explain.memory_table import memory_rows
+from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
+from actr3d.actr.loading import run_text
+from actr3d.camera import CameraParameters, glance
+from actr3d.configuration import Live
+from actr3d.errors import CameraError, ParameterError, SimulationError
+from actr3d.running.building import build
+from actr3d.running.complaint import complaint
+from actr3d.simulation import Command, Simulation
+from actr3d.trace import Trace
+from actr3d.world import ImportedBody, Scene, World
+from tests.helpers.walkers import digest, driving
+
+DOORWAY = Path(__file__).parents[2] / "models" / "doorway.py"
+CLOCK = "from actr3d.actr import *\nclass Clock(Model):\n    def start(self):\n        while True:\n            yield 0.25\n"
+
+
+def doorway(**settings: Any) -> Simulation:
+    with RunLimits(seed=1):
+        return build(DOORWAY.read_text(encoding="utf-8"), str(DOORWAY), {"width": 0.5, **settings})[0]
+
+
+class Own(MemorySubModule):
+    def activation(self, chunk: Any) -> float:
+        raise AssertionError("a modeller's code is not run for who looks on")
+
+
+class Knowing(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    base = DMBaseLevel(memory)
+
+    def init() -> None:  # type: ignore[misc]
+        memory.add("animal dog", baselevel=1)  # type: ignore[name-defined] # noqa: F821
+        memory.add("animal cat", baselevel=2)  # type: ignore[name-defined] # noqa: F821
+
+
+def test_the_events_from_a_number_on() -> None:
+    model: Any = Knowing()
+    trace = model.traced()
+    model.run(0)
+    events = list(trace)
+    assert trace.since(0) == events
+    assert trace.since(len(events) - 2) == events[-2:]
+    assert trace.since(len(events)) == []
+    assert trace.runs[-1].model is model
+
+
+def test_a_memory_is_a_table() -> None:
+    model: Any = Knowing()
+    model.run(0)
+    rows = memory_rows(model.memory)
+    assert [(row.chunk, row.activation, dict(row.parts)) for row in rows] == [
+        ("animal dog", 1, {"DMBaseLevel": 1}),
+        ("animal cat", 2, {"DMBaseLevel": 2}),
+    ]
+    assert dict(rows[0].slots) == {"0": "animal", "1": "dog"}
+    assert [row.chunk for row in memory_rows(model.memory, "CAT")] == ["animal cat"]
+    assert [row.chunk for row in memory_rows(model.memory, most=1)] == ["animal dog"]
+
+
+def test_what_is_drawn_or_a_modeller_s_own_is_not_told() -> None:
+    model: Any = Knowing()
+    model.run(0)
+    DMNoise(model.memory, noise=1)
+    Own(model.memory)
+    before = model.random.getstate()
+    (row, _) = memory_rows(model.memory)
+    assert dict(row.parts) == {"DMBaseLevel": 1, "DMNoise": None, "Own": None}
+    assert row.activation is None
+    assert model.random.getstate() == before
+
+
+def test_who_looks_on_takes_no_warning_away() -> None:
+    model: Any = Knowing()
+    model.run(0)
+    spreading: Any = DMSpreading(model.memory, model.goal)
+    spreading._warned = {"known"}
+    memory_rows(model.memory)
+    assert spreading._warned == {"known"}
+
+
+def test_a_glance_changes_no_labels() -> None:
+    seen, unseen = doorway(), doorway()
+    for simulation, looks in ((seen, True), (unseen, False)):
+        simulation.traced()
+        for _ in range(30):
+            simulation.step(5)
+            if looks:
+                body = simulation.world.bodies["walker"]
+                view = glance(body)
+                assert view.rows == 100
+                assert len(view.extents) > 0
+                glance(body, CameraParameters(rows=7))
+    assert digest(seen) == digest(unseen)
+
+
+def test_a_glance_is_what_the_mind_sees() -> None:
+    simulation = doorway()
+    simulation.step(10)
+    body = simulation.world.bodies["walker"]
+    assert (glance(body).as_array() == body.get("view").as_array()).all()
+
+
+def test_who_has_no_eye_cannot_glance() -> None:
+    blind = ImportedBody(name="blind", text="<mujoco><worldbody><body name='b'><freejoint/><geom size='.1'/></body></worldbody></mujoco>")
+    with pytest.raises(CameraError, match="'blind' has no eye"):
+        glance(World(Scene(parts=(blind,))).bodies["blind"])
+
+
+def test_a_program_is_told_when_its_time_goes_on() -> None:
+    passed: list[tuple[int, int]] = []
+
+    def note(start: int, end: int) -> None:
+        passed.append((start, end))
+
+    limits = RunLimits(seed=1, passing=note)
+    run_text(f"{CLOCK}clock = Clock()\nclock.run(0.6)\nclock.run(0.5)\nModel().run(1)", limits=limits)
+    ms = [(0, 250), (250, 500), (500, 600), (600, 750), (750, 1000), (1000, 1100), (0, 1000)]
+    assert passed == [(start * 1000, end * 1000) for start, end in ms]
+
+
+def test_a_program_can_be_ended_there() -> None:
+    def end(_: int, to: int) -> None:
+        if to > 500_000:
+            raise EndOfRun
+
+    module = run_text(f"{CLOCK}clock = Clock()\nclock.run(0.6)\nover = True", limits=RunLimits(passing=end))
+    assert module.__dict__["clock"].now() == 0.5
+    assert "over" not in module.__dict__
+
+
+def test_a_simulation_is_traced_by_who_has_not_made_it() -> None:
+    simulation = driving()
+    simulation.traced("buffer")
+    simulation.step(10)
+    assert simulation.trace is not None
+    assert {event.kind for event in simulation.trace} == {"start", "select", "fire", "buffer"}
+    with pytest.raises(SimulationError, match="begun already"):
+        simulation.traced()
+    with pytest.raises(ParameterError, match="no level"):
+        driving().traced("some")
+
+
+def test_a_program_s_trace_that_keeps_nothing_does_not_hinder() -> None:
+    with RunLimits(trace=Trace("all", keep=False)):
+        simulation = driving()
+        simulation.traced()
+        simulation.step(5)
+    assert simulation.trace is not None
+    assert len(simulation.trace) > 10
+
+
+def test_planned_commands_are_done_again() -> None:
+    first, second = driving("all"), driving("all")
+    first.step(5)
+    first.command("aperture", 0.9)
+    first.step(5)
+    second.plan([Command(5, "aperture", (0.9,), {})])
+    second.step(10)
+    assert digest(first) == digest(second)
+    with pytest.raises(SimulationError, match="begun already"):
+        second.plan([])
+
+
+def test_a_simulation_is_done_when_no_mind_has_anything_left_to_do() -> None:
+    simulation = doorway(speed=3.0)
+    assert not simulation.done
+    simulation.run()
+    simulation.step(20)
+    assert simulation.done
+    simulation.seek(0)
+    assert not simulation.done
+
+
+def test_a_complaint_names_the_modeller_s_line() -> None:
+    with pytest.raises(ZeroDivisionError) as caught:
+        run_text(f"{CLOCK}def halve(n):\n    return n / 0\nhalve(1)", "mine.py")
+    told = complaint(caught.value)
+    assert (told.file, told.line) == ("mine.py", 7)
+    assert told.message == "ZeroDivisionError: division by zero"
+    assert "loading.py" not in told.text
+
+
+def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises() -> None:
+    with pytest.raises(ValueError, match="Expecting") as caught:
+        run_text("import json\njson.loads('no')", "mine.py")
+    told = complaint(caught.value)
+    assert (told.file, told.line) == ("mine.py", 2)
+    assert "decoder.py" in told.text
+
+
+@pytest.mark.parametrize("text", ["1 +", "x = 3\nprint 'so'\n"])
+def test_a_complaint_names_the_line_that_cannot_be_read(text: str) -> None:
+    with pytest.raises(Exception, match="bad") as caught:
+        run_text(text, "bad.py")
+    told = complaint(caught.value)
+    assert (told.file, told.line) == ("bad.py", 1 if "+" in text else 2)
+
+
+def test_a_live_field_says_so() -> None:
+    assert repr(Live("parameter", "walker.speed", body="walker")) == "Live('parameter', 'walker.speed', body='walker')"
+    hint: Any = Annotated[float, Live("aperture")]
+    assert hint.__metadata__[0].before == ()

@@ -1,0 +1,517 @@
+"""Lockstep: minds and bodies go through the same time, exactly, whatever the wall clock and onlookers do."""
+
+from __future__ import annotations
+
+import threading
+import time
+import tracemalloc
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from actr3d.actr import ACTR, Buffer, Model
+from actr3d.actr.kernel.model import ensure_converted
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.loading import load_text
+from actr3d.errors import Actr3dError, SimulationError, WorldError
+from actr3d.simulation import Glimpse, Simulation, agents, timeline
+from actr3d.simulation.agents import Environment
+from actr3d.trace import Trace
+from actr3d.world import Body, Floor, Scene
+from tests.helpers.small_agents import near
+from tests.helpers.walkers import Driver, digest, driving, scene_of
+
+MINDS: Any = load_text(
+    """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+
+class Asker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    body = BodyPort(felt)
+    def init():
+        goal.set("ask")
+    def ask(goal="ask"):
+        self.times = [("asked", self.now())]
+        self.story()
+        goal.set("wait")
+    def story(self):
+        reading = self.body.get("pose")
+        self.times.append(("busy", self.body.busy))
+        yield reading
+        self.times.append(("answered", self.now(), reading.value, self.body.busy))
+        self.body.set("waypoint", 0.2, 0, speed=1.0)
+        yield 0.3
+        first, second = self.body.get("pose"), self.body.get("pose", "head")
+        yield first
+        yield second
+        self.times.append(("arrived", first.value, second.value))
+        self.body.request("gyroscope")
+
+    def feel(goal="wait", felt="gyroscope ?x ? ?z", body="error:False"):
+        self.times.append(("felt", self.now(), x))
+        body.request("rangefinder", reach=20)
+        goal.set("fail")
+    def nothing(goal="fail", felt=None, body="error:True"):
+        self.times.append(("nothing", self.now()))
+        goal.clear()
+
+class Edge(Model):
+    done = ()
+    def start(self):
+        yield 0.01
+        self.done += ("exactly at the end",)
+        yield 0.000001
+        self.done += ("just after",)
+
+class Stopper(Model):
+    ticks = 0
+    def start(self):
+        yield 0.025
+        self.stop()
+        yield 0.005
+        self.ticks = "to the end of its tick"
+
+class First(Model):
+    def start(self):
+        for _ in range(3):
+            yield 0.01
+            self.parent.said.append((self.name, self.now()))
+
+class Idle(ACTR):
+    pass
+
+class Wrong(Model):
+    def start(self):
+        yield 0.02
+        self.body.set("wlk", 1)
+
+class Early(Model):
+    def start(self):
+        yield 0.01
+        self.body.get("pose").value
+""",
+    "minds.py",
+)
+BodyPort = MINDS.BodyPort
+
+
+def with_port(kind: Any) -> Any:
+    return type(kind.__name__, (kind,), {"body": BodyPort()})
+
+
+@pytest.fixture(name="asked")
+def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Counts what bodies are asked, by their names."""
+    counts: Counter[str] = Counter()
+    get = Body.get
+
+    def counting(self: Body, word: str, *values: Any, **options: Any) -> Any:
+        counts[self.name] += 1
+        return get(self, word, *values, **options)
+
+    monkeypatch.setattr(Body, "get", counting)
+    return counts
+
+
+def test_a_tick_thinks_and_a_tock_moves_and_answers() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
+    simulation.run(1.0)
+    mind: Any = simulation.minds["walker"]
+    asked, busy, answered, arrived, felt, nothing = mind.times
+    assert (asked, busy) == (("asked", 0.05), ("busy", True))
+    assert answered[:2] == ("answered", 0.05)  # asked at the very end of a tick, answered when the next begins
+    assert (answered[2].x, answered[2].y, answered[2].heading) == near((0, 0, 0), abs=1e-6)
+    assert answered[3] is False
+    assert arrived[1].x == near(0.2, abs=1e-3)
+    assert arrived[2].z > arrived[1].z + 0.5
+    assert float(felt[2]) == near(0, abs=1e-2)
+    assert nothing[0] == "nothing"
+    assert simulation.trace is not None
+    kinds = [(event.kind, event.data.get("call"), event.data.get("word")) for event in simulation.trace.select("request", "walker.body")]
+    assert kinds == [("request", call, word) for call, word in REQUESTS]
+    answers = simulation.trace.select("answer", "walker.body")
+    assert [event.data["word"] for event in answers] == ["pose", "pose", "pose", "gyroscope", "rangefinder"]
+    assert answers[0].data["value"] == asdict(answered[2])
+    assert (answers[3].data["value"][2], answers[4].data["value"]) == (near(0, abs=1e-2), None)
+
+
+REQUESTS = [("get", "pose"), ("set", "waypoint"), ("get", "pose"), ("get", "pose"), ("request", "gyroscope"), ("request", "rangefinder")]
+
+
+def test_events_at_the_very_end_of_a_tick_belong_to_it() -> None:
+    simulation = Simulation(Scene(), bodiless={"edge": MINDS.Edge})
+    edge: Any = simulation.minds["edge"]
+    simulation.tick()
+    assert edge.done == ("exactly at the end",)
+    simulation.tock()
+    simulation.step()
+    assert edge.done == ("exactly at the end", "just after")
+
+
+@pytest.mark.parametrize(("period", "timestep"), [(0.01, 0.002), (0.001, 0.001), (0.05, 0.0025)])
+def test_both_clocks_agree_exactly(period: float, timestep: float) -> None:
+    simulation = Simulation(scene_of("walker", timestep=timestep), {"walker": Driver}, period=period, seed=3)
+    for _ in range(500):
+        simulation.step()
+        assert simulation.minds["walker"].sch.now_us == simulation.world.time == round(simulation.ticks * period * 1e6)
+    assert simulation.time == near(500 * period)
+
+
+@pytest.mark.parametrize("period", [0.003, 0.0, -0.01, 0.0101, float("nan")])
+def test_the_period_must_be_a_whole_multiple_of_the_physics_step(period: float) -> None:
+    with pytest.raises(Actr3dError, match=r"Simulation\.period"):
+        Simulation(Scene(parts=(Floor(),)), period=period)
+
+
+def test_one_seed_gives_the_same_bytes_in_one_run_or_in_steps_with_pauses_and_at_any_speed() -> None:
+    long, single, paced, other = (driving("all") for _ in range(4))
+    long.run(1.5)
+    for _ in range(150):
+        single.tick()
+        single.tock()
+    paced.run(0.5, real_time=20)
+    time.sleep(0.05)
+    paced.run(until=lambda seen: seen.time >= 1.5)
+    other = driving("all", seed=2)
+    other.run(1.5)
+    assert digest(long) == digest(single) == digest(paced) != digest(other)
+
+
+def test_onlookers_see_everything_and_change_nothing() -> None:
+    alone, watched = driving("all"), driving("all")
+    seen: list[tuple[int, float, int]] = []
+    events: list[Any] = []
+
+    def look(glimpse: Glimpse) -> None:
+        glimpse.mj_data.qpos[:] = 0  # its own copy
+        seen.append((glimpse.tick, glimpse.time, glimpse.mj_data.ncon))
+        glimpse.state().mj_state[:] = 0
+
+    watched.observe(look)
+    watched.listen(events.append)
+    alone.run(1)
+    watched.run(1)
+    assert digest(alone) == digest(watched)
+    assert [tick for tick, _, _ in seen] == list(range(1, 101))
+    assert seen[-1][1] == 1.0
+    assert watched.trace is not None
+    assert events == list(watched.trace)
+
+
+def test_a_listener_that_fails_ends_the_run_after_the_tick_that_can_go_on_then() -> None:
+    simulation, other = driving("all"), driving("all")
+
+    def listener(event: Any) -> None:
+        if event.kind == "fire" and event.time == 0.05:
+            raise OSError("nobody hears")
+
+    simulation.listen(listener)
+    with pytest.raises(OSError, match="nobody hears"):
+        simulation.run(0.5)
+    assert simulation.time == 0.05
+    simulation.run(0.45)
+    other.run(0.5)
+    assert digest(simulation) == digest(other)
+
+
+def test_an_observer_cannot_step_what_it_observes() -> None:
+    simulation = driving()
+    simulation.observe(lambda seen: simulation.step())
+    with pytest.raises(SimulationError, match="an observer only looks"):
+        simulation.step()
+
+
+@pytest.mark.parametrize("look", ["listen", "until"])
+def test_listeners_and_conditions_only_look_too(look: str) -> None:
+    simulation, told = driving("all"), list[str]()
+
+    def meddle(_: object) -> bool:
+        for change in (simulation.step, simulation.tock, lambda: simulation.seek(0), lambda: simulation.command("aperture", 1.0)):
+            with pytest.raises(SimulationError, match="an observer only looks") as caught:
+                change()
+            told.append(str(caught.value))
+        return False
+
+    if look == "listen":
+        simulation.listen(meddle)
+        simulation.step(5)
+    else:
+        simulation.run(0.05, until=meddle)
+    assert len(told) >= 20
+    plain = driving("all")
+    plain.step(5)
+    assert digest(simulation) == digest(plain)
+
+
+def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
+    simulation = Simulation(scene_of("walker"))
+    simulation.command("walk", 1.0)
+    places: list[tuple[float, float]] = []
+    simulation.observe(lambda seen: places.append((float(seen.mj_data.body("walker").xpos[0]), float(seen.mj_data.qpos[0]))))
+    simulation.step(3)
+    assert all(shown == near(state, abs=1e-12) for shown, state in places)
+    assert places[-1][0] > places[0][0] > 0
+
+
+def test_a_body_without_a_mind_and_a_mind_without_a_body(asked: Counter[str]) -> None:
+    simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
+    environment: Any = simulation.minds["watcher"].parent
+    said: list[tuple[str, float]] = []
+    environment.said = said
+    simulation.run(0.5)
+    assert asked["walker"] > 0
+    assert asked["empty"] == 0
+    assert simulation.world.bodies["empty"].get("pose").x == near(0, abs=1e-6)
+    assert said == [("watcher", 0.01), ("watcher", 0.02), ("watcher", 0.03)]
+
+
+def test_simultaneous_events_of_several_minds_have_one_order() -> None:
+    simulation = Simulation(Scene(), bodiless={"b": MINDS.First, "a": MINDS.First, "c": MINDS.First})
+    environment: Any = simulation.minds["a"].parent
+    said: list[tuple[str, float]] = []
+    environment.said = said
+    simulation.run(0.03)
+    assert said == [(name, tick / 100) for tick in (1, 2, 3) for name in "bac"]
+
+
+def test_a_mind_that_says_stop_ends_the_run_with_its_tick() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
+    report = simulation.run(1)
+    mind: Any = simulation.minds["walker"]
+    assert (report.ended_by, report.ticks, simulation.time, mind.ticks) == ("stop", 3, 0.03, "to the end of its tick")
+    assert mind.now() == simulation.time
+    assert simulation.run(0.02).ended_by == "seconds"
+
+
+def test_a_run_without_limits_ends_when_no_mind_has_anything_left_to_do() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
+    report = simulation.run()
+    assert report.ended_by == "done"
+    assert simulation.minds["walker"].times[-1][0] == "nothing"
+    assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
+
+
+def test_until_is_asked_after_each_tock() -> None:
+    simulation = driving()
+    report = simulation.run(until=lambda seen: seen.tick == 7)
+    assert (report.ended_by, report.ticks, report.simulated) == ("until", 7, 0.07)
+
+
+def test_real_time_is_kept_and_measured_and_lateness_told() -> None:
+    simulation = Simulation(Scene(), bodiless={"idle": MINDS.Idle})
+    report = simulation.run(0.2, real_time=2)
+    assert report.wall >= 0.1  # never faster than asked for
+    assert report.factor == near(report.simulated / report.wall)
+    simulation.observe(lambda seen: time.sleep(0.005))
+    late = simulation.run(0.05, real_time=100)
+    assert (late.ticks, late.late_ticks) == (5, 5)  # none is skipped
+    assert late.latest > 0.02
+    with pytest.raises(SimulationError, match=r"real_time\): must be a finite number above 0"):
+        simulation.run(1, real_time=0)
+
+
+def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
+    simulation = driving("all")
+    simulation.step(3)
+    simulation.command("aperture", width=0.4)
+    simulation.command("posture", {"torso_yaw": 0.1}, body="walker")
+    simulation.command("parameter", "walker.looks", 100)
+    simulation.command("parameter", "other.body.error", True)
+    assert simulation.world.aperture_width() == near(0.4)
+    simulation.run(0.5)
+    assert simulation.minds["walker"].looks > 100
+    assert simulation.trace is not None
+    told = simulation.trace.select("command")
+    assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
+
+
+def odd(value: Any) -> Any:
+    """Returns a value of another type than what takes it asks for."""
+    return value
+
+
+WRONG: list[tuple[Callable[[Any], object], str]] = [
+    (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\?; name its body: walker, other"),
+    (lambda s: s.command("stop", body="walkr"), r"no body 'walkr'; did you mean 'walker'\?"),
+    (lambda s: s.command("stp", body="walker"), r"has no actuator 'stp'; did you mean 'stop'"),
+    (lambda s: s.command("aperture", object()), "numbers, texts, and tuples and dicts of these"),
+    (lambda s: s.command("aperture", 1, colour=2), r"command 'aperture': .*unexpected keyword argument 'colour'"),
+    (lambda s: s.command("aperture", -1), r"Aperture\.width: must be >= 0"),
+    (lambda s: s.command("parameter", "walkr.looks", 1), r"has no part 'walkr'; did you mean 'walker'"),
+    (lambda s: s.command("parameter", "walker.look", 1), r"'walker' has no 'look'; did you mean 'looks'"),
+    (lambda s: s.command(5), r"a command is a word, and its body is named by one \(got 5\)"),
+    (lambda s: s.command("stop", body=7), r"is named by one \(got 7\)"),
+    (lambda s: s.command("parameter", 5, 1), r"a parameter is named by a text such as 'walker\.memory\.latency' \(got 5\)"),
+    (lambda s: s.step(-1), r"step\(n\): must be a whole number, at least 0 \(got -1\)"),
+    (lambda s: s.step(1.5), r"step\(n\): must be a whole number, at least 0 \(got 1\.5\)"),
+    (lambda s: s.run(1, real_time="2"), r"run\(real_time\): must be a finite number above 0 \(got '2'\)"),
+    (lambda s: s.run(1, real_time=float("inf")), r"run\(real_time\): must be a finite number above 0 \(got inf\)"),
+    (lambda s: s.run(until=True), r"run\(until\): must be a function that takes a Glimpse \(got True\)"),
+    (lambda s: Simulation(odd("room")), r"Simulation\.scene: must be a Scene or a World \(got 'room'\)"),
+    (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the agents are \(it has come to 0\.02 s\)"),
+    (
+        lambda s: Simulation(Scene(), seed=odd(1.5)),
+        r"Simulation\.seed: must be a whole number or a text .*got 1\.5",
+    ),
+    (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number or a text of printable characters"),
+    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.minds: must name what makes each agent, as in"),
+    (
+        lambda s: Simulation(Scene(), bodiless={"": Driver}),
+        r"Simulation\.bodiless: an agent's name must be a text that does",
+    ),
+    (lambda s: Simulation(Scene(), bodiless={"sch": Driver}).step(), "cannot be named 'sch'"),
+    (lambda s: Simulation(Scene(), bodiless={"parent": Driver}).step(), "cannot be named 'parent'"),
+    (lambda s: s.tock(), "there is a tick to be made first"),
+    (lambda s: (s.tick(), s.tick()), "a tick waits for its tock"),
+    (lambda s: (s.tick(), s.command("aperture", 1)), "a tick waits for its tock"),
+    (lambda s: s.run(0.015), "must be a whole number of ticks of 0.01 s"),
+    (lambda s: s.listen(print), "nothing is traced"),
+    (lambda s: Simulation(s.world, {"walkr": Driver}), r"no body 'walkr' in the scene; did you mean 'walker'"),
+    (lambda s: Simulation(s.world, bodiless={"walker": Driver}), "'walker' is the name of a body"),
+    (lambda s: Simulation(Scene(), {"x": Driver}), "no body 'x' in the scene; there are: none"),
+    (lambda s: Simulation(s.world, dict[str, Any](walker=3)).step(), "must be an agent's class"),
+    (lambda s: Simulation(s.world, {"walker": dict}).step(), r"must make an agent \(made \{\}\)"),
+    (lambda s: Simulation(Scene(), bodiless={"run": Driver}).step(), "cannot be named 'run'"),
+    (lambda s: Simulation(Scene(), bodiless={"a": Driver}).run(0.1), "has no body"),
+    (lambda s: Simulation(s.world, trace="some"), "no level 'some'"),
+    (lambda s: Simulation(s.world, trace=cast("Any", None)), "no level None; use one of none"),
+    (lambda s: Simulation(s.world, trace=cast("Any", [])), r"no level \[\]; use one of none"),
+    (lambda s: s.command("stop", body=[]), r"a command is a word, and its body is named by one \(got \[\]\)"),
+    (lambda s: BodyPort().set("walk", 1), "'walk' is sent to a body before the agent runs; send it while its Simulation runs"),
+    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
+    (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is sent to a body before the agent runs"),
+    (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
+]
+
+
+@pytest.mark.parametrize(("wrong", "message"), WRONG)
+def test_what_is_wrong_is_said(wrong: Callable[[Simulation], object], message: str) -> None:
+    with pytest.raises(Actr3dError, match=message):
+        wrong(driving())
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    simulation, plain = driving(seed=odd(np.int64(3))), driving(seed=3)
+    simulation.command("aperture", np.float64(0.75))
+    simulation.command("posture", {"torso_yaw": np.float32(0.5)}, body="walker")
+    plain.command("aperture", 0.75)
+    plain.command("posture", {"torso_yaw": 0.5}, body="walker")
+    simulation.step(odd(np.int64(20)))
+    plain.step(20)
+    assert digest(simulation) == digest(plain)
+    assert type(simulation.seed) is int
+
+
+def test_no_name_of_a_living_environment_is_left_to_a_mind() -> None:
+    environment = Environment()
+    before = set(dir(environment))
+    ensure_converted(environment)
+    assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(agents._LATER)
+
+
+def test_an_unknown_word_names_the_modellers_line() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": with_port(MINDS.Wrong)})
+    with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
+        simulation.run(0.1)
+    line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
+    assert caught.value.__notes__ == [f"  asked for by 'walker.body' in minds.py:{line}"]
+    with pytest.raises(SimulationError, match=r"the run has failed at 0\.02 s and cannot go on"):
+        simulation.step()
+    simulation.seek(0.01)
+    assert simulation.time == 0.01
+
+
+def test_one_agent_cannot_be_two_minds() -> None:
+    agent: Any = MINDS.Idle()
+    simulation = Simulation(Scene(), bodiless={"a": lambda: agent, "b": lambda: agent})
+    with pytest.raises(SimulationError, match=r"minds\['b'\]: must make a new agent each time"):
+        simulation.step()
+
+
+def test_other_threads_submit_commands_and_do_nothing_else() -> None:
+    simulation = Simulation(scene_of("walker"))
+    said: list[str] = []
+
+    def other() -> None:
+        try:
+            simulation.step()
+        except SimulationError as error:
+            said.append(str(error))
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    thread.join()
+    assert said == ["a simulation belongs to the thread that made it; another one may use submit"]
+    futures: list[Any] = []
+    threads = [threading.Thread(target=lambda: futures.append(simulation.submit("walk", 0.5))) for _ in range(8)]
+    threads.append(threading.Thread(target=lambda: futures.append(simulation.submit("apertur", 1.0))))
+    for thread in threads:
+        thread.start()
+    while len(futures) < 9:
+        simulation.step()
+    simulation.carry_out_submitted()
+    assert sum(future.exception(timeout=0) is None for future in futures) == 8
+    simulation.submit("walk", 3.0).cancel()
+    simulation.step()
+    assert simulation.world.bodies["walker"].get("velocity").linear[0] < 1
+    (failed,) = [error for future in futures if (error := future.exception()) is not None]
+    assert "no actuator 'apertur'" in str(failed)
+
+
+def test_a_program_gives_its_simulations_seed_trace_and_end() -> None:
+    trace = Trace("all")
+    with RunLimits(seed=5, until=0.05, trace=trace):
+        simulation = Simulation(scene_of("walker"), {"walker": Driver}, trace="buffer")
+        simulation.run(0.05)
+    assert simulation.seed == 5
+    assert simulation.trace is not None
+    assert [event.to_json() for event in trace] == [event.to_json() for event in simulation.trace]
+    assert Simulation(scene_of("walker")).seed != Simulation(scene_of("walker")).seed
+
+
+def test_random_numbers_of_the_module_random_come_from_the_seed_too() -> None:
+    text = """
+import random
+from actr3d.actr import *
+class Agent(Model):
+    drawn = 0
+    def start(self):
+        while True:
+            yield 0.05
+            self.drawn = random.random()
+"""
+    agent: Any = load_text(text, "dice.py").Agent
+    numbers: list[float] = []
+    for seed in (1, 1, 2):
+        simulation = Simulation(Scene(), bodiless={"agent": agent}, seed=seed)
+        simulation.run(0.2)
+        numbers.append(simulation.minds["agent"].drawn)
+    assert numbers[0] == numbers[1] != numbers[2]
+
+
+def test_nothing_is_asked_of_a_body_that_nobody_wants(asked: Counter[str]) -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
+    simulation.run(0.1)
+    assert not asked
+    assert isinstance(simulation.minds["walker"], (ACTR, Model))
+
+
+def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(timeline, "MOST_STATES", 8)
+    monkeypatch.setattr(timeline, "MOST_ANSWERS", 100)
+    simulation = driving()
+    simulation.run(2)
+    tracemalloc.start()
+    sizes: list[int] = []
+    for _ in range(3):
+        simulation.run(20)
+        sizes.append(tracemalloc.get_traced_memory()[0])
+    tracemalloc.stop()
+    assert simulation.world.time == simulation.minds["walker"].sch.now_us == 62_000_000
+    assert sizes[2] - sizes[1] < 200_000  # a state of the two bodies' noise alone is 40,000 bytes

@@ -1,0 +1,230 @@
+"""What modellers may write by mistake is refused clearly: requests, parameters, saliences, detectors of their own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+
+from actr3d.camera import CameraParameters
+from actr3d.errors import Actr3dError, ConfigurationError, ParameterError, VisionError
+from actr3d.vision import DETECTORS, Emma, Vision
+from actr3d.vision.request_parser import read_request
+from actr3d.vision.salience import share, weigh
+from actr3d.world import Aperture, Floor, Mannequin, Scene, World
+from tests.helpers.small_agents import near
+from tests.helpers.vision_scenes import Mindful, agent
+
+HEAD = """
+import math
+import numpy as np
+from dataclasses import dataclass
+from typing import Any
+from actr3d.actr import *
+from actr3d.vision import Feature, Label, Metres, Vision, detector
+
+@dataclass(frozen=True, kw_only=True)
+class Thing(Feature):
+    width: Metres = 1.0
+    flat: bool = True
+
+class Text(Feature):
+    side: Metres = 1.0
+"""
+LOOK = """
+class Agent(ACTR):
+    goal = Buffer()
+    visual = Buffer()
+    vision = Vision(visual)
+    def init():
+        goal.set("look")
+    def look(goal="look"):
+        goal.set("done")
+        """
+
+
+@pytest.fixture(autouse=True)
+def registry() -> Iterator[None]:
+    before = dict(DETECTORS)
+    yield
+    DETECTORS.clear()
+    DETECTORS.update(before)
+
+
+def lives(text: str) -> Any:
+    world = World(Scene(parts=(Floor(), Aperture(width=0.6), Mannequin(name="walker"))))
+    return Mindful(world, agent(HEAD + text)).tick(12).mind
+
+
+def asked(pattern: str = "feature:opening", **slots: Any) -> str:
+    return read_request(pattern, slots, DETECTORS, {}, "vision").asked
+
+
+@pytest.mark.parametrize(
+    ("slots", "says"),
+    [
+        ({"left": [1]}, r"left takes a label, a whole number \(got \[1\]\)"),
+        ({"left": None}, "left takes a label"),
+        ({"left": "door"}, "left takes a label"),
+        ({"left": 1.5}, "left takes a label"),
+        ({"cut": "false"}, "cut takes True or False"),
+        ({"cut": ">0"}, "cut cannot be compared by size"),
+        ({"width": float("nan")}, "width is compared with a number in m"),
+        ({"step": -0.1}, r"step: must be >= 0 \(got -0.1\)"),
+        ({"step": float("inf")}, "step takes one number"),
+    ],
+)
+def test_a_request_with_what_never_could_be_is_refused(slots: dict[str, Any], says: str) -> None:
+    with pytest.raises(Actr3dError, match=says):
+        asked(**slots)
+
+
+def test_what_a_slot_is_asked_twice_is_refused_not_dropped() -> None:
+    for pattern in ("feature:opening feature:obstacle", "feature:opening left:1 left:2", "feature:opening width:>1 width:<2"):
+        with pytest.raises(VisionError, match="is given twice, in"):
+            asked(pattern)
+    with pytest.raises(Actr3dError, match=r"bearing: must be >= 0 \(got -5.0\)"):
+        asked("feature:obstacle", bearing=-5)
+
+
+def test_labels_of_numpy_and_infinite_bounds_are_meant_as_they_are() -> None:
+    assert asked(left=np.int64(1), right=2.0) == "feature:opening left:1 right:2"
+    assert asked(depth=">=inf", width=np.float32(0.5)) == "feature:opening depth:>=inf width:>=0.5"
+    assert lives(LOOK + "vision.request('feature:opening', depth='>=inf', left=np.int64(1))").visual.chunk["width"] == 0.6
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("vision.request('feature:opening', bottom_up='no')", "bottom_up: must be True or False"),
+        ("vision.rule = 'luck'; vision.request('feature:opening')", r"Vision\.rule: must be one of share, sos"),
+        ("vision.error_rate = 'often'; vision.request('feature:opening')", r"Vision\.error_rate: must be a probability"),
+        ("vision.edge_noise = -1; vision.request('feature:opening')", r"Vision\.edge_noise: must be at least 0"),
+        ("vision.gaze('left')", "gaze: left: must be a number"),
+        ("vision.gaze(5, None)", "gaze: up: must be a number"),
+        ("vision.gaze(10**400)", "gaze: left: must be a finite number"),
+    ],
+)
+def test_what_a_production_says_by_mistake_is_told_at_once(line: str, says: str) -> None:
+    with pytest.raises(Actr3dError, match=says):
+        lives(LOOK + line)
+
+
+def test_a_gaze_may_be_text_as_variables_are() -> None:
+    lives(LOOK + "vision.gaze('20', '-5')")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"delay": math.inf},
+        {"delay": True},
+        {"delay": 10**400},
+        {"delay_sd": math.inf},
+        {"hold": math.nan},
+        {"edge_noise": 1e308},
+        {"encoding": math.inf},
+        {"encoding": 10**400},
+        {"encoding": np.array([1, 2])},
+        {"rule": np.array([1, 2])},
+        {"saccades": "no"},
+    ],
+    ids=str,
+)
+def test_parameters_beyond_all_measure_are_refused(options: dict[str, Any]) -> None:
+    with pytest.raises(ParameterError, match=rf"Vision\.{next(iter(options))}: must be"):
+        Vision(None, **options)
+
+
+def test_cameras_refuse_them_too() -> None:
+    for options in ({"horizontal_fov": 10**400}, {"groups": np.array(1.0)}):
+        with pytest.raises(ConfigurationError, match="must be"):
+            CameraParameters(**options)  # type: ignore[arg-type]
+
+
+def test_emma_stays_within_numbers() -> None:
+    assert Emma(exponent=1e300).encoding(0.5) == 1e6
+    assert Emma().course(math.radians(80))[0] < 0.5
+
+
+def test_saliences_of_numpy_and_huge_ones_are_weighed() -> None:
+    feature: Any = object()
+    half: Any = np.float32(0.5)
+    assert weigh([feature], lambda _: half, "it") == [0.5]
+    with pytest.raises(VisionError, match="must give a number from 0 on"):
+        weigh([feature], lambda _: 10**400, "it")
+    random = Random(1)
+    drawn = [share([1e308] * 4 + [0.0], random) for _ in range(2000)]
+    assert [drawn.count(i) / 2000 for i in range(5)] == near([0.25, 0.25, 0.25, 0.25, 0.0], abs=0.04)
+
+
+# -- a modeller's detector
+
+
+@pytest.mark.parametrize(
+    ("returned", "says"),
+    [
+        ("None", r"must return the features that it has found, in a tuple \(got None\)"),
+        ("(1,)", r"must return features of the class Thing \(got 1\)"),
+        ("'abc'", "must return features of the class Thing"),
+        ("(Thing(distance=1.0, direction=0.0, width='door'),)", r"width must be a number \(got 'door'\)"),
+        ("(Thing(distance=1.0, direction=0.0, width=view),)", "width must be a number"),
+        ("(Thing(distance=math.nan, direction=0.0),)", "distance must be a number from 0 on"),
+        ("(Thing(distance=-1.0, direction=0.0),)", "distance must be a number from 0 on"),
+        ("(Thing(distance=1.0, direction=None),)", "direction must be a number"),
+    ],
+)
+def test_no_text_no_thing_and_no_view_reaches_a_chunk_by_it(returned: str, says: str) -> None:
+    text = f"@detector(Thing)\ndef things(view): return {returned}\n{LOOK}vision.request('feature:thing')"
+    with pytest.raises(VisionError, match=f"detector 'thing': {says}"):
+        lives(text)
+
+
+def test_what_numpy_gives_comes_as_plain_rounded_numbers() -> None:
+    text = "@detector(Thing)\ndef things(view): return [Thing(distance=np.float32(1.23456), direction=0, flat=np.bool_(True))]\n"
+    chunk = dict(lives(text + LOOK + "vision.request('feature:thing')").visual.chunk)
+    assert chunk == {"feature": "thing", "distance": 1.235, "direction": 0.0, "width": 1.0, "flat": True}
+    assert {type(value) for value in chunk.values()} == {str, float, bool}
+
+
+def test_parameters_need_no_unit() -> None:
+    text = "@detector(Thing)\ndef things(view, *, most=0.1): return (Thing(distance=most, direction=0.0),)\n"
+    assert lives(text + LOOK + "vision.request('feature:thing', most=2)").visual.chunk["distance"] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("@detector(Text)\ndef texts(view): return ()\n", "'side' is no field; write @dataclass"),
+        ("@detector(Thing)\ndef things(view, *, width: Metres = 1.0): return ()\n", "'width' is reserved in requests"),
+        ("@detector(Thing)\ndef things(view, *, bottom_up: Metres = 1.0): return ()\n", "'bottom_up' is reserved in requests"),
+    ],
+)
+def test_words_that_requests_could_not_reach_are_refused(text: str, says: str) -> None:
+    with pytest.raises(VisionError, match=says):
+        lives(text)
+
+
+def test_salience_and_encoding_set_later_count_and_are_checked() -> None:
+    def seven(feature: Any) -> float:
+        return 7.0
+
+    vision = Vision(None)
+    vision.salience = {"opening": seven}
+    vision.encoding = 0.085
+    assert vision._saliences["opening"](None) == 7.0
+    assert vision._encoding == 0.085
+    with pytest.raises(ParameterError, match=r"Vision\.encoding: must be a time"):
+        vision.encoding = "em"
+    with pytest.raises(ParameterError, match="no feature 'openin'; did you mean 'opening'"):
+        vision.salience = {"openin": "size"}
+    assert vision.encoding == 0.085
+
+
+def test_a_camera_that_is_set_later_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"Vision.rows: a camera cannot be changed; set it in Vision\(rows=...\)"):
+        Vision(None).rows = 50

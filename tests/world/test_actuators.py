@@ -1,0 +1,320 @@
+"""What a body is told, it does: exactly, until told otherwise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from mujoco import MjSpec
+
+from actr3d.errors import Actr3dError
+from actr3d.world import Body, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world.anatomy import Anatomy
+from actr3d.world.sensors.touch import present
+from tests.helpers.small_agents import near
+
+
+def living(*parts: Any, **of: Any) -> tuple[World, Body]:
+    """Returns a world with a floor, a mannequin called `walker` and more, and its body."""
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker", **of), *parts)))
+    return world, world.bodies["walker"]
+
+
+def ticks(world: World, count: int) -> None:
+    for _ in range(count):
+        world.step(5)
+
+
+@pytest.mark.parametrize(("target", "speed", "takes"), [(0.7, 2.0, 35), (-0.33, 1.0, 33), (0.005, 2.0, 1), (0.505, 1.0, 51)])
+def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: float, speed: float, takes: int) -> None:
+    world, body = living()
+    body.set("position", "torso_yaw", target, speed)
+    joint = body.joints["torso_yaw"]
+    for tick in range(1, takes):
+        world.step(5)
+        assert joint.position == near(math.copysign(speed * 0.01 * tick, target), abs=1e-3)
+    world.step(5)
+    assert joint.position == target
+    assert not body.motion
+    ticks(world, 100)
+    assert joint.position == near(target, abs=1e-6)
+
+
+def test_joints_that_stand_still_hold_while_others_swing() -> None:
+    world, body = living()
+    for n in range(8):
+        body.set("posture", {"torso_yaw": 0.8 * (-1) ** n, "left_shoulder_yaw": 0.3 * (-1) ** n}, speed=4.0)
+        ticks(world, 60)
+    others = [joint.position for name, joint in body.joints.items() if name not in ("torso_yaw", "left_shoulder_yaw")]
+    assert others == near([0] * len(others), abs=math.radians(0.1))
+
+
+def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
+    world, body = living()
+    body.set("position", "torso_yaw", 0.7, 2.0)
+    world.step(100)
+    assert body.joints["torso_yaw"].position == near(0.4, abs=1e-3)
+    world.step(1000)
+    assert body.joints["torso_yaw"].position == near(0.7, abs=1e-6)
+    assert not body.motion
+
+
+def test_a_posture_moves_several_joints_while_walking() -> None:
+    world, body = living()
+    body.set("walk", 1.4)
+    targets = {"torso_yaw": 0.8, "left_shoulder_yaw": 0.2, "head_pitch": -0.3, "right_upper_arm_pitch": -1.0}
+    body.set("posture", targets, speed=3.0)
+    ticks(world, 40)
+    assert {name: body.joints[name].position for name in targets} == near(targets, abs=1e-3)
+    assert body.get("pose").x == near(0.56, abs=0.01)
+
+
+@pytest.mark.parametrize(("by", "speed"), [(1.5, 2.0), (-7.0, 4.0)])
+def test_a_turn_goes_as_far_round_as_told_while_walking(by: float, speed: float) -> None:
+    world, body = living()
+    body.set("walk", 0.5)
+    body.set("turn", by, speed)
+    ticks(world, math.ceil(abs(by) / speed * 100) - 1)
+    assert body.motion
+    ticks(world, 1)
+    assert body.base.place[2] == near(by, abs=1e-9)
+    assert not body.motion
+    assert body.base.speed == near((0.5, 0, 0), abs=1e-3)
+    body.set("turn", 3.0, 1.0)
+    body.set("heading", 0.0)
+    ticks(world, 300)
+    assert math.remainder(body.base.place[2], 2 * math.pi) == near(0, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_posture_of_all_joints_is_reached_by_all_though_some_are_there_first(seed: int) -> None:
+    world, body = living()
+    random = np.random.default_rng(seed)
+    targets = {name: random.uniform(joint.lower, joint.upper) for name, joint in body.joints.items() if not name.startswith("pelvis")}
+    body.set("posture", targets, speed=3.0)
+    ticks(world, 250)
+    assert not body.motion
+    assert {name: body.joints[name].position for name in targets} == near(targets, abs=2e-3)
+
+
+def test_a_position_beyond_a_limit_ends_at_the_limit() -> None:
+    world, body = living()
+    body.set("position", "head_yaw", 3.0, 4.0)
+    ticks(world, 60)
+    assert body.joints["head_yaw"].position == near(body.joints["head_yaw"].upper)
+    assert not body.motion
+
+
+def test_a_new_command_replaces_the_old_one() -> None:
+    world, body = living()
+    body.set("position", "torso_yaw", 1.0, 1.0)
+    body.set("waypoint", 3.0, 0.0)
+    ticks(world, 10)
+    body.set("joint", "torso_yaw", -1.0)
+    body.set("walk", 0.0)
+    ticks(world, 10)
+    assert body.joints["torso_yaw"].position == near(0.0, abs=1e-3)
+    assert body.get("pose").x == near(0.13)
+    assert not body.motion
+
+
+@pytest.mark.parametrize("point", [(2.0, 0.0), (1.0, 1.5), (-1.0, 0.3), (0.004, 0.0)])
+def test_a_waypoint_is_reached_exactly_and_it_stands_there(point: tuple[float, float]) -> None:
+    world, body = living(position=(0.0, 0.0))
+    body.set("waypoint", *point, speed=1.5, turn=3.0)
+    ticks(world, 300)
+    pose = body.get("pose")
+    assert (pose.x, pose.y) == near(point, abs=1e-9)
+    assert not body.motion
+    assert body.get("velocity").linear == near((0, 0, 0), abs=1e-9)
+
+
+def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
+    world, body = living(heading=3.0)
+    body.set("heading", -3.0, 1.0)
+    ticks(world, 10)
+    assert body.base.place[2] == near(3.1, abs=1e-3)
+    ticks(world, 30)
+    assert body.get("pose").heading == near(-3.0, abs=1e-9)
+    assert not body.motion
+
+
+def test_teleport_keeps_posture_and_goes_on_walking_the_new_way() -> None:
+    world, body = living()
+    body.set("walk", 1.0)
+    body.set("position", "torso_yaw", 0.2)
+    ticks(world, 20)
+    body.set("teleport", 5.0, -2.0, math.pi / 2)
+    pose = body.get("pose")
+    assert (pose.x, pose.y, pose.heading) == near((5.0, -2.0, math.pi / 2))
+    assert body.joints["torso_yaw"].position == near(0.2, abs=1e-6)
+    ticks(world, 10)
+    pose = body.get("pose")
+    assert (pose.x, pose.y) == near((5.0, -1.9), abs=1e-6)
+
+
+CUP = Loose(name="cup", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.5)
+"""Beside the right hand of a mannequin of the usual size."""
+
+
+def test_what_is_grasped_comes_along_until_released() -> None:
+    world, body = living(CUP)
+    body.set("grasp", "cup")
+    assert body.get("grasp") == {"left": None, "right": "cup"}
+    body.set("position", "right_upper_arm_pitch", -1.2)
+    ticks(world, 100)
+    body.set("walk", 1.0)
+    ticks(world, 50)
+    assert body.get("pose").x == near(0.5, abs=0.01)
+    body.set("stop")
+    ticks(world, 50)
+    world.refresh()
+    hand, cup = (world.mj_data.body(name) for name in ("walker_right_upper_arm", "cup"))
+    there = hand.xmat.reshape(3, 3).T @ (cup.xpos - hand.xpos)
+    assert there == near([0.0, -0.24 + 0.222 - 0.06125, 0.66 - 0.818 * 1.75], abs=5e-3)
+    assert body.joints["right_upper_arm_pitch"].position == near(-1.2, abs=0.01)
+    body.set("teleport", -3.0, 2.0, 1.0)
+    ticks(world, 20)
+    world.refresh()
+    assert hand.xmat.reshape(3, 3).T @ (cup.xpos - hand.xpos) == near(there, abs=5e-3)
+    body.set("release", "right")
+    ticks(world, 150)
+    world.refresh()
+    assert body.get("grasp")["right"] is None
+    assert cup.xpos[2] < 0.2
+
+
+def test_what_is_held_feels_what_it_touches() -> None:
+    stick = Loose(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
+    world, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
+    body.set("grasp", "stick")
+    body.set("walk", 0.3)
+    ticks(world, 100)
+    assert {(touch.part, touch.other) for touch in body.get("contacts")} >= {("stick", "wall")}
+    body.set("release")
+    assert "stick" not in {touch.part for touch in present(body)}
+
+
+def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
+    world, body = living(Loose(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
+    body.set("grasp", "tray", "left")
+    body.set("grasp", "tray", "right")
+    assert body.get("grasp") == {"left": "tray", "right": "tray"}
+    body.set("release", "left")
+    ticks(world, 100)
+    world.refresh()
+    assert world.mj_data.body("tray").xpos[2] == near(0.66, abs=0.02)
+    body.set("release")
+    ticks(world, 100)
+    world.refresh()
+    assert world.mj_data.body("tray").xpos[2] < 0.2
+
+
+def test_nothing_out_of_reach_is_grasped() -> None:
+    _, body = living(Loose(name="far", position=(2.0, 0, 0.15)), CUP)
+    body.set("grasp", "far")
+    body.set("grasp", "cup", hand="left")
+    assert body.get("grasp") == {"left": None, "right": None}
+
+
+def test_a_grasp_is_part_of_the_state() -> None:
+    world, body = living(CUP, Loose(name="other", size=(0.05, 0.05, 0.2), position=(0.0, 0.24, 0.66), mass=0.3))
+    body.set("grasp", "cup")
+    body.set("position", "right_upper_arm_pitch", -1.0)
+    ticks(world, 10)
+    state = world.state()
+    ticks(world, 100)
+    first = world.state()
+    body.set("release")
+    body.set("grasp", "other", "left")
+    ticks(world, 10)
+    world.restore(state)
+    assert body.get("grasp") == {"left": None, "right": "cup"}
+    ticks(world, 100)
+    assert world.state().mj_state.tobytes() == first.mj_state.tobytes()
+    assert world.state().bodies == first.bodies
+
+
+def test_a_start_against_a_wall_is_only_a_push() -> None:
+    """A command sets a speed at once only where nothing touches: else orders given again and again would press it into a wall."""
+    world, body = living(Wall(name="wall", start=(0.2, -2.0), end=(0.2, 2.0), thickness=0.1))
+    body.set("walk", 0.5)
+    ticks(world, 50)
+    body.set("walk", 3.0)
+    assert abs(world.mj_data.qvel[0]) < 0.1
+    body.set("walk", -1.0)
+    ticks(world, 60)
+    assert body.get("velocity").linear[0] == near(-1.0, abs=1e-2)
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A described body that knows nothing of ours: a motor on a hinge."""
+
+    name: str = "arm"
+
+    def add_to(self, mj_spec: MjSpec) -> None:
+        text = """<mujoco><worldbody><body name="base"><body name="link"><joint name="elbow" axis="0 0 1" range="-1 1" limited="true"/>
+        <geom size="0.1" mass="1"/></body></body></worldbody><actuator><motor name="motor" joint="elbow" gear="2"/></actuator></mujoco>"""
+        frame = mj_spec.worldbody.add_frame(pos=[0, 0, 2])
+        mj_spec.attach(MjSpec.from_string(text), prefix=f"{self.name}_", frame=frame)
+
+    def anatomy(self) -> Anatomy:
+        return Anatomy(root="arm_base", prefix="arm_")
+
+
+def test_an_imported_body_shows_its_joints_and_takes_controls() -> None:
+    world = World(Scene(parts=(Arm(),)))
+    body = world.bodies["arm"]
+    assert body.parts == ("base", "link")
+    assert body.joints["elbow"].limits == near((-math.radians(1), math.radians(1)))
+    assert body.actuators == ("control",)
+    body.set("control", "motor", 0.5)
+    world.step(1)
+    assert body.joints["elbow"].velocity > 0
+    with pytest.raises(Actr3dError, match="arm has no control 'moter'; did you mean 'motor'"):
+        body.set("control", "moter", 1)
+
+
+@pytest.mark.parametrize(
+    ("word", "values", "message"),
+    [
+        ("wak", (1,), "walker has no actuator 'wak'; did you mean 'walk'"),
+        ("steering", (1,), "walker has no actuator 'steering'; it has walk, heading"),
+        ("walk", (), r"walker: walk takes \(speed, turn=0\.0, direction=0\.0\): missing a required argument: 'speed'"),
+        ("walk", (1, 2, 3, 4), "too many positional arguments"),
+        ("walk", ("fast",), "walk: speed: must be a number"),
+        ("walk", (math.inf,), "walk: speed: must be a finite number"),
+        ("joint", ("torso_yw", 1), "walker has no joint 'torso_yw'; did you mean 'torso_yaw'"),
+        ("position", ("torso_yaw", 1, 0), "position: speed: must be 1e-06 to 16"),
+        ("posture", ({"torso_yaw": 1, "tors": 2},), "walker has no joint 'tors'"),
+        ("grasp", ("cap",), "no loose object 'cap' in this scene; did you mean 'cup'"),
+        ("grasp", ("cup", "middle"), "walker has no hand 'middle'; it has left, right"),
+        ("release", ("middle",), "walker has no hand 'middle'"),
+        ("teleport", (1, math.nan), "teleport: y: must be a finite number"),
+        (["walk"], (1,), r"walker has no actuator \['walk'\]; it has walk"),
+        ("walk", (10**400,), "walk: speed: must be a finite number"),
+        ("heading", (math.nan,), "heading: angle: must be a finite number"),
+        ("waypoint", (1, 2, math.nan), "waypoint: speed: must be a finite number"),
+        ("joint", ("torso_yaw", math.nan), "joint: speed: must be a finite number"),
+        ("joint", (["torso_yaw"], 1), r"walker has no joint \['torso_yaw'\]"),
+        ("position", (5, 1), "walker has no joint 5"),
+        ("posture", (5,), r"posture: angles: must be angles by joint \(got 5\)"),
+        ("posture", ({"torso_yaw": 1, "head_yaw": math.nan},), "position: angle: must be a finite number"),
+        ("grasp", (5,), "no loose object '5' in this scene"),
+        ("grasp", ("cup", ["left"]), r"walker has no hand \['left'\]"),
+        ("release", (0,), "walker has no hand 0"),
+    ],
+)
+def test_wrong_commands_are_refused_with_a_reason_and_do_nothing(word: Any, values: tuple[Any, ...], message: str) -> None:
+    world, body = living(CUP)
+    body.set("waypoint", 3.0, 0.0)
+    body.set("position", "torso_yaw", 0.5)
+    before = world.state()
+    with pytest.raises(Actr3dError, match=message):
+        body.set(word, *values)
+    assert world.state().mj_state.tobytes() == before.mj_state.tobytes()
+    assert world.state().bodies == before.bodies

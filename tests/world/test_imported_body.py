@@ -1,0 +1,101 @@
+"""Bodies from files: a mind can live in them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from actr3d.errors import WorldError
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, ImportedBody, Loose, Scene, World
+from tests.helpers.small_agents import near
+
+ARM = """<mujoco>
+  <worldbody><body name="stand" pos="0 0 1"><geom size="0.1"/>
+    <body name="arm"><joint name="elbow" axis="0 0 1" damping="10" range="-60 60" limited="true"/>
+      <geom type="capsule" fromto="0 0 0 0.5 0 0" size="0.05"/><site name="tip" pos="0.6 0 0"/></body>
+  </body></worldbody>
+  <actuator><position name="turn" joint="elbow" kp="50"/></actuator>
+</mujoco>"""
+ROBOT = """<robot name="r"><link name="body"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><box size="1 2 3"/></geometry></collision></link></robot>"""
+
+
+def arm(heading: float = 0.0) -> ImportedBody:
+    return ImportedBody(name="arm", text=ARM, eye="tip", heading=heading)
+
+
+def test_what_the_file_has_is_found() -> None:
+    world = World(Scene(parts=(Floor(), arm(), Loose(name="ball", shape="sphere", size=(0.2,)))))
+    body = world.bodies["arm"]
+    assert body.parts == ("base", "arm")
+    assert list(body.joints) == ["elbow"]
+    assert (body.joints["elbow"].limits, body.eye) == (near((-math.pi / 3, math.pi / 3)), "arm_tip")
+    body.set("control", "turn", 0.5)
+    world.step(1000)
+    assert body.joints["elbow"].position == near(0.5, abs=0.01)
+    assert body.bounding_box().size[2] == near(0.2)
+
+
+def test_it_sees_along_its_eye() -> None:
+    scene = Scene(parts=(Floor(), arm(heading=1.0), Loose(name="ball", shape="sphere", size=(0.2,), position=(0, 3, 1), mass=None)))
+    body = World(scene).bodies["arm"]
+    view = body.get("view", rows=1)
+    assert [len(extents) for extents in view.as_dict()[0.5].values()] == [1]
+
+
+def test_a_robot_of_urdf_is_a_body_too_and_falls_when_it_is_free() -> None:
+    world = World(Scene(parts=(Floor(), ImportedBody(name="r", text=ROBOT, free=True, position=(0, 0, 3)))))
+    world.step(1000)
+    assert world.bodies["r"].get("pose").z == near(1.5, abs=0.01)
+
+
+def test_a_simulation_takes_it() -> None:
+    simulation = Simulation(Scene(parts=(Floor(), arm())), seed=1)
+    simulation.command("control", "turn", 0.3)
+    simulation.run(2)
+    assert simulation.world.bodies["arm"].joints["elbow"].position == near(0.3, abs=0.01)
+
+
+def test_scenery_is_no_body() -> None:
+    with pytest.raises(WorldError, match=r"needs one root body, with a name \(there is none\); use Imported for scenery"):
+        ImportedBody(name="s", text="<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
+    with pytest.raises(WorldError, match="there is one without a name"):
+        ImportedBody(name="s", text="<mujoco><worldbody><body><geom size='1'/></body></worldbody></mujoco>")
+
+
+def test_each_of_two_has_its_own_controls_though_one_s_name_begins_with_the_other_s() -> None:
+    parts = [ImportedBody(name=name, text=ARM, position=(x, 0, 0)) for name, x in (("arm", 0), ("arm_2", 3))]
+    one, two = World(Scene(parts=tuple(parts))).bodies.values()
+    assert list(one.controls) == list(two.controls) == ["turn"]
+    with pytest.raises(WorldError, match="arm has no control '2_turn'"):
+        one.set("control", "2_turn", 0.5)
+
+
+DRIVES = """<mujoco><worldbody><body name="base"><geom size="0.1"/><site name="hand"/>
+  <joint name="slide" type="slide" axis="1 0 0"/></body></worldbody>
+  <tendon><spatial name="cord"><site site="hook"/><site site="hand"/></spatial>
+    <fixed name="sum"><joint joint="slide" coef="1"/></fixed></tendon>
+  <actuator><motor name="joint" joint="slide"/><motor name="site" site="hand"/><motor name="cord" tendon="cord"/>
+    <motor name="sum" tendon="sum"/><orientation name="turn" site="hand" refsite="hook"/>
+    <adhesion name="stick" body="base" ctrlrange="0 1"/></actuator></mujoco>"""
+
+
+def test_whatever_an_actuator_pulls_at_it_is_the_body_s_that_it_moves() -> None:
+    text = DRIVES.replace("<worldbody>", '<worldbody><site name="hook" pos="1 0 0"/>')
+    body = World(Scene(parts=(ImportedBody(name="r", text=text),))).bodies["r"]
+    assert list(body.controls) == ["joint", "site", "cord", "sum", "turn", "stick"]
+
+
+def test_an_actuator_with_several_controls_takes_them_all() -> None:
+    text = DRIVES.replace("<worldbody>", '<worldbody><site name="hook" pos="1 0 0"/>')
+    world = World(Scene(parts=(ImportedBody(name="r", text=text),)))
+    body = world.bodies["r"]
+    body.set("control", "turn", 0.1, 0.2, 0.3)
+    assert world.mj_data.ctrl[body.control("turn")].tolist() == [0.1, 0.2, 0.3]
+    with pytest.raises(WorldError, match=r"r: control 'turn' takes 3 numbers \(got 0\.5\)"):
+        body.set("control", "turn", 0.5)
+    with pytest.raises(WorldError, match=r"r: control 'joint' takes one number \(got 1, 2\)"):
+        body.set("control", "joint", 1, 2)

@@ -1,0 +1,89 @@
+"""The quick look whether all is as told is taken where nothing is off, finds what is, and changes nothing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from actr3d.world import Body, Car, Floor, Mannequin, Scene, Wall, World
+from actr3d.world.posture_hold import SteadyState
+from actr3d.world.substepping import Substepping
+from tests.helpers.small_agents import near
+
+
+def course(heading: float) -> tuple[list[bytes], list[bool]]:
+    """Returns the states of a walk with commands, up to a wall, and whether each look was met."""
+    wall = Wall(name="wall", start=(1.5, -9), end=(1.5, 9))
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker", heading=heading), Mannequin(name="other", position=(-1, 1)), wall)))
+    body = world.bodies["walker"]
+    states: list[bytes] = []
+    looks: list[bool] = []
+    met = SteadyState.met
+
+    def looked(self: SteadyState) -> bool:
+        looks.append(met(self))
+        return looks[-1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(SteadyState, "met", looked)
+        for tick in range(300):
+            if tick in (10, 120, 200):
+                body.set("walk", 1.0, (0.0, 0.7)[tick == 120], 0.3)
+            if tick in (60, 150):
+                body.set("posture", {"torso_yaw": 0.3, "left_upper_arm_pitch": -0.5 * (tick == 60)}, 2.0)
+            world.step(5)
+            states.append(world.state_bytes())
+    return states, looks
+
+
+def never(_: SteadyState) -> bool:
+    return False
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.8])
+def test_it_is_taken_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    quick, looks = course(heading)
+    assert sum(looks) > 300  # of 600 of two bodies, one of which never does anything
+    monkeypatch.setattr(SteadyState, "met", never)
+    thorough, _ = course(heading)
+    assert quick == thorough
+
+
+def standing() -> tuple[World, Body]:
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker", heading=0.8))))
+    body = world.bodies["walker"]
+    body.set("walk", 1.0)
+    world.step(50)
+    return world, body
+
+
+@pytest.mark.parametrize("which", ["place", "speed", "control"])
+def test_what_is_off_is_found(which: str) -> None:
+    world, body = standing()
+    joint, data = body.joints["torso_yaw"], world.mj_data
+    control = body.control("torso_yaw").start
+    where, at = {"place": (data.qpos, joint.q), "speed": (data.qvel, joint.v), "control": (data.ctrl, control)}[which]
+    assert body.hold.before_step(0.01) < math.inf
+    where[at] += 0.1
+    assert body.hold.before_step(0.01) == math.inf
+
+
+def test_how_fast_it_is_as_told_is_a_bound_on_all_its_points() -> None:
+    world, body = standing()
+    fastest = body.hold.before_step(0.01)
+    assert 1.0 <= fastest < 1.001
+    assert fastest >= Substepping(world.physics, [body])._fastest(0.0)  # pyright: ignore[reportPrivateUsage]
+    body.set("walk", 1.0, 2.0)
+    world.step(10)
+    assert body.hold.before_step(0.01) > 1.0 + 2.0 * 0.2
+
+
+def test_a_car_whose_wheels_roll_as_they_will_has_no_such_bound() -> None:
+    world = World(Scene(parts=(Floor(), Car(name="car"))))
+    car = world.bodies["car"]
+    world.step(50)
+    assert {car.hold.before_step(0.01) for _ in range(3)} == {math.inf}
+    assert np.isfinite(world.mj_data.qpos).all()
+    assert car.get("pose").x == near(0, abs=1e-6)

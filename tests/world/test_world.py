@@ -1,0 +1,172 @@
+"""A world is compiled from a scene, keeps exact time, and goes on exactly from a state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+
+import mujoco
+import numpy as np
+import pytest
+
+from actr3d.errors import Actr3dError, WorldError
+from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Track, Wall, World
+from tests.helpers.small_agents import near
+
+
+def doorway(width: float = 0.7, heading: float = 0.0) -> World:
+    return World(Scene(parts=(Floor(), Aperture(width=width, heading=heading, position=(3.0, 1.0)), Loose(name="box"))))
+
+
+def faces(world: World) -> float:
+    """Returns the free width [m], measured between the inner faces of the two segments by a ray each way."""
+    world.refresh()
+    across = np.array([-np.sin(world.scene.parts[1].heading), np.cos(world.scene.parts[1].heading), 0.0])
+    start, geom = np.array([3.0, 1.0, 1.0]), np.zeros(1, dtype=np.int32)
+    reach = [mujoco.mj_ray(world.mj_model, world.mj_data, start, way, None, 1, -1, geom, None) for way in (across, -across)]
+    return sum(reach)
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.4, 2.0])
+def test_the_aperture_is_as_wide_as_it_says_before_and_during_a_run(heading: float) -> None:
+    world = doorway(0.7, heading)
+    assert world.aperture_width() == near(0.7, abs=1e-12)
+    assert faces(world) == near(0.7, abs=1e-9)
+    world.step(10)
+    world.set_aperture_width(0.45)
+    assert world.aperture_width() == near(0.45, abs=1e-12)
+    world.step(10)
+    assert faces(world) == near(0.45, abs=1e-9)
+
+
+def test_going_on_from_a_state_gives_the_same_bytes() -> None:
+    world = doorway()
+    world.step(100)
+    world.set_aperture_width(0.5)
+    world.step(13)
+    state = world.state()
+    world.step(200)
+    first = world.state()
+    world.set_aperture_width(0.9)
+    world.restore(state)
+    assert world.aperture_width() == near(0.5, abs=1e-12)
+    world.step(200)
+    assert world.state().mj_state.tobytes() == first.mj_state.tobytes()
+    assert (world.time, first.steps) == (626_000, 313)
+
+
+def test_a_state_of_another_scene_is_refused_whatever_its_size() -> None:
+    world, same, other = doorway(0.7), doorway(0.7), doorway(0.8)
+    world.step(3)
+    same.restore(world.state())
+    assert same.state_bytes() == world.state_bytes()
+    with pytest.raises(WorldError, match="the state is of another scene"):
+        other.restore(world.state())
+    assert other.time == 0
+
+
+def test_looking_at_positions_changes_nothing() -> None:
+    watched, unwatched = doorway(), doorway()
+    for _ in range(50):
+        watched.refresh()
+        watched.step(5)
+        unwatched.step(5)
+    assert watched.state().mj_state.tobytes() == unwatched.state().mj_state.tobytes()
+
+
+def test_a_loose_object_falls_and_lies_on_the_floor() -> None:
+    world = doorway()
+    world.step(1000)
+    world.refresh()
+    assert world.mj_data.body("box").xpos[2] == near(0.15, abs=2e-3)
+
+
+def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
+    world = World(Scene(parts=(Track(points=((0, 0), (10, 0)), width=4),)))
+    assert sorted(world.mj_model.geom_pos[:, 1]) == [-2, 2]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: Wall(name="w", start=(1, 1), end=(1, 1)), "Wall 'w': start and end are the same point"),
+        (lambda: Loose(name="b", shape="cylinder", size=(1, 2, 3)), r"a cylinder takes radius and height \(got \(1\.0, 2\.0, 3\.0\)\)"),
+        (lambda: Loose(name="b", mass=0), r"Loose\.mass: must be > 0"),
+        (lambda: Track(points=((0, 0),)), r"Track\.points: must be at least 2 long"),
+        (lambda: Scene(parts=(Floor(), Floor())), "two parts are named 'floor'"),
+        (lambda: Scene(parts=("floor",)), "'floor' is not a part"),
+        (lambda: Scene(timestep=0.0000015), "must be a whole number of microseconds"),
+        (lambda: doorway().set_aperture_width(-1), r"Aperture\.width: must be >= 0 \(got -1\.0\)"),
+        (lambda: doorway().set_aperture_width(1, "apertur"), "no aperture 'apertur' in this scene; did you mean 'aperture'"),
+        (lambda: doorway().restore(World(Scene()).state()), "is it of another scene"),
+        (lambda: doorway().step(-1), r"World\.step: must be a whole number of steps \(got -1\)"),
+        (lambda: doorway().set_aperture_width(1, 3), "no aperture '3' in this scene"),  # pyright: ignore[reportArgumentType]
+        (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
+        (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),
+        (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' cannot be a name"),
+        (lambda: Track(points=((0, 0), (1, 0), (1, 0))), r"Track 'track'\.points: the points 1 and 2 are the same, \(1\.0, 0\.0\)"),
+        (lambda: World(Floor()), r"a world is made of a Scene \(got Floor"),  # pyright: ignore[reportArgumentType]
+        (lambda: World(Scene(), seed=-1), r"the seed of a world must be a whole number from 0 on \(got -1\)"),
+    ],
+)
+def test_wrong_scenes_are_refused_with_a_reason(wrong: Callable[[], object], message: str) -> None:
+    with pytest.raises(Actr3dError, match=message):
+        wrong()
+
+
+def test_physics_that_diverges_says_so() -> None:
+    world = doorway()
+    world.mj_data.qvel[0] = 1e20
+    with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
+
+
+def test_what_has_diverged_is_named() -> None:
+    near_one, far = Loose(name="near"), Loose(name="far", position=(1e12, 0, 0))
+    with pytest.raises(Actr3dError, match=r"the physics diverged near 0\.002 s, at 'far'"):
+        World(Scene(parts=(Mannequin(), near_one, far))).step()
+    world = World(Scene(parts=(Mannequin(), near_one, Loose(name="last", position=(9, 0, 1)))))
+    world.mj_data.qvel[world.mj_model.joint("last").dofadr[0] + 2] = 1e20
+    with pytest.raises(Actr3dError, match=r"the physics diverged near .*, at 'last'"):
+        world.step()
+
+
+def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
+    world = doorway()
+    world.step(10)
+    state = world.state()
+    world.step(10)
+    expected = world.state()
+    world.mj_data.qvel[0] = 1e20
+    with pytest.raises(Actr3dError, match="the physics diverged near"):
+        world.step()
+    world.restore(state)
+    world.step(10)
+    assert world.state().mj_state.tobytes() == expected.mj_state.tobytes()
+
+
+def test_an_aperture_does_not_close_on_what_stands_in_it() -> None:
+    parts = (Floor(), Aperture(position=(0.0, 0.0)), Mannequin(name="walker"), Wall(name="beside", start=(-1, 2.5), end=(1, 2.5)))
+    world = World(Scene(parts=parts))
+    before = world.state()
+    with pytest.raises(Actr3dError, match=r"aperture 'aperture' cannot be 0\.3 m wide now: walker would be inside its walls"):
+        world.set_aperture_width(0.3)
+    assert world.state().mj_state.tobytes() == before.mj_state.tobytes()
+    world.set_aperture_width(0.44)
+    world.step(100)
+    assert world.aperture_width() == near(0.44)
+    assert np.abs(world.mj_data.qvel).max() < 0.1
+    assert world.bodies["walker"].get("pose").x == near(0, abs=0.02)
+
+
+@pytest.mark.parametrize("rate", [0.001, 0.005, 0.02])
+def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_who_stands_in_it(rate: float) -> None:
+    world = World(Scene(parts=(Floor(), Aperture(position=(0.0, 0.0), width=0.6), Mannequin(name="walker"))))
+    for _ in range(round(0.6 / rate) + 100):
+        with suppress(Actr3dError):
+            world.set_aperture_width(max(0.0, world.aperture_width() - rate))
+        world.step(5)
+        assert np.abs(world.mj_data.qvel).max() < 100  # 500 rad/s where walls were closed on it at once
+    pose = world.bodies["walker"].get("pose")
+    assert abs(pose.x) < 3
+    assert abs(pose.y) < 0.5
