@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "registry", "kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "registry", "forks", "kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -30,6 +30,7 @@ PARTS: dict[str, set[str]] = {
     "warnings": {"errors"},
     "values": set(),
     "registry": set(),
+    "forks": set(),
     "kinds": {"registry"},
     "trace": {"errors", "clock", "values", "kinds"},
     "actr": BASE,

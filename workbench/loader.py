@@ -16,7 +16,7 @@ from actr3d.actr.kernel.source_code import parse, syntax_tree
 from actr3d.actr.loading.source_text import compile_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
-from actr3d.running.declared import has_build, problem_of_build
+from actr3d.running.declared import build_of, has_build, problem_of_build
 
 _UNIT = re.compile(r"\[([^\]]+)\]")
 _TAKES = {"float": "number", "int": "whole number", "str": "text", "bool": "switch"}
@@ -152,8 +152,8 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
 
 def _of_build(tree: ast.Module) -> Iterator[Parameter]:
     """Yields the fields of the parameter class of `build`, if it is defined in the same file."""
-    builds = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == "build"]
-    argument = builds[-1].args.args[0] if builds and builds[-1].args.args else None
+    build = build_of(tree)
+    argument = build.args.args[0] if build is not None and build.args.args else None
     if argument is None or argument.annotation is None:
         return
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}

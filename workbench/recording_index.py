@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -76,7 +77,14 @@ def summary_json(path: Path) -> bytes:
     summary = to_json(vars(found)).encode()
     if len(summary) > MOST_TEXT:
         return to_json(vars(unreadable(path, "the description of its run is too long to be listed"))).encode()
-    return msgspec.json.encode(msgspec.json.decode(summary, type=Summary))
+    return msgspec.json.encode(msgspec.json.decode(_sendable(summary.decode()), type=Summary))
+
+
+def _sendable(text: str) -> str:
+    """Returns JSON in which unpaired surrogates, which no encoding has, are question marks."""
+    if "\\ud" not in text.lower():
+        return text
+    return json.dumps(json.loads(text), ensure_ascii=False).encode("utf-8", "replace").decode()
 
 
 def unreadable(path: Path, reason: str) -> Summary:
@@ -87,7 +95,7 @@ def unreadable(path: Path, reason: str) -> Summary:
 def _read(recorded: Recorded, size: int) -> Summary:
     facts, path = recorded.facts, recorded.path
     ended: dict[str, Any] | None = facts.get("ended")
-    last = [event for text in recorded.last_events() for event in EVENTS.decode(text)]  # the result is recorded at the very end
+    last = [event for text in recorded.last_events() for event in EVENTS.decode(_sendable(text))]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
     return Summary(

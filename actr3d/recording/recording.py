@@ -11,15 +11,19 @@ from typing import Any, Self
 
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
+from actr3d.forks import detach_in_copies
 from actr3d.recording.facts import check_fact
 from actr3d.recording.form import FORM, LEFT, versions
-from actr3d.recording.writer import Answer, Command, State, Writer
+from actr3d.recording.writer import Answer, Command, NoWriter, State, Writer
 from actr3d.trace import TraceEvent
 
 USUAL_PERIOD = 10_000
 """The assumed length of a tick if the facts do not give it [us]: for a program, whose simulations may have different ticks."""
 MOST_WAITING = 100_000
 """The maximum number of events that wait to be written; beyond it, the run waits for the disk."""
+
+_OF_OTHERS: list[object] = []
+"""The writers of other processes, in a forked copy: they are kept, because closing their files would disturb the others."""
 
 
 class Recording:
@@ -38,11 +42,14 @@ class Recording:
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
         all_facts: dict[str, Any] = {"form": FORM, "versions": versions(), **facts}
-        self._writer = Writer(Path(path), [(name, _plain(name, value)) for name, value in all_facts.items()])
+        self._writer: Writer | NoWriter = Writer(Path(path), [(name, _plain(name, value)) for name, value in all_facts.items()])
         self._append = self._writer.events.append
-        self._second = 0
-        """The latest second of simulated time; earlier ones are in the file."""
-        self._ticks_a_second = max(1, MICROSECONDS // all_facts.get("period_us", USUAL_PERIOD))
+        self._time = 0
+        """The simulated time of the latest item [us]; each run of a program begins at 0."""
+        self._unwritten = 0
+        """The simulated time that has passed, in all runs, since everything was written [us]."""
+        self._period = all_facts.get("period_us", USUAL_PERIOD)
+        detach_in_copies(self)
         self.events = self.answers = self.commands = self.states = 0
         """The number of items of each sort received so far."""
         self._over = {"ended": False, "failed": False}
@@ -69,10 +76,23 @@ class Recording:
         """Writes an event."""
         self.events += 1
         self._append(event)
-        second = event.time_us // MICROSECONDS
-        if second != self._second:
-            self._second = second
+        if event.time_us != self._time:
+            self._pass(event.time_us)
+
+    def _pass(self, time: int) -> None:
+        """Notes the time of an item [us]; writes everything after each second of simulated time."""
+        self._unwritten += max(0, time - self._time)
+        self._time = time
+        if self._unwritten >= MICROSECONDS:
+            self._unwritten = 0
             self._writer.flush()
+
+    def detach(self) -> None:
+        """Records nothing from now on: this is a forked copy of the process, and the run is recorded in the other."""
+        _OF_OTHERS.append(self._writer)
+        self.ending = None
+        self._writer = NoWriter()
+        self._append = self._writer.events.append
 
     def event_alone(self, event: TraceEvent) -> None:
         """Writes an event of a program that may record nothing but events.
@@ -102,10 +122,8 @@ class Recording:
         self.states += 1
         writer = self._writer
         writer.states.append(State(run, tick, data, self.events))
-        second = tick // self._ticks_a_second
-        if second != self._second:
-            self._second = second
-            writer.flush()
+        if tick * self._period != self._time:
+            self._pass(tick * self._period)
         if len(writer.states) > MOST_WAITING or len(writer.events) > MOST_WAITING or writer.failure is not None:
             self.check()
 

@@ -64,6 +64,32 @@ class Answer(NamedTuple):
     value: Any
 
 
+class NoWriter:
+    """Takes the place of a `Writer` in a forked copy of the process: it drops everything."""
+
+    failure = None
+
+    def __init__(self) -> None:
+        self.events, self.answers, self.states, self.commands, self.facts = (deque[Any](maxlen=0) for _ in range(5))
+
+    def flush(self) -> None:
+        """Does nothing."""
+
+    def cut(self, *_: int) -> None:
+        """Does nothing."""
+
+    def copy_to(self, path: Path) -> None:
+        """Refuses: the copy of the process has not what is to be written.
+
+        Raises:
+            RecordingError: Always.
+        """
+        raise RecordingError(f"cannot write the recording '{path}': this is a forked copy of the process that records")
+
+    def close(self) -> None:
+        """Does nothing."""
+
+
 class Writer:
     """Writes the items put into its queues to a new file, several times per second until closed; runs its own thread.
 

@@ -12,7 +12,7 @@ from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ConfigurationError, ModelFileError, SettingError, did_you_mean
 from actr3d.fields import Field, fields_of
-from actr3d.running.declared import RIGHT, check_build
+from actr3d.running.declared import RIGHT, check_build, line_of_build
 from actr3d.simulation import Simulation
 
 
@@ -34,14 +34,21 @@ class Blueprint:
         check_build(source, filename)
         self._filename = filename
         self._module = load_text(source, filename, folder=folder, helpers=helpers)
-        self._build: Any = self._module.build
-        names = list(inspect.signature(self._build).parameters)
-        self._place = f"{filename}:{getattr(getattr(self._build, '__code__', None), 'co_firstlineno', 1)}"
+        self._build: Any = getattr(self._module, "build", None)
+        code = getattr(self._build, "__code__", None)
+        self._place = f"{filename}:{code.co_firstlineno if code is not None else line_of_build(source)}"
+        if not callable(self._build):
+            found = f"it is {self._build!r}" if hasattr(self._module, "build") else "there is none"
+            raise ModelFileError(f"{self._place}: build is no function when the file has run ({found}); write {RIGHT}")
+        try:
+            names = list(inspect.signature(self._build).parameters)
+        except (TypeError, ValueError) as error:
+            raise ModelFileError(f"{self._place}: the arguments of build are not known ({error}); write {RIGHT}") from None
         self._kind: type[Any] | None = None
         if names:
             self._kind = get_type_hints(self._build).get(names[0])
             if not isinstance(self._kind, type) or not is_dataclass(self._kind):
-                found = getattr(self._kind, "__name__", self._kind)
+                found = str(getattr(self._kind, "__name__", self._kind)).replace(f"{self._module.__name__}.", "")
                 raise ModelFileError(f"{self._place}: build({names[0]}: {found}) takes what is no dataclass; write {RIGHT}")
         self.fields: tuple[Field, ...] = () if self._kind is None else fields_of(self._kind)
         """Its parameters."""

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.clock import seconds
+from actr3d.forks import detach_in_copies
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path
 
@@ -68,6 +69,12 @@ class Beside:
         self.difference: str | None = None
         self.facts: dict[str, Any] = {}
         """The facts of the new run; compared when it is over."""
+        self._detached = False
+        detach_in_copies(self)
+
+    def detach(self) -> None:
+        """Compares nothing from now on: this is a forked copy of the process, whose events were not recorded."""
+        self._detached = True
 
     def fact(self, name: str, value: Any) -> None:
         """Takes a fact of the new run."""
@@ -79,6 +86,8 @@ class Beside:
         Raises:
             Differs: If it is another than the recorded one, or the recording ends before.
         """
+        if self._detached:
+            return
         then = self._next(self._events)
         self.events += 1
         self._compare(f"event {self.events} at {event.time:g} s", None if then is None else then.to_json(), event.to_json())
@@ -92,6 +101,8 @@ class Beside:
         Raises:
             Differs: As `event` does.
         """
+        if self._detached:
+            return
         then = self._next(self._states)
         self.states += 1
         recorded = None if then is None else self._moment(then.run, then.tick)
@@ -111,6 +122,8 @@ class Beside:
         Raises:
             Differs: As `event` does.
         """
+        if self._detached:
+            return
         then = self._next(self._answers)
         self.answers += 1
         now = json.dumps(plain_answer((run, tick, body, word, value)))
@@ -122,6 +135,8 @@ class Beside:
         Raises:
             Differs: As `event` does.
         """
+        if self._detached:
+            return
         then = self._next(self._commands)
         self.commands += 1
         self._compare(f"command {self.commands}", None if then is None else json.dumps(then), json.dumps((run, tick, data)))

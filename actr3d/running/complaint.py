@@ -39,7 +39,7 @@ def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
     """
     report = traceback.TracebackException.from_exception(error)
     _keep_own_lines(report, hidden)
-    if isinstance(error, ModelFileError):
+    if isinstance(error, ModelFileError) or (isinstance(error, Actr3dError) and all(f.filename.startswith(PYTHON) for f in report.stack)):
         report.stack.clear()
     text = "".join(report.format())
     if isinstance(error, Actr3dError):

@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.errors import ModelFileError
 
 RIGHT = "`def build(parameters: Parameters) -> Simulation`, where Parameters is a frozen dataclass, or `def build() -> Simulation`"
+
+
+def build_of(tree: ast.Module) -> ast.FunctionDef | None:
+    """Returns the last function `build` of a module; None if there is none."""
+    return next((node for node in reversed(_builds(tree)) if isinstance(node, ast.FunctionDef)), None)
+
+
+def line_of_build(source: str) -> int:
+    """Returns the line of the last statement of a source text that binds the name `build`; 1 if there is none."""
+    return max((node.lineno for node in _builds(syntax_tree(source))), default=1)
 
 
 def has_build(source: str) -> bool:
@@ -48,8 +59,17 @@ def problem_of_build(source: str) -> tuple[int, str] | None:
 
 
 def _builds(tree: ast.Module) -> list[ast.stmt]:
-    """Returns the statements of a source text that bind the name `build`."""
-    return [node for node in tree.body if "build" in _names(node)]
+    """Returns the statements of a source text that bind the name `build` in its module, also below `if`, `try`, `with` and loops."""
+    return [node for node in _statements(tree) if "build" in _names(node)]
+
+
+def _statements(node: ast.AST) -> Iterator[ast.stmt]:
+    """Yields all statements of a module that are not inside functions and classes."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.stmt):
+            yield child
+        if not isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.expr)):
+            yield from _statements(child)
 
 
 def _names(node: ast.stmt) -> list[str]:
@@ -57,8 +77,8 @@ def _names(node: ast.stmt) -> list[str]:
         return [node.name]
     if isinstance(node, (ast.Import, ast.ImportFrom)):
         return [alias.asname or alias.name for alias in node.names]
-    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-    return [target.id for target in targets if isinstance(target, ast.Name)]
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, (ast.AnnAssign, ast.For)) else []
+    return [one.id for target in targets for one in ast.walk(target) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)]
 
 
 def _wrong(node: ast.stmt, tree: ast.Module) -> str | None:

@@ -9,10 +9,45 @@ from contextlib import contextmanager, suppress
 from functools import wraps
 from typing import Any, Final
 
-_ENDS = ((os, ("_exit", "abort", "execv", "execve")),)
-"""The functions that end the model's program."""
-_MAY_END = ((os, ("kill", "killpg")), (signal, ("raise_signal", "pthread_kill")))
-"""The functions that may end or stop it, or do something else."""
+_NOT_FATAL = {"SIGCHLD", "SIGURG", "SIGWINCH", "SIGCONT", "SIGSTOP", "SIGTSTP", "SIGTTIN", "SIGTTOU", "SIGIO", "SIGINFO"}
+"""The signals that do not end a process which does not handle them."""
+
+
+def _ends_at_once(*_: Any) -> bool:
+    return True
+
+
+def _may_end(*_: Any) -> bool:
+    return False
+
+
+def _starts_another(path: Any, *_: Any) -> bool | None:
+    """Returns whether `exec` ends the program; None if it fails, because there is no such program."""
+    return True if os.path.isfile(path) and os.access(path, os.X_OK) else None  # noqa: PTH113 - the path may be bytes or a number
+
+
+def _raises(number: int) -> bool:
+    """Returns whether a signal surely ends this process."""
+    default = number == signal.SIGKILL or signal.getsignal(number) == signal.SIG_DFL
+    return default and signal.Signals(number).name not in _NOT_FATAL
+
+
+def _kills(process: int, number: int) -> bool:
+    return process == os.getpid() and _raises(number)
+
+
+_ENDS: tuple[tuple[Any, str, Callable[..., bool | None]], ...] = (
+    (os, "_exit", _ends_at_once),
+    (os, "abort", _ends_at_once),
+    (os, "execv", _starts_another),
+    (os, "execve", _starts_another),
+    (os, "kill", _kills),
+    (os, "killpg", _may_end),
+    (signal, "raise_signal", _raises),
+    (signal, "pthread_kill", _may_end),
+    (os, "closerange", _may_end),
+)
+"""The functions with which a model ends its process, or closes what it is recorded with; and for each, whether a call surely ends it."""
 end_at_once: Final = os._exit
 """Ends the process without keeping anything first."""
 
@@ -27,12 +62,9 @@ def before_the_end(keep: Callable[[bool], object]) -> Generator[None]:
         keep: Writes or sends everything so far; called with whether the program surely ends now. Its errors are ignored.
     """
     process = os.getpid()
-    before: list[tuple[Any, str, Any]] = []
-    for functions, ends in ((_ENDS, True), (_MAY_END, False)):
-        for module, names in functions:
-            for name in names:
-                before.append((module, name, getattr(module, name)))
-                setattr(module, name, _after(keep, ends, process, getattr(module, name)))
+    before = [(module, name, getattr(module, name)) for module, name, _ in _ENDS]
+    for module, name, ends in _ENDS:
+        setattr(module, name, _after(keep, ends, process, getattr(module, name)))
     try:
         yield
     finally:
@@ -40,12 +72,16 @@ def before_the_end(keep: Callable[[bool], object]) -> Generator[None]:
             setattr(module, name, function)
 
 
-def _after(keep: Callable[[bool], object], ends: bool, process: int, function: Callable[..., Any]) -> Callable[..., Any]:
+def _after(
+    keep: Callable[[bool], object], ends: Callable[..., bool | None], process: int, function: Callable[..., Any]
+) -> Callable[..., Any]:
     @wraps(function)
     def keep_and_end(*values: Any, **named: Any) -> Any:
         if os.getpid() == process:
             with suppress(Exception):
-                keep(ends)
+                does_end = ends(*values, **named)
+                if does_end is not None:
+                    keep(does_end)
         return function(*values, **named)
 
     return keep_and_end

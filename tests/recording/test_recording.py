@@ -408,16 +408,20 @@ def test_each_second_of_simulated_time_is_written_however_soon_it_comes(tmp_path
     simulation.run(2.05)
     for tenth in range(21):
         events.event(TraceEvent(tenth * 100_000, "agent", "output", {"text": "one"}))
+    short = Recording(tmp_path / "short", {"kind": "program"})
+    for _ in range(10):  # runs of half a second each
+        for tenth in range(6):
+            short.event(TraceEvent(tenth * 100_000, "agent", "output", {"text": "one"}))
     deadline = time.monotonic() + 20
-    for name, ticks, count in (("run", 199, 0), ("events", 0, 20)):
+    for name, ticks, count in (("run", 199, 0), ("events", 0, 20), ("short", 0, 50)):
         while True:
             with Recorded(tmp_path / name) as read:  # as a kill would leave it
                 if read.ticks >= ticks and read.event_count >= count:
                     break
             assert time.monotonic() < deadline, name
             time.sleep(0.05)
-    recording.close()
-    events.close()
+    for one in (recording, events, short):
+        one.close()
 
 
 FULL_DISK = """

@@ -423,6 +423,14 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("class build: pass", ":2: build is a class"),
         ("build = lambda p: Simulation(p)", ":2: build is a value"),
         ("from elsewhere import build", ":2: build is imported"),
+        ("try:\n    def build(a) -> Simulation: pass\nexcept ImportError: pass", r":3: build\(a\) does not say which dataclass"),
+        ("(build, x) = (1, 2)", ":2: build is a value"),
+        ("def build() -> Simulation: pass\ndel build", r":2: build is no function when the file has run \(there is none\); write"),
+        ("@lambda _: None\ndef build() -> Simulation: pass", r":3: build is no function when the file has run \(it is None\)"),
+        (
+            "from dataclasses import dataclass\n@dataclass\nclass P: pass\ndef build(a: P | None) -> Simulation: pass",
+            r":5: build\(a: P \| None\) takes what is no dataclass",
+        ),
         ("\ndef build() -> Simulation: return 3", r":3: build must return a Simulation \(returned 3\)"),
     ],
 )
@@ -433,6 +441,13 @@ def test_a_wrong_build_is_told_with_its_line(tmp_path: Path, capsys: pytest.Capt
         build(text, "wrong.py", {})
     assert main(["run", str(tmp_path / "wrong.py")]) == 1
     assert re.search(message, capsys.readouterr().err)
+
+
+def test_a_build_below_a_condition_is_used() -> None:
+    text = "from actr3d.simulation import Simulation\nfrom actr3d.world import Scene\n"
+    text += "if True:\n    def build() -> Simulation:\n        return Simulation(Scene())\n"
+    assert has_build(text)
+    assert build(text, "plain.py", {})[0].ticks == 0
 
 
 def test_a_build_without_parameters() -> None:

@@ -19,7 +19,7 @@ LOOKING = """
 import importlib, importlib.util, os, sys, traceback
 from pathlib import Path
 import helper
-sys.path.append(str(Path(__file__).parents[1] / "lib"))
+sys.path.append(str(Path(__file__).parent / "lib"))
 import inside
 for name in ("extra", "package.late", "helper_too", "beside_it"):
     try:

@@ -37,6 +37,8 @@ PROGRAM = "import os, sys, threading, time\nprint('one')\nprint('two', end='')\n
         ("os.abort()", -6),
         ("os.execv('/bin/true', ['true'])", 0),
         ("os.fork() or os._exit(7); os.wait(); os._exit(4)", 4),
+        ("import signal; os.kill(os.getpid(), signal.SIGTERM)", -15),
+        ("import signal; signal.raise_signal(signal.SIGKILL)", -9),
         ("import threading; threading.Thread(target=os._exit, args=[5]).start(); threading.Event().wait(9)", 5),
     ],
 )
@@ -51,3 +53,23 @@ def test_a_model_that_ends_its_process_loses_nothing(text: str, end: str, code: 
         recorded.check()
         assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["one", "two"]
         assert "ended" not in recorded.facts
+
+
+@pytest.mark.parametrize(
+    "tries",
+    [
+        "os.execv('/nonexistent', ['x'])",
+        "os.execvp('no such program', ['x'])",
+        "os.kill(os.getpid(), 0); raise OSError",
+    ],
+)
+def test_a_model_that_fails_to_end_its_process_goes_on(tries: str, tmp_path: Path) -> None:
+    file, path = tmp_path / "model.py", tmp_path / "run"
+    file.write_text(f"import os\nprint('a', end=' ')\ntry:\n    {tries}\nexcept OSError:\n    print('b')\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "actr3d", "run", str(file), "--record", str(path)], check=False, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "a b\n", "")
+    with Recorded(path) as recorded:
+        assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["a b"]
+        assert recorded.facts["ended"] == {"by": "end"}

@@ -130,3 +130,13 @@ def test_a_replay_goes_through_sets_as_the_run_did(path: Path, capsys: pytest.Ca
     subprocess.run([sys.executable, "-m", "actr3d", "run", str(file), "--record", str(path)], check=True, capture_output=True)
     assert main(["replay", str(path)]) == 0
     assert "every byte agrees: 1 events" in capsys.readouterr().out
+
+
+def test_forged_helpers_are_refused_in_one_line(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    record(path)
+    helpers = """INSERT OR REPLACE INTO facts VALUES ('helpers', '{"os": ["os.py", "x = 1"]}')"""
+    forge(path, helpers)
+    capsys.readouterr()
+    assert main(["replay", str(path)]) == 2
+    error = "error: the recording holds modules that no program can have loaded: Python's own are in use (os)\n"
+    assert capsys.readouterr() == ("", error)

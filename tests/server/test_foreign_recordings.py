@@ -75,6 +75,12 @@ HOSTILE: dict[str, Callable[[Path], None]] = {
 }
 
 
+def test_half_a_character_that_a_model_prints_is_listed(desk: Desk, tmp_path: Path) -> None:
+    written(tmp_path, "half", firing(3, data="half a character: \ud800"), failed="ValueError: \ud800")
+    _, (found,) = desk.listed(tmp_path)
+    assert (found.problem, found.failed) == (None, "ValueError: ?")
+
+
 @pytest.fixture
 def hostile(tmp_path: Path) -> Path:
     """A models folder with all of these, and a good one that is older."""

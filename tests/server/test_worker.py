@@ -56,11 +56,12 @@ def runs_again(talk: Talk, folder: Path) -> None:
 
 def gone(pid: int) -> bool:
     """Tells whether there is no such process any more."""
+    status = Path(f"/proc/{pid}/status")
     try:
         os.kill(pid, 0)
+        return status.is_file() and "zombie" in status.read_text(encoding="utf-8")
     except ProcessLookupError:
         return True
-    return Path(f"/proc/{pid}/status").is_file() and "zombie" in Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -371,3 +372,25 @@ def test_lines_on_standard_error_are_told_once_at_the_moment_when_they_are_writt
     talk.say("run")
     talk.until("ended")
     assert told() == first
+
+
+def test_models_in_a_pool_of_forked_processes_run_to_their_end(desk: Desk, tmp_path: Path) -> None:
+    source = """from multiprocessing import get_context
+from actr3d.actr import *
+class M(Model):
+    def start(self):
+        for _ in range(40):
+            yield 0.25
+def trial(number):
+    m = M()
+    m.run()
+    return m.now()
+with get_context("fork").Pool(2) as pool:
+    print(pool.map(trial, range(4)))
+M().run()
+"""
+    talk = desk.begin(tmp_path, source, run=True, wait=None)
+    talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] in ("ended", "failed"))
+    assert (talk.state["status"], talk.state["time"]) == ("ended", 10)
+    talk.wait(lambda: talk.session.log.next == talk.state["events"])
+    assert [event[3]["text"] for event in talk.events if event[2] == "output"] == ["[10.0, 10.0, 10.0, 10.0]"]

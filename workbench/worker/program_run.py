@@ -235,6 +235,8 @@ class ProgramRun:
     def _pass(self, begin: int, end: int) -> None:
         """Paces a model without a body: delays the program until the controller lets it continue."""
         controller = self._controller
+        if controller.channel.left:
+            return  # in a copy of the process that the model has made, which nobody watches
         self._introduce()
         self._hold_models()
         to = self._clock + end - begin
@@ -262,6 +264,8 @@ class ProgramRun:
     def _tick(self, simulation: Simulation, passed: int) -> None:
         """Takes note that a simulation has ticked, or is about to begin; holds the program up until it may go on."""
         controller = self._controller
+        if controller.channel.left:
+            return  # in a copy of the process that the model has made, which nobody watches
         self._show(simulation)
         self._hold_models()
         self._introduce()

@@ -1,0 +1,32 @@
+"""Forked copies of the process: what writes or checks a run does so only in the process in which it was created."""
+
+from __future__ import annotations
+
+import os
+from typing import Protocol
+from weakref import WeakSet
+
+
+class Detachable(Protocol):
+    """Something that a forked copy of the process must not use."""
+
+    def detach(self) -> None:
+        """Makes all further calls do nothing. It is called in the copy, where other threads may have held locks."""
+        ...
+
+
+_DETACHED_IN_COPIES: WeakSet[Detachable] = WeakSet()
+
+
+def detach_in_copies(thing: Detachable) -> None:
+    """Has a thing detached in every copy of the process that is forked from now on."""
+    _DETACHED_IN_COPIES.add(thing)
+
+
+def _detach_all() -> None:
+    for thing in list(_DETACHED_IN_COPIES):
+        thing.detach()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_detach_all)
