@@ -21,11 +21,11 @@ from actr3d.errors import SettingError, did_you_mean
 from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
 from actr3d.printing import ModelOutput, printing_to
-from actr3d.running.complaint import complaint
-from actr3d.running.declared import check_build, has_build
-from actr3d.running.last_words import before_the_end
-from actr3d.running.options import options_help, read_options, read_settings
-from actr3d.running.run import run_model
+from actr3d.runner.before_exit import before_the_end
+from actr3d.runner.build_check import check_build, has_build
+from actr3d.runner.cli_options import options_help, read_options, read_settings
+from actr3d.runner.run import run_model
+from actr3d.runner.traceback_report import traceback_report
 from actr3d.trace import LEVELS, Trace, TraceEvent
 from actr3d.values import to_json
 
@@ -109,7 +109,7 @@ def _help(run: argparse.ArgumentParser, file: str | None) -> int:
         source = read_source(Path(file))
         check_build(source, file)
         if has_build(source):
-            from actr3d.running.building import Blueprint
+            from actr3d.runner.model_factory import Blueprint
 
             with RunLimits(), printing_to(sys.stderr):
                 fields = Blueprint(source, file, Path(file).parent).fields
@@ -144,7 +144,7 @@ def _complain_of_output(error: OSError) -> int:
 
 def replay_command(options: argparse.Namespace) -> int:
     """Replays a recording and compares every byte: returns 0 if all are equal, 1 if not, 2 if that cannot be determined."""
-    from actr3d.running.verdict import UNKNOWN, verdict_of
+    from actr3d.runner.verdict import UNKNOWN, verdict_of
 
     verdict = verdict_of(options.file, trust=options.trust, any_version=options.any_version)
     out = sys.stderr if verdict.code == UNKNOWN else sys.stdout
@@ -155,7 +155,7 @@ def replay_command(options: argparse.Namespace) -> int:
 
 def _complain(error: BaseException) -> int:
     """Prints an error and its causes, with the modeller's own lines only."""
-    print(complaint(error).text, end="", file=sys.stderr)
+    print(traceback_report(error).text, end="", file=sys.stderr)
     return 1
 
 

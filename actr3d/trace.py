@@ -8,7 +8,7 @@ If one trace records several runs, for example of a program that makes one model
 `top#2` and its parts are `top#2.goal` and so on, in the order in which tracing of the runs began. The time of each run
 starts at 0.
 
-Every kind of event is described once, in `actr3d.kinds`: its lowest level, its source, and its data.
+Every kind of event is described once, in `actr3d.trace_kinds`: its lowest level, its source, and its data.
 A trace that begins in the middle of a run begins with the current state: `start`, and then `state`, `buffer`,
 `productions`, `observe`, `utility` and the last `request` of each part.
 """
@@ -21,7 +21,7 @@ from typing import Any, NamedTuple, Protocol
 
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, did_you_mean
-from actr3d.kinds import KINDS, LEVELS
+from actr3d.trace_kinds import KINDS, LEVELS
 from actr3d.values import plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]

@@ -29,7 +29,7 @@ CHECKS = {
     """,
     "actr3d/actr/modules/alarm.py": """
         from actr3d.actr import *
-        from actr3d.kinds import KINDS
+        from actr3d.trace_kinds import KINDS
         class Sleeper(ACTR):
             goal = Buffer()
             alarm = Alarm(0.3)

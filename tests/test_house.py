@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "registry", "forks", "kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "registry", "forks", "trace_kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -31,8 +31,8 @@ PARTS: dict[str, set[str]] = {
     "values": set(),
     "registry": set(),
     "forks": set(),
-    "kinds": {"registry"},
-    "trace": {"errors", "clock", "values", "kinds"},
+    "trace_kinds": {"registry"},
+    "trace": {"errors", "clock", "values", "trace_kinds"},
     "actr": BASE,
     "world": BASE,
     "camera": BASE | {"world"},
@@ -41,13 +41,13 @@ PARTS: dict[str, set[str]] = {
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY,
     "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
-    "running": BASE | BODILY | SENSES | RUNNING | {"printing"},
+    "runner": BASE | BODILY | SENSES | RUNNING | {"printing"},
     "benchmark": {"registry"},
-    "experiment": BASE | BODILY | SENSES | RUNNING | {"running", "benchmark"},
-    "bench": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "benchmark"},
+    "experiment": BASE | BODILY | SENSES | RUNNING | {"runner", "benchmark"},
+    "bench": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "benchmark"},
     "printing": set(),
     "output": {"printing"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"running", "experiment", "bench", "benchmark", "output", "printing"},
+    "cli": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "bench", "benchmark", "output", "printing"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING | {"experiment"},
 }

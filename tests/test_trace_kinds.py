@@ -17,8 +17,8 @@ from actr3d.actr.loading import load_text, run_text
 from actr3d.cli import event_line
 from actr3d.errors import ParameterError
 from actr3d.experiment.aperture import Passage
-from actr3d.kinds import KINDS, LEVELS
 from actr3d.trace import Trace, TraceEvent
+from actr3d.trace_kinds import KINDS, LEVELS
 from tests.helpers.motor_bodies import moving
 from tests.helpers.vision_scenes import seeing_for
 from tests.helpers.walkers import driving

@@ -10,8 +10,8 @@ from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import ParameterError
-from actr3d.kinds import KINDS, LEVELS
 from actr3d.trace import Trace, TraceEvent
+from actr3d.trace_kinds import KINDS, LEVELS
 
 COUNTING = """
 from IMPORT import *

@@ -123,6 +123,6 @@ def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -
 @form("beginning")
 def beginning(path: Path, to: Path) -> None:
     """Writes what a recorded run began with and the commands of users, as JSON; see `Beginning`."""
-    from workbench.beginnings import beginning_of, written
+    from workbench.recorded_start import beginning_of, written
 
     to.write_text(written(beginning_of(path)), encoding="utf-8")

@@ -16,7 +16,7 @@ from actr3d.actr.kernel.source_code import parse, syntax_tree
 from actr3d.actr.loading.source_text import compile_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
-from actr3d.running.declared import build_of, has_build, problem_of_build
+from actr3d.runner.build_check import build_of, has_build, problem_of_build
 
 _UNIT = re.compile(r"\[([^\]]+)\]")
 _TAKES = {"float": "number", "int": "whole number", "str": "text", "bool": "switch"}

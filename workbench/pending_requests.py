@@ -14,7 +14,7 @@ MOST = 200
 """Maximum number of commands and questions of one session that wait for replies."""
 
 
-class Waiting:
+class PendingRequests:
     """Sends commands and questions to workers, and delivers each reply to the caller that waits for it."""
 
     def __init__(self) -> None:

@@ -44,7 +44,7 @@ class Naming(PageMessage):
 class Trusting(PageMessage):
     """Whether code of a recording may be run."""
 
-    trust: bool = False
+    trust: bool = Field(default=False, strict=True)
     """Whether the code in the recording may be run although this installation did not make it."""
 
 

@@ -19,7 +19,7 @@ MOST_CORNERS = 400
 """Above this number of corners, browsers get only the corners of the bounding box."""
 
 
-class Stage:
+class SceneFraming:
     """Holds the body and the objects around it at the start of a run.
 
     Args:

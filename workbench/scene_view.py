@@ -19,8 +19,8 @@ from workbench.curves import INTEGRATION
 from workbench.overlays import OVERLAYS, Drawn, Overlay
 from workbench.overlays.features import Features
 from workbench.overlays.frustum import Frustum
-from workbench.scene_framing import Stage
-from workbench.view_settings import Look
+from workbench.scene_framing import SceneFraming
+from workbench.view_settings import ViewSettings
 from workbench.viser_panel import Panel
 from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, send_scene_data, start_viser
 from workbench.worker.messages import Facts, State
@@ -60,7 +60,7 @@ class SceneView:
 
     # -- updates from the session
 
-    def _watch(self, what: Facts | State | Look | None) -> None:
+    def _watch(self, what: Facts | State | ViewSettings | None) -> None:
         if what is None:
             self._task.cancel()
             self.over = True
@@ -68,7 +68,7 @@ class SceneView:
                 threading.Thread(target=self._stop, daemon=True).start()
         elif isinstance(what, Facts):
             self._facts, self._state = what, None
-        elif isinstance(what, Look):
+        elif isinstance(what, ViewSettings):
             self._look = what
         elif what.physics is not None:
             self._state = what
@@ -168,7 +168,7 @@ class _Drawn:
     """
 
     def __init__(
-        self, server: Any, moments: Moments, facts: Facts, look: Look, panel: Callable[[dict[str, tuple[int, int]]], Panel]
+        self, server: Any, moments: Moments, facts: Facts, look: ViewSettings, panel: Callable[[dict[str, tuple[int, int]]], Panel]
     ) -> None:
         import msgspec
         from mjviser import ViserMujocoScene
@@ -188,19 +188,19 @@ class _Drawn:
         for name, shown in self._overlays.items():
             shown.show(name in look.shown)
         self._server, self._moments = server, moments
-        self._stage = Stage(self._model)
+        self._stage = SceneFraming(self._model)
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
         send_scene_data(server, "stage", self._stage.data(lay_grounds(server, self._model)))
         self._tell_now()
         self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
-        self._look: Look | None = None
+        self._look: ViewSettings | None = None
 
-    def asked(self, look: Look) -> tuple[str, ...]:
+    def asked(self, look: ViewSettings) -> tuple[str, ...]:
         """Returns the overlays whose data the worker must send: those shown, and always the field of view, for the view through the eye."""
         return tuple(name for name in self._overlays if name in look.shown | {"frustum"})
 
-    def look(self, look: Look) -> None:
+    def look(self, look: ViewSettings) -> None:
         """Shows the chosen overlays."""
         if look == self._look:
             return

@@ -13,11 +13,11 @@ import msgspec
 
 from actr3d.errors import Actr3dError
 from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
-from workbench.pending_requests import Waiting
+from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.retention import erase, never_begun
 from workbench.run_request import Attempt, Wanted, start_of
-from workbench.view_settings import Look
+from workbench.view_settings import ViewSettings
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import WorkerMonitor
@@ -34,7 +34,7 @@ class Command(Protocol):
         ...
 
 
-Watcher = Callable[[Facts | State | Look | None], None]
+Watcher = Callable[[Facts | State | ViewSettings | None], None]
 
 
 class Session:
@@ -55,7 +55,7 @@ class Session:
         self.feeds: list[Feed] = []
         self.watchers: list[Watcher] = []
         """Called with the facts of each new run, each state, each change of the view settings, and None at the end."""
-        self.look = Look()
+        self.look = ViewSettings()
         self.run: int = 0
         self.epoch: int = 0
         self.state_version: int = 0
@@ -96,7 +96,7 @@ class Session:
         self._given_up = 0
         """Attempts up to this number are cancelled if they have no worker yet."""
         self._tasks: set[asyncio.Task[Any]] = set()
-        self._waiting = Waiting()
+        self._waiting = PendingRequests()
         self._drawn: tuple[str, ...] = ()
         self._asked: set[Worker] = set()
         """The workers that were asked to end."""
@@ -505,7 +505,7 @@ class Session:
         for feed in self.feeds:
             feed.wake()
 
-    def _tell_watchers(self, what: Facts | State | Look | None) -> None:
+    def _tell_watchers(self, what: Facts | State | ViewSettings | None) -> None:
         for watcher in self.watchers:
             watcher(what)
 

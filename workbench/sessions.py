@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from actr3d.errors import Actr3dError
-from workbench.beginnings import Beginning, parsed
 from workbench.files import ModelFolder
 from workbench.jobs import doing
 from workbench.listing import Listing
 from workbench.readers import Readers
+from workbench.recorded_start import Beginning, parsed
 from workbench.recordings import Recordings
-from workbench.rerunning import Reruns
+from workbench.replays import Reruns
 from workbench.run_request import Relived, Wanted
 from workbench.scene_view import SceneView
 from workbench.session import Session

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from actr3d.errors import Actr3dError
-from actr3d.kinds import GROUPS, KINDS
+from actr3d.trace_kinds import GROUPS, KINDS
 from workbench import protocol
 from workbench.client_feed import Feed, Raw
 from workbench.sessions import Sessions

@@ -9,12 +9,12 @@ from workbench.overlays import OVERLAYS
 
 
 @dataclass(frozen=True)
-class Look:
+class ViewSettings:
     """Holds the set of overlays that are shown."""
 
     shown: frozenset[str] = field(default_factory=lambda: frozenset(n for n, one in OVERLAYS.items() if one.shown_at_first))
 
-    def with_overlay(self, name: str, shown: bool) -> Look:
+    def with_overlay(self, name: str, shown: bool) -> ViewSettings:
         """Returns the settings with an overlay shown or hidden."""
         return replace(self, shown=self.shown | {name} if shown else self.shown - {name})
 

@@ -11,7 +11,7 @@ from workbench.page_commands.changes import Aperture
 from workbench.page_commands.moving import Back
 from workbench.page_commands.running import Pause, Run, Step
 from workbench.page_commands.session import Overlay
-from workbench.view_settings import Look
+from workbench.view_settings import ViewSettings
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": Run, "pause": Pause, "step": Step, "back": Back}
@@ -28,7 +28,7 @@ class Panel:
         said: Called with each command of a user.
     """
 
-    def __init__(self, gui: Any, apertures: dict[str, tuple[int, int]], look: Look, said: Callable[[Any], None]) -> None:
+    def __init__(self, gui: Any, apertures: dict[str, tuple[int, int]], look: ViewSettings, said: Callable[[Any], None]) -> None:
         self._said = said
         self.apertures = apertures
         """The apertures that the panel was made for."""
@@ -65,7 +65,7 @@ class Panel:
             if slider is not None and round(slider.value) != shown:
                 slider.value = shown
 
-    def choose(self, look: Look) -> None:
+    def choose(self, look: ViewSettings) -> None:
         """Shows which overlays are on."""
         for name, box in self._boxes.items():
             if box.value != (name in look.shown):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from actr3d.camera.optics import optics_of
+from actr3d.camera.intrinsics import optics_of
 from actr3d.camera.parameters import CameraParameters
 from actr3d.errors import CameraError, did_you_mean
 

@@ -6,9 +6,9 @@ from contextlib import suppress
 from typing import Any
 from weakref import WeakKeyDictionary
 
+from actr3d.camera.eye_pose import Stand, stand_of
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
-from actr3d.camera.stand import Stand, stand_of
 from actr3d.camera.view import View
 from actr3d.world.body import Body, sensor
 

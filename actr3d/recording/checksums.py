@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from struct import pack
 
-from actr3d.recording.form import COLUMNS, FORM
+from actr3d.recording.schema import COLUMNS, FORM
 
 
 class Checksums:

@@ -13,7 +13,7 @@ from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.forks import detach_in_copies
 from actr3d.recording.facts import check_fact
-from actr3d.recording.form import FORM, LEFT, versions
+from actr3d.recording.schema import FORM, LEFT, versions
 from actr3d.recording.writer import Answer, Command, NoWriter, State, Writer
 from actr3d.trace import TraceEvent
 

@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.errors import RecordingError
 from actr3d.recording.checksums import Checksums
-from actr3d.recording.form import COLUMNS, LEFT, SCHEMA
 from actr3d.recording.key import make_key, seal
+from actr3d.recording.schema import COLUMNS, LEFT, SCHEMA
 from actr3d.trace import TraceEvent
 from actr3d.values import plain_to_json
 

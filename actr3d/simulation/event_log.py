@@ -10,12 +10,12 @@ from weakref import ref
 from actr3d.actr.kernel.run_limits import Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
-from actr3d.kinds import LEVELS
 from actr3d.recording import Recording
 from actr3d.simulation.commands import Command
 from actr3d.simulation.program_run import ProgramRun
 from actr3d.simulation.stdout_capture import StdoutCapture
 from actr3d.trace import Run, Trace, TraceEvent
+from actr3d.trace_kinds import LEVELS
 from actr3d.world import World
 
 Listener = Callable[[TraceEvent], object]

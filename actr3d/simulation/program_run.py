@@ -7,9 +7,9 @@ from typing import Any, cast
 
 from actr3d.actr.kernel.run_limits import Recorder
 from actr3d.actr.modules.port import Request
-from actr3d.kinds import KINDS, LEVELS
 from actr3d.simulation.commands import Command
 from actr3d.trace import Run, Trace, TraceEvent, top_path
+from actr3d.trace_kinds import KINDS, LEVELS
 from actr3d.values import Naming
 from actr3d.world import World
 

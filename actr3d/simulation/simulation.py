@@ -19,7 +19,7 @@ from actr3d.actr.kernel.source_code import SOURCE
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError, SimulationError
 from actr3d.recording import Recording
-from actr3d.recording.form import OWN_FACTS
+from actr3d.recording.schema import OWN_FACTS
 from actr3d.simulation.agents import Factory
 from actr3d.simulation.commands import Command
 from actr3d.simulation.event_log import EventLog, Listener

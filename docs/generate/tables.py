@@ -12,9 +12,9 @@ from unittest import mock
 
 import actr3d.cli
 import workbench.cli
-from actr3d.kinds import KINDS
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
+from actr3d.trace_kinds import KINDS
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
 from actr3d.world import Car, ImportedBody, Mannequin, Scene, World

@@ -1,4 +1,4 @@
-// The effect of each kind of event (`actr3d/kinds.py`) on the lanes.
+// The effect of each kind of event (`actr3d/trace_kinds.py`) on the lanes.
 
 import { valueText } from "../parts/chunk.js";
 import { commandText, setTheSame } from "./commands.js";

@@ -16,7 +16,7 @@ import pytest
 from actr3d.actr import Model
 from actr3d.actr.kernel.run_limits import MOST_REFUSALS, EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
-from actr3d.running.run import run_model
+from actr3d.runner.run import run_model
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.world import Floor, Scene

@@ -50,7 +50,7 @@ HEADLESS = """
 import sys, time
 from pathlib import Path
 from actr3d.actr.kernel.run_limits import RunLimits
-from actr3d.running.building import build
+from actr3d.runner.model_factory import build
 path = Path(sys.argv[1])
 print = lambda *_: None
 rates = []

@@ -19,7 +19,7 @@ from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
 from actr3d.world.world import World
 from tests.helpers.page import PATIENCE, drawn, shows, until
 from tests.helpers.workbench_server import Served
-from workbench.scene_framing import Stage
+from workbench.scene_framing import SceneFraming
 
 pytestmark = pytest.mark.scene
 
@@ -43,7 +43,7 @@ class Standing:
         self.model: MjModel = World(Scene(parts=(Floor(), Mannequin(name="walker"), *parts))).mj_model
         self.data = MjData(self.model)
         mujoco.mj_forward(self.model, self.data)
-        self.stage = Stage(self.model).data([])
+        self.stage = SceneFraming(self.model).data([])
 
     def see(self, view: str, x: float = 0.0) -> None:
         """Moves the walker, and the camera of a view that was chosen at the start."""

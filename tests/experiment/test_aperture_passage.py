@@ -15,8 +15,8 @@ from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.experiment.aperture import Passage, PassageResult
 from actr3d.recording import Recorded
-from actr3d.running.building import build
-from actr3d.running.replay import replay
+from actr3d.runner.model_factory import build
+from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 

@@ -17,7 +17,7 @@ from subprocess import CompletedProcess, TimeoutExpired
 from unittest.mock import patch
 
 _CONTEXT = get_context("forkserver")
-_CONTEXT.set_forkserver_preload(["actr3d.cli", "actr3d.simulation", "actr3d.running.replay", "actr3d.recording"])
+_CONTEXT.set_forkserver_preload(["actr3d.cli", "actr3d.simulation", "actr3d.runner.replay", "actr3d.recording"])
 
 
 def run_command(

@@ -8,8 +8,8 @@ from contextlib import closing
 from pathlib import Path
 
 from actr3d.recording.checksums import Checksums
-from actr3d.recording.form import COLUMNS
 from actr3d.recording.key import make_key, seal
+from actr3d.recording.schema import COLUMNS
 
 Change = str | Callable[[sqlite3.Connection], object]
 

@@ -13,8 +13,8 @@ import pytest
 from actr3d.cli import main
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded, Recording
-from actr3d.recording.form import COLUMNS
-from actr3d.running.replay import replay
+from actr3d.recording.schema import COLUMNS
+from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import change, forge
 from tests.helpers.walkers import driving
 

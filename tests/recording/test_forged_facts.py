@@ -13,7 +13,7 @@ import pytest
 from actr3d.cli import main
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
-from actr3d.running.replay import replay
+from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import forge
 
 AGENT = """from actr3d.actr import *

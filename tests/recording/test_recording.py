@@ -18,8 +18,8 @@ import pytest
 
 from actr3d.errors import RecordingError, SimulationError
 from actr3d.recording import Recorded, Recording
-from actr3d.recording.form import versions
-from actr3d.running.replay import replay
+from actr3d.recording.schema import versions
+from actr3d.runner.replay import replay
 from actr3d.trace import TraceEvent
 from tests.helpers.walkers import driving
 

@@ -16,11 +16,11 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.cli import main
 from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, RecordingError
 from actr3d.recording import Recorded
-from actr3d.running.building import build
-from actr3d.running.declared import has_build, problem_of_build
-from actr3d.running.options import read_settings
-from actr3d.running.replay import replay
-from actr3d.running.run import run_model
+from actr3d.runner.build_check import has_build, problem_of_build
+from actr3d.runner.cli_options import read_settings
+from actr3d.runner.model_factory import build
+from actr3d.runner.replay import replay
+from actr3d.runner.run import run_model
 from actr3d.trace import Trace
 from tests.helpers.recording_forgery import forge
 from tests.helpers.walkers import driving

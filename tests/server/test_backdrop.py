@@ -14,7 +14,7 @@ from mujoco import MjData
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall
 from actr3d.world.world import World
 from workbench.backdrop import Outlines, Shades
-from workbench.scene_framing import Stage
+from workbench.scene_framing import SceneFraming
 from workbench.viser_server import send_scene_data, start_viser
 
 
@@ -66,17 +66,19 @@ def test_outlines_are_those_of_walls_and_go_with_them() -> None:
 
 def test_the_stage_is_told_with_the_body_s_middle_and_size() -> None:
     model, _ = scene(Mannequin(name="walker"), Aperture(width=0.6))
-    told = Stage(model).data(["/floor"])
+    told = SceneFraming(model).data(["/floor"])
     assert told["height"] == pytest.approx(1.75, abs=0.1)
     assert np.add(told["start"], told["middle"]) == pytest.approx([0, 0, 0.87], abs=0.1)
     assert told["ahead"] == pytest.approx([1, 0, 0], abs=0.01)
     crowd = [Loose(name=f"box {n}", position=(n % 10 - 5, n // 10 - 5, 0.2)) for n in range(100)]
-    assert len(Stage(scene(Mannequin(name="walker"), *crowd)[0]).data([])["corners"]) == 8
-    still = Stage(scene(Wall(name="wall", start=(3, -2), end=(3, 2)))[0]).data([])  # where nothing moves, the body is all that stands there
+    assert len(SceneFraming(scene(Mannequin(name="walker"), *crowd)[0]).data([])["corners"]) == 8
+    still = SceneFraming(scene(Wall(name="wall", start=(3, -2), end=(3, 2)))[0]).data(
+        []
+    )  # where nothing moves, the body is all that stands there
     assert still["height"] >= 4
     assert still["middle"] == pytest.approx([3, 0, 1.25], abs=0.1)
     nothing: Any = World(Scene(parts=(Floor(),))).mj_model
-    assert np.isfinite(Stage(nothing).data([])["corners"]).all()
+    assert np.isfinite(SceneFraming(nothing).data([])["corners"]).all()
 
 
 def test_who_comes_later_is_told_the_newest_only() -> None:

@@ -13,7 +13,7 @@ from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, ended, recording
 from workbench.curves import NOTHING
 from workbench.forms import curves_of
-from workbench.worker.past import Past
+from workbench.worker.state_history import Past
 
 PUSHED = """from actr3d.actr import *
 from actr3d.motor import Motor

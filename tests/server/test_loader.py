@@ -10,7 +10,7 @@ import pytest
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
-from actr3d.running.building import Blueprint
+from actr3d.runner.model_factory import Blueprint
 from workbench.loader import LiveCommand, listing_of
 
 MODELS = Path(__file__).parents[2] / "models"

@@ -21,7 +21,7 @@ from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.palette import channels, label_colours, palette
 from workbench.protocol import COMMAND
-from workbench.view_settings import Look
+from workbench.view_settings import ViewSettings
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -249,7 +249,7 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
             def switch(self) -> None: ...
 
         assert COMMAND.validate_python(command).model_dump() == command
-        assert Look().as_dict()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
+        assert ViewSettings().as_dict()["overlays"][-1] == {"name": "heights", "title": "heights of bodies", "shown": True}
     finally:
         del OVERLAYS["heights"]
 

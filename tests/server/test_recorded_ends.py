@@ -8,7 +8,7 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.recording import Recorded
-from actr3d.running.replay import replay
+from actr3d.runner.replay import replay
 from tests.helpers.sessions import Desk
 
 MODEL = """import sys

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from actr3d.recording import Recorded
-from actr3d.running.replay import replay
+from actr3d.runner.replay import replay
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.csv_files import write_states_csv
 

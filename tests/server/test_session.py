@@ -10,8 +10,8 @@ import pytest
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
-from actr3d.running.building import build
-from actr3d.running.printed import ProgramOutput
+from actr3d.runner.model_factory import build
+from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.files import ModelFolder

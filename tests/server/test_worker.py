@@ -270,7 +270,7 @@ def test_texts_with_half_characters_are_told(desk: Desk, tmp_path: Path) -> None
 def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behind() -> None:
     ours, theirs = socket.socketpair()
     ours.close()
-    command = [sys.executable, "-m", "workbench.worker.zygote", str(theirs.fileno())]
+    command = [sys.executable, "-m", "workbench.worker.fork_server", str(theirs.fileno())]
     done = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, text=True, timeout=60)
     theirs.close()
     assert (done.returncode, done.stderr) == (0, "")

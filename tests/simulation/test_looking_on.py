@@ -15,8 +15,8 @@ from actr3d.actr.loading import run_text
 from actr3d.camera import CameraParameters, glance
 from actr3d.configuration import Live
 from actr3d.errors import CameraError, ParameterError, SimulationError
-from actr3d.running.building import build
-from actr3d.running.complaint import complaint
+from actr3d.runner.model_factory import build
+from actr3d.runner.traceback_report import traceback_report
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.world import ImportedBody, Scene, World
@@ -188,7 +188,7 @@ def test_a_simulation_is_done_when_no_mind_has_anything_left_to_do() -> None:
 def test_a_complaint_names_the_modeller_s_line() -> None:
     with pytest.raises(ZeroDivisionError) as caught:
         run_text(f"{CLOCK}def halve(n):\n    return n / 0\nhalve(1)", "mine.py")
-    told = complaint(caught.value)
+    told = traceback_report(caught.value)
     assert (told.file, told.line) == ("mine.py", 7)
     assert told.message == "ZeroDivisionError: division by zero"
     assert "loading.py" not in told.text
@@ -197,7 +197,7 @@ def test_a_complaint_names_the_modeller_s_line() -> None:
 def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises() -> None:
     with pytest.raises(ValueError, match="Expecting") as caught:
         run_text("import json\njson.loads('no')", "mine.py")
-    told = complaint(caught.value)
+    told = traceback_report(caught.value)
     assert (told.file, told.line) == ("mine.py", 2)
     assert "decoder.py" in told.text
 
@@ -206,7 +206,7 @@ def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises
 def test_a_complaint_names_the_line_that_cannot_be_read(text: str) -> None:
     with pytest.raises(Exception, match="bad") as caught:
         run_text(text, "bad.py")
-    told = complaint(caught.value)
+    told = traceback_report(caught.value)
     assert (told.file, told.line) == ("bad.py", 1 if "+" in text else 2)
 
 

@@ -20,7 +20,7 @@ from actr3d.world.compiled import from_text, loaded
 from workbench.curves import stride
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
-from workbench.scene_framing import Stage
+from workbench.scene_framing import SceneFraming
 
 RATE = 30
 """About this many frames per second of simulated time are stored; the page interpolates between them."""
@@ -151,7 +151,7 @@ def _scene(recorded: Recorded) -> dict[str, Any] | None:
 
 def _stage(model: MjModel, bodies: list[int]) -> dict[str, Any]:
     """Returns the part of the scene that is shown first, and the shape that the view follows: the moving body, or the next one after it."""
-    stage = Stage(model)
+    stage = SceneFraming(model)
     low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
     corners = stage.corners if len(stage.corners) <= MOST_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
     follow = next((number for number, body in enumerate(bodies) if body >= stage.body), 0)

@@ -17,7 +17,7 @@ from typing import NoReturn
 
 import msgspec
 
-from actr3d.running.last_words import end_at_once
+from actr3d.runner.before_exit import end_at_once
 from workbench.worker.messages import (
     LENGTH,
     LONGEST,

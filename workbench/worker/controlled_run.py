@@ -10,7 +10,7 @@ from workbench.loader import LiveCommand
 from workbench.worker.names import Names
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.tops import Top
+from workbench.worker.top_models import Top
 
 
 class ControlledRun(Protocol):

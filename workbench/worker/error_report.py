@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from actr3d.errors import Actr3dError
-from actr3d.running.complaint import complaint
+from actr3d.runner.traceback_report import traceback_report
 from workbench.worker.memory import relieve
 from workbench.worker.messages import Notice, notice, whole
 
@@ -22,7 +22,7 @@ def told_of(error: BaseException) -> str:
     if isinstance(error, SystemExit):
         return f"the model ended its process (SystemExit: {error.code})"
     try:
-        text = str(error) if isinstance(error, Actr3dError) else complaint(error, _HERE).message
+        text = str(error) if isinstance(error, Actr3dError) else traceback_report(error, _HERE).message
         return whole(text) or type(error).__name__
     except MemoryError:
         return f"{type(error).__name__}, and not enough memory is left to say more"
@@ -33,7 +33,7 @@ def notice_of(error: BaseException) -> Notice:
     if isinstance(error, MemoryError):
         relieve()
     try:
-        report = complaint(error, _HERE)
+        report = traceback_report(error, _HERE)
         text = told_of(error).removeprefix(f"{report.file}:{report.line}: ")  # the notice has the position in separate fields
         return notice("error", text, report.file, report.line, report.text)
     except MemoryError:

@@ -17,8 +17,8 @@ from typing import Any, NoReturn
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.actr.loading.source_text import compile_source
 from actr3d.printing import ModelOutput
-from actr3d.running.declared import check_build
-from actr3d.running.last_words import before_the_end, end_at_once
+from actr3d.runner.before_exit import before_the_end, end_at_once
+from actr3d.runner.build_check import check_build
 from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.worker.channel import Channel

@@ -8,7 +8,7 @@ import threading
 import time
 from pathlib import Path
 
-from actr3d.running.last_words import end_at_once
+from actr3d.runner.before_exit import end_at_once
 
 TOO_MUCH_MEMORY = 87
 """Exit code of a worker that has used too much memory."""

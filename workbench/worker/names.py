@@ -14,7 +14,7 @@ from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import Listing
 from workbench.worker.messages import Notice, notice
-from workbench.worker.tops import Top
+from workbench.worker.top_models import Top
 
 MOST_TOLD = 12
 """Maximum number of known names in an error message about an unknown one."""

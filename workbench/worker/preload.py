@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import actr3d.running.building  # pyright: ignore[reportUnusedImport] # noqa: F401
+import actr3d.runner.model_factory  # pyright: ignore[reportUnusedImport] # noqa: F401
 from actr3d.camera import glance
 from actr3d.world import Floor, Mannequin, Scene, World
 

@@ -17,9 +17,9 @@ from actr3d.actr.loading.sweep import with_values
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.recording import Recording
-from actr3d.running.complaint import failure
-from actr3d.running.facts import program_facts
-from actr3d.running.printed import ProgramOutput
+from actr3d.runner.facts import program_facts
+from actr3d.runner.model_stdout import ProgramOutput
+from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
@@ -27,14 +27,14 @@ from workbench.curves import joined
 from workbench.loader import Listing, LiveCommand
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
+from workbench.worker.helper_messages import helpers_of
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, names_of_program
 from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.told_helpers import helpers_of
-from workbench.worker.tops import Top
+from workbench.worker.top_models import Top
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
-from actr3d.running.replay import replay
+from actr3d.runner.replay import replay
 from actr3d.values import to_json
 from workbench.forms import FORMS
 from workbench.recording_index import summary_json

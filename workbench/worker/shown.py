@@ -20,9 +20,9 @@ from actr3d.world.sensors.touch import present
 from workbench.curves import Curves, stretch
 from workbench.loader import Parameter
 from workbench.overlays import OVERLAYS, Observed
-from workbench.worker.past import Past
+from workbench.worker.state_history import Past
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.walked import Walked
+from workbench.worker.walked_paths import Walked
 from workbench.worker.widths import widths
 
 

@@ -17,10 +17,10 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
-from actr3d.running.building import build
-from actr3d.running.complaint import failure
-from actr3d.running.facts import built_facts
-from actr3d.running.printed import BuiltOutput
+from actr3d.runner.facts import built_facts
+from actr3d.runner.model_factory import build
+from actr3d.runner.model_stdout import BuiltOutput
+from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
@@ -28,13 +28,13 @@ from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import Listing, LiveCommand
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
+from workbench.worker.helper_messages import helpers_of
 from workbench.worker.messages import Branched, Facts
 from workbench.worker.names import Names, names_of
 from workbench.worker.run_controller import RunController
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.told_helpers import helpers_of
-from workbench.worker.tops import Top
+from workbench.worker.top_models import Top
 
 BLOCK = 0.008
 """How long the run continues before it checks for commands of users [s], approximately."""

@@ -37,7 +37,7 @@ def spawn() -> Zygote:
     # A fixed hash seed gives all workers the same order of sets, as in `actr3d run`; numpy's threads would
     # not survive a fork, and are of no use here.
     environment = {**os.environ, "PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", "workbench.worker.zygote", str(its_end.fileno())]
+    command = [sys.executable, "-m", "workbench.worker.fork_server", str(its_end.fileno())]
     # In a session of its own, it is not interrupted when a user interrupts the server.
     fds = [its_end.fileno()]
     process = subprocess.Popen(command, pass_fds=fds, env=environment, stdin=subprocess.DEVNULL, start_new_session=True)

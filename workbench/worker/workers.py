@@ -8,9 +8,9 @@ import signal
 import socket
 from contextlib import suppress
 
+from workbench.worker.fork_server import ANSWER, ASK, BORN, DEAD, HALTED, READY
 from workbench.worker.messages import FROM_WORKER, LENGTH, LONGEST, FromWorker, Leave, Message, framed
 from workbench.worker.spawn import Zygote, spawn
-from workbench.worker.zygote import ANSWER, ASK, BORN, DEAD, HALTED, READY
 
 GRACE = 0.7
 """How long a worker may take to end normally [s]; then it gets SIGTERM."""

@@ -298,7 +298,7 @@ class Model(TreeNode):
         """Records an event of this part in the trace, if there is one that records everything.
 
         Args:
-            kind: The kind of event; `actr3d.kinds.trace_kind` registers one.
+            kind: The kind of event; `actr3d.trace_kinds.trace_kind` registers one.
             data: Its data; plain values, lists and dicts.
         """
         trace = self.sch.trace

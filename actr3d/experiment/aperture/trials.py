@@ -19,7 +19,7 @@ import actr3d
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
 from actr3d.experiment.aperture.passage import PassageResult
-from actr3d.running.building import Blueprint
+from actr3d.runner.model_factory import Blueprint
 
 GROUPS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
 """The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""

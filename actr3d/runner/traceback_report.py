@@ -17,7 +17,7 @@ PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "p
 
 
 @dataclass(frozen=True, kw_only=True)
-class Complaint:
+class TracebackReport:
     """The report of an error to the model's author."""
 
     message: str
@@ -30,7 +30,7 @@ class Complaint:
     """Its number in that file, from 1."""
 
 
-def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
+def traceback_report(error: BaseException, hidden: str | None = None) -> TracebackReport:
     """Returns the report of an error and its causes; a file that cannot be loaded names its own line.
 
     Args:
@@ -53,7 +53,7 @@ def complaint(error: BaseException, hidden: str | None = None) -> Complaint:
     # The file name of a text in tracebacks may be a subclass of `str`.
     file = None if file is None else str(file)
     message = str(error) if isinstance(error, Actr3dError) else "".join(report.format_exception_only()).strip()
-    return Complaint(message=message, text=text, file=file, line=line)
+    return TracebackReport(message=message, text=text, file=file, line=line)
 
 
 def failure(error: BaseException) -> str:

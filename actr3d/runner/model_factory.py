@@ -12,7 +12,7 @@ from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ConfigurationError, ModelFileError, SettingError, did_you_mean
 from actr3d.fields import Field, fields_of
-from actr3d.running.declared import RIGHT, check_build, line_of_build
+from actr3d.runner.build_check import RIGHT, check_build, line_of_build
 from actr3d.simulation import Simulation
 
 

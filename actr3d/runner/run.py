@@ -18,11 +18,11 @@ from actr3d.errors import ParameterError, SettingError
 from actr3d.fields import Field
 from actr3d.printing import TeeOutput
 from actr3d.recording import Recording
-from actr3d.running.complaint import failure
-from actr3d.running.declared import check_build, has_build
-from actr3d.running.facts import built_facts, program_facts
-from actr3d.running.last_words import before_the_end
-from actr3d.running.printed import BuiltOutput, ProgramOutput
+from actr3d.runner.before_exit import before_the_end
+from actr3d.runner.build_check import check_build, has_build
+from actr3d.runner.facts import built_facts, program_facts
+from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
+from actr3d.runner.traceback_report import failure
 from actr3d.trace import Trace, TraceEvent
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def run_model(
 
 
 def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | Mapping[str, Any], record: Path | str | None) -> Any:
-    from actr3d.running.building import Blueprint  # a program does not need the world, which this loads
+    from actr3d.runner.model_factory import Blueprint  # a program does not need the world, which this loads
 
     with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
         helpers = HelperTexts()

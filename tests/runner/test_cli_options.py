@@ -13,7 +13,7 @@ from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.errors import SettingError
 from actr3d.fields import fields_of
-from actr3d.running.options import options_help, read_options, read_settings
+from actr3d.runner.cli_options import options_help, read_options, read_settings
 from tests.helpers.recording_forgery import forge
 
 LAMP = '''

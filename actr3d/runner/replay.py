@@ -16,12 +16,12 @@ from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
-from actr3d.running.comparison import Beside, Comparison, Differs
-from actr3d.running.complaint import failure
-from actr3d.running.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
-from actr3d.running.printed import BuiltOutput, ProgramOutput
-from actr3d.running.replayable import check_replayable
-from actr3d.running.run import play_program, recorded_failure
+from actr3d.runner.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
+from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
+from actr3d.runner.replay_diff import Beside, Comparison, Differs
+from actr3d.runner.replayable import check_replayable
+from actr3d.runner.run import play_program, recorded_failure
+from actr3d.runner.traceback_report import failure
 from actr3d.trace import Trace
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def replay(
 
 
 def _built(recorded: Recorded, helpers: HelperTexts) -> tuple[Simulation, dict[str, Any]]:
-    from actr3d.running.building import build  # a program does without the world that this loads
+    from actr3d.runner.model_factory import build  # a program does without the world that this loads
 
     facts = recorded.facts
     file = facts["file"]

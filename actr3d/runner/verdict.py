@@ -18,8 +18,8 @@ from typing import Any, NoReturn, TypeVar
 
 from actr3d.errors import Actr3dError, UntrustedError
 from actr3d.recording import Recorded
-from actr3d.running.complaint import complaint
-from actr3d.running.replayable import check_replayable
+from actr3d.runner.replayable import check_replayable
+from actr3d.runner.traceback_report import traceback_report
 
 T = TypeVar("T")
 AGREES, DIFFERS, UNKNOWN = 0, 1, 2
@@ -29,7 +29,7 @@ import json, sys
 order = json.loads(sys.argv[1])
 sys.path[:] = order.pop("path")
 try:
-    from actr3d.running.verdict import give_verdict
+    from actr3d.runner.verdict import give_verdict
     give_verdict(**order)
 except KeyboardInterrupt:
     sys.exit(130)
@@ -53,7 +53,7 @@ def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
 
     Args:
         file: The recording.
-        trust: As `actr3d.running.replay.replay` has it.
+        trust: As `actr3d.runner.replay.replay` has it.
         any_version: Likewise.
     """
     problem = _answered(file, partial(_check, file, trust, any_version))
@@ -90,7 +90,7 @@ def _check(file: str, trust: bool, any_version: bool) -> None:
 
 
 def _compare(file: str, trust: bool, any_version: bool, within: Path) -> Verdict:
-    from actr3d.running.replay import replay
+    from actr3d.runner.replay import replay
 
     with Recorded(file) as recorded:
         comparison = replay(recorded, trust=trust, any_version=any_version, within=within)
@@ -105,7 +105,7 @@ def _answered(file: str, work: Callable[[], T]) -> T | Verdict:
         reason = "was not made by this installation (or was changed since), and a replay runs the code that it holds"
         text = f"error: '{file}' {reason}; if you trust where it comes from, add --trust\n"
     except (Actr3dError, OSError) as error:
-        text = complaint(error).text
+        text = traceback_report(error).text
     except Exception as error:  # noqa: BLE001 - a file that anybody may have made is never answered by a traceback
         text = f"error: '{file}' cannot be run again: {type(error).__name__}: {error}\n"
     return Verdict(code=UNKNOWN, text=text)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from actr3d.errors import RecordingError, UntrustedError
 from actr3d.recording import Recorded
-from actr3d.recording.form import versions
-from actr3d.running.facts import BUILT, PROGRAM
+from actr3d.recording.schema import versions
+from actr3d.runner.facts import BUILT, PROGRAM
 
 _NEEDED = {
     "program": ("file", "sources", "seed", "until"),

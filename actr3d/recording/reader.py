@@ -14,9 +14,9 @@ from typing import Any, NamedTuple, Self, cast
 from actr3d.errors import RecordingError
 from actr3d.recording.checksums import Checksums
 from actr3d.recording.facts import LARGEST, check_facts
-from actr3d.recording.form import COLUMNS, FORM, LEFT, SCHEMA
 from actr3d.recording.key import is_sealed
 from actr3d.recording.opening import opened
+from actr3d.recording.schema import COLUMNS, FORM, LEFT, SCHEMA
 from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
 
