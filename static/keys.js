@@ -61,8 +61,8 @@ addEventListener("focusin", ({ target, relatedTarget }) => {
 addEventListener("change", ({ target }) => byPointer && target.tagName === "SELECT" && target.blur());
 
 /** Returns whether the element handles a key itself. */
-function isOwn(element, { code }) {
-  return Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(code) && element?.closest(where));
+function isOwn(element, { code, shiftKey }) {
+  return !shiftKey && Object.entries(OWN).some(([keys, where]) => keys.split(" ").includes(code) && element?.closest(where));
 }
 
 /** Returns whether the page handles a key instead of the element that has the focus by pointer. */

@@ -19,7 +19,8 @@ function keyOf({ id, run, attempt, shown_attempt: shown }) {
 async function follow(wanted) {
   const key = keyOf(wanted);
   if (loaded.peek().key === key) return;
-  loaded.value = { key, answer: null, problem: null };
+  const same = loaded.peek().key.split(" ")[0] === wanted.id; // the description of the former run stays until the new one is there
+  loaded.value = { key, answer: same ? loaded.peek().answer : null, problem: null };
   let answer = null;
   let problem = null;
   try {

@@ -1,6 +1,7 @@
 // The contents of the agents: every buffer with its chunk, every module with its state, by agent; and the result of a run.
 
 import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { AtStart } from "../inspector/at_start.js";
 import { agentOf, agentsOf, nameIn } from "../inspector/agents.js";
 import { Flash } from "../inspector/flash.js";
 import { Module, Plain, useRequests } from "../inspector/modules.js";
@@ -99,6 +100,7 @@ function Buffers() {
     .filter(([, own]) => own.length > 0);
   const run = `${session.value?.id} ${session.value?.run}`;
   return html`<div class="mind" key=${run}>
+    <${AtStart} />
     ${state.value.result ? html`<${Result} result=${state.value.result} />` : null}
     ${groups.map(([agent, own]) => html`<${Agent} key=${agent} agent=${agent} paths=${own} parts=${parts} requests=${requests} several=${groups.length > 1} />`)}
   </div>`;

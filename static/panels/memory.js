@@ -1,6 +1,7 @@
 // Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
+import { AtStart } from "../inspector/at_start.js";
 import { MemoryTable } from "../inspector/memory_table.js";
 import { Search } from "../inspector/retrievals.js";
 import { postures, SchemaTable } from "../inspector/schema_table.js";
@@ -74,6 +75,7 @@ function Memory() {
   const shown = views.some(({ id }) => id === view.value) ? view.value : views[0].id;
   const memory = memories.includes(wanted.value) ? wanted.value : memories[0];
   return html`<div class="memory" key="${session.value?.id} ${session.value?.run}">
+    <${AtStart} />
     ${views.length > 1 || memories.length > 1
       ? html`<div class="tools heads">
           ${views.length > 1

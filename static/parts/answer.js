@@ -15,7 +15,7 @@ const NOTHING = { answer: null, error: null, waiting: false, of: null };
  * @param question The question; null for none.
  * @param live Whether it is also sent while the run is active.
  * @param once Whether it is sent once while the run is active, such as a question about a past moment.
- * @returns {answer, error, waiting}: the newest answer (kept until the next one arrives, but not for another session), or why
+ * @returns {answer, error, waiting}: the newest answer (kept until the next one arrives, but not for another run), or why
  *   there is none.
  */
 export function useAnswer(question, { live = false, once = false } = {}) {
@@ -34,7 +34,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       asked = moment.peek();
       busy = true;
       const run = whichRun();
-      const of = session.peek().id;
+      const of = run;
       setResult((before) => ({ ...before, waiting: true }));
       const news = await say(question).then(
         (answer) => ({ answer, error: null, of }),
@@ -57,5 +57,6 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       if (busy) setResult((before) => ({ ...before, waiting: false }));
     };
   }, [key, live, once]);
-  return result.of === null || result.of === session.value?.id ? result : NOTHING;
+  const shown = `${session.value?.id} ${session.value?.run}`; // as `whichRun`, but followed
+  return result.of === null || result.of === shown ? result : NOTHING;
 }

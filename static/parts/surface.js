@@ -37,6 +37,14 @@ export function cut(text, most, style = {}) {
   return fits > 0 ? `${line.slice(0, fits)}…` : "";
 }
 
+/** Returns a text that fits into a width [px]; a longer one begins with an ellipsis: names of curves differ at their ends. */
+export function cutBefore(text, most, style = {}) {
+  if (widthOf(text, style) <= most) return text;
+  let from = 1;
+  while (from < text.length && widthOf(`…${text.slice(from)}`, style) > most) from += 1;
+  return from < text.length ? `…${text.slice(from)}` : "";
+}
+
 /** Draws on a canvas. Colours are names of style.css. */
 export class CanvasSurface {
   constructor(context) {

@@ -13,6 +13,7 @@ export function Tabs({ label, tabs, shown }) {
   const open = tabs.find(({ id }) => id === shown.value) ?? tabs[0];
 
   function press(event) {
+    if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey) return;
     const at = tabs.indexOf(open);
     const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[event.key];
     if (to === undefined) return;

@@ -77,7 +77,7 @@ function place(stage) {
   paintAxis(stage.querySelector("canvas"));
   head.style.transform = `translateX(${now}px)`;
   veil.style.left = `${inside(now)}px`;
-  veil.style.width = `${inside(far) - inside(now)}px`;
+  veil.style.width = `${now < far ? view.width - inside(now) : 0}px`; // also over the texts of the last marks
   end.hidden = far < view.column || far > view.width || furthest.value === 0;
   end.style.transform = `translateX(${far}px)`;
 }

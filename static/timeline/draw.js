@@ -1,7 +1,7 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
 import { drawCurves, drawTimes, seriesColour } from "../parts/curve.js";
-import { cut } from "../parts/surface.js";
+import { cut, cutBefore } from "../parts/surface.js";
 import { session } from "../store.js";
 import { bandText } from "./lanes.js";
 import { firstWhere } from "./search.js";
@@ -123,11 +123,14 @@ function drawPlotRow(surface, plot, y, height, scene) {
   const { column, width } = scene;
   const room = column - SCALE - 8;
   surface.text(cut(`${plot.title} [${plot.unit}]`, room), 8, y + 10, "text", { bold: true });
-  plot.series.slice(0, Math.floor((height - 18) / 13)).forEach(({ name }, n) => {
+  const lines = Math.floor((height - 18) / 13);
+  const shown = plot.series.length > lines ? lines - 1 : lines;
+  plot.series.slice(0, shown).forEach(({ name }, n) => {
     const at = y + 25 + 13 * n;
     surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
-    surface.text(cut(shortName(name, plot), room - 12, { size: 10 }), 20, at, "quiet", { size: 10 });
+    surface.text(cutBefore(shortName(name, plot), room - 12, { size: 10 }), 20, at, "quiet", { size: 10 });
   });
+  if (plot.series.length > lines) surface.text(`and ${plot.series.length - shown} more`, 20, y + 25 + 13 * shown, "quiet", { size: 10 });
   drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene) });
 }
 

@@ -1,9 +1,9 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
-import { running, session } from "../store.js";
+import { running } from "../store.js";
 import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { AXIS, column } from "./rows.js";
-import { furthest, orderThere, present, seek } from "./seek.js";
+import { furthest, goTicks, orderThere, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
 const GRIP = 4; // the distance at which the border of the column of names can be dragged [px]
@@ -12,7 +12,7 @@ const STILL = 3; // a pointer that has moved by at most this has clicked [px]
 const COLUMN = [70, 360]; // the limits of the column's width [px]
 const NOTCH = 0.0015; // the zoom per pixel of the wheel
 const LINE = 16; // a line of the wheel [px]
-const FEW = 5; // the ticks of a step with Shift
+export const FEW = 5; // the ticks of a step with Shift
 
 /** Returns the area at a position of the timeline: "border", "axis", "names" or "lanes". */
 export function partAt(x, y) {
@@ -82,10 +82,10 @@ export function turn(event) {
 /** Goes to another time by keys, or scrolls. */
 export function press(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const tick = session.peek()?.period || 0.01;
-  const step = event.shiftKey ? FEW * tick : tick;
-  const to = { ArrowLeft: present.peek() - step, ArrowRight: present.peek() + step, Home: 0, End: furthest.peek() }[event.key];
-  if (to !== undefined) seek(Math.max(0, to));
+  const ticks = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+  const to = { Home: 0, End: furthest.peek() }[event.key];
+  if (ticks !== undefined) goTicks(event.shiftKey ? FEW * ticks : ticks);
+  else if (to !== undefined) seek(to);
   else if (event.key === " ") orderThere({ type: running.peek() ? "pause" : "run" });
   else if (event.key === "ArrowDown" || event.key === "ArrowUp") event.currentTarget.parentElement.parentElement.scrollBy(0, event.key === "ArrowDown" ? 36 : -36);
   else return;

@@ -23,6 +23,11 @@ export function seek(time) {
   travel(Math.round((Math.round(time / period) * period) * 1e6) / 1e6, time);
 }
 
+/** Goes on or back by a number of ticks. */
+export function goTicks(ticks) {
+  seek(Math.max(0, present.peek() + ticks * (session.peek()?.period || 0.01)));
+}
+
 /** Goes to a time that the run has reached [s]; to the newest if `wish`, from which the time was computed, is as late. */
 export function travel(time, wish = time) {
   if (!alive.peek()) return;

@@ -1,7 +1,7 @@
 // The tools above the timeline: visible rows, zoom, and where the run continues.
 
 import { html } from "../vendor/preact.js";
-import { bindKey, noteKey } from "../keys.js";
+import { bindKey } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
@@ -11,7 +11,8 @@ import { CurveChoice } from "./choice.js";
 import { names } from "./curves.js";
 import { lanesVersion } from "./record.js";
 import { groupsThere, hidden } from "./rows.js";
-import { furthest, inThePast, present, seek, wanted } from "./seek.js";
+import { FEW } from "./pointer.js";
+import { furthest, goTicks, inThePast, present, seek, wanted } from "./seek.js";
 import { savePictures } from "./pictures.js";
 import { filter } from "./canvas.js";
 import { fit, mode, zoom } from "./view.js";
@@ -34,8 +35,8 @@ function near(factor) {
 
 bindKey("Home", "To the beginning of the run", () => seek(0), "Timeline");
 bindKey("End", "To its newest moment", () => seek(furthest.peek()), "Timeline");
-noteKey("Shift+ArrowLeft", "Five ticks back, on the timeline", "Timeline");
-noteKey("Shift+ArrowRight", "Five ticks on, on the timeline", "Timeline");
+bindKey("Shift+ArrowLeft", "Five ticks back", () => goTicks(-FEW), "Timeline");
+bindKey("Shift+ArrowRight", "Five ticks on", () => goTicks(FEW), "Timeline");
 bindKey("z", "Zoom in", () => near(1 / STEP), "Timeline");
 bindKey("Shift+z", "Zoom out", () => near(STEP), "Timeline");
 bindKey("f", "Show all of the run", fit, "Timeline");

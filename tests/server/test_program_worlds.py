@@ -73,7 +73,8 @@ def told(talk: Talk) -> dict[str, Any]:
     answers = {str(one): talk.say(one["type"], **{name: value for name, value in one.items() if name != "type"}) for one in asked}
     curves = talk.say("curves", most=5_000)
     upto = [n for n, at in enumerate(curves["times"]) if at <= state["time"]]
-    return now | answers | {"curves": {name: [values[n] for n in upto] for name, values in curves["curves"].items()}}
+    known = {name: [values[n] for n in upto] for name, values in curves["curves"].items()}
+    return now | answers | {"curves": {name: values for name, values in known.items() if any(value is not None for value in values)}}
 
 
 def draw(talk: Talk) -> None:
@@ -146,11 +147,13 @@ def test_of_several_simulations_the_latest_is_shown_and_the_scene_changes_with_t
     parts, sources = talk.state["parts"], {event[1] for event in talk.events}
     assert {"top#3.walker.goal", "top#2.walker.goal", "goal"} < parts.keys() & sources
     assert talk.say("explain", agent="top#3.walker")[0]["agent"] == "top#3.walker"
+    curves = talk.say("curves", most=5_000)
     for time in (0.3, 0.8, 0.05, 0.55):
         talk.say("seek", time=time)
         talk.until("paused", time=time)
         now = told(talk)
         assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
+        assert talk.say("curves", most=5_000) == curves  # of all simulations, also of those that are not there yet
 
 
 def test_a_command_to_a_program_is_refused_in_words(desk: Desk, tmp_path: Path) -> None:

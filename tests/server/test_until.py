@@ -135,6 +135,14 @@ def test_a_slot_that_no_chunk_can_have_is_refused_with_what_is_like_it(desk: Des
     assert talk.until("ended")["reason"] == "the program is over; goal matches 'state:end'"  # both at once
 
 
+def test_a_state_of_a_module_is_no_slot(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY)
+    with pytest.raises(RefusedError, match="no chunk of this model can have a slot 'busy'") as caught:
+        talk.say("until", buffer="goal", pattern="busy:True")
+    assert "there are: busy" not in str(caught.value)
+    talk.say("until", buffer="seen", pattern="seen:!x")  # a port puts what it was answered there
+
+
 def test_of_many_slots_it_is_said_how_many_are_not_named(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOTS.format(name="Many", chunk="'state:begin " + " ".join(f"s{n}:1" for n in range(20)) + "'"))
     talk.say("step")

@@ -48,7 +48,9 @@ class Until(PageCommand):
             raise Actr3dError("there is no body in this run that could touch anything")
         if self.contact:
             names.check("body", self.contact)
-        check_slots(self.pattern or "", (start.source, *(text for _, text in start.helpers.values())), names.modules, start.folder)
+        is_fed = buffer is None or buffer in names.fed or buffer not in names.buffers
+        sources = (start.source, *(text for _, text in start.helpers.values()))
+        check_slots(self.pattern or "", sources, names.modules if is_fed else (), start.folder)
         goal = None if self.time is None else round(self.time * MICROSECONDS)
         if goal is not None and goal <= run.clock:
             raise Actr3dError(f"it is {seconds(run.clock):g} s already; a click on the timeline goes back")

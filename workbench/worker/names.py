@@ -30,6 +30,8 @@ class Names:
     bodies: frozenset[str] = frozenset()
     modules: frozenset[str] = frozenset()
     """The Python modules from which the models' parts come."""
+    fed: frozenset[str] = frozenset()
+    """The buffers into which modules of the library put chunks."""
     growing: frozenset[str] = frozenset()
     """Kinds (`production`, `buffer`) of which more may appear later, as in a program that creates models while it runs; for these, a
     name is refused only if it looks misspelt.
@@ -113,13 +115,26 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
     productions: set[str] = set()
     buffers: set[str] = set()
     modules: set[str] = set()
+    held: set[int] = set()
+    paths: dict[int, str] = {}
     for name, part in (named for top in tops for named in top.parts()):
         modules.add(type(part).__module__)
         if isinstance(part, Buffer):
             buffers.add(name)
+            paths[id(part)] = name
+            if type(part) is not Buffer:
+                held.add(id(part))
         elif isinstance(part, ProductionSystem):
             productions.update(production.name for production in part.__dict__.get("_productions", ()))
-    return Names(productions=frozenset(productions), buffers=frozenset(buffers), bodies=frozenset(bodies), modules=frozenset(modules))
+        else:
+            held.update(id(value) for value in part.__dict__.values() if isinstance(value, Buffer))
+    return Names(
+        productions=frozenset(productions),
+        buffers=frozenset(buffers),
+        bodies=frozenset(bodies),
+        modules=frozenset(modules),
+        fed=frozenset(path for number, path in paths.items() if number in held),
+    )
 
 
 def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: Listing, source: str, folder: Path) -> Names:
@@ -137,7 +152,7 @@ def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: Listin
     productions = made.productions | written
     hidden = not productions or _has_helpers(source, folder)
     growing = frozenset(("production", "buffer") if hidden else ("buffer",))
-    return Names(productions=productions, buffers=made.buffers, bodies=made.bodies, modules=made.modules, growing=growing)
+    return Names(productions=productions, buffers=made.buffers, bodies=made.bodies, modules=made.modules, fed=made.fed, growing=growing)
 
 
 def _has_helpers(source: str, folder: Path) -> bool:

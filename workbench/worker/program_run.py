@@ -74,8 +74,8 @@ class ProgramRun:
         """Whether the server knows that the run has begun."""
         self._begun = 0
         """The number of simulations that have begun."""
-        self._simulations: list[tuple[Shown, int]] = []
-        """The latest of them, and when each began [us]."""
+        self._simulations: dict[int, tuple[Shown, int]] = {}
+        """The latest of them by number, and when each began [us]. After going back, those that have not begun again are included."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MOST_RUNS)
         """The numbers of the latest runs, these, and their models."""
         self._runs = 0
@@ -151,7 +151,6 @@ class ProgramRun:
         self._clock = self._begun = self._runs = 0
         self._held.clear()
         self._shown = None
-        self._simulations.clear()
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
@@ -301,7 +300,7 @@ class ProgramRun:
         """Lets this simulation be shown from now on."""
         if self._shown is not None and self._shown.simulation is simulation:
             return
-        self._shown = next((shown for shown, _ in self._simulations if shown.simulation is simulation), None)
+        self._shown = next((shown for shown, _ in self._simulations.values() if shown.simulation is simulation), None)
         if self._shown is None:
             with suppress(SimulationError):  # it has begun already; its past cannot be explained then
                 simulation.traced()
@@ -310,7 +309,9 @@ class ProgramRun:
             self._kept[self._begun] = shown.kept
             if len(self._kept) > MOST_SIMULATIONS:
                 self._kept.pop(next(number for number in self._kept if number != self._begun))
-            self._simulations = [*self._simulations, (shown, self._clock)][-MOST_SIMULATIONS:]
+            self._simulations[self._begun] = shown, self._clock
+            if len(self._simulations) > MOST_SIMULATIONS:
+                del self._simulations[max(self._simulations, key=lambda number: abs(number - self._begun))]
 
     # -- calls from the controller
 
@@ -391,7 +392,7 @@ class ProgramRun:
 
     def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
         """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
-        return joined(shown.curves(names, first, last, most, begin) for shown, begin in self._simulations)
+        return joined(shown.curves(names, first, last, most, begin) for _, (shown, begin) in sorted(self._simulations.items()))
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns the state of the physics, and the widths of apertures [m]; first informs the server if the scene is another one."""

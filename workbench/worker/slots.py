@@ -13,6 +13,7 @@ from pathlib import Path
 
 from actr3d.actr.chunks.pattern import parse
 from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.lint.slot_names import Vocabulary
 from actr3d.errors import Actr3dError, did_you_mean
 
 LIBRARY = "actr3d."
@@ -20,6 +21,8 @@ LIBRARY = "actr3d."
 _WORD = re.compile(r"[^\W\d]\w*")
 _SLOT = re.compile(r"(?<![\w?])([^\W\d]\w*):(?=\S)")
 MOST_TOLD = 12
+STATES = {"busy", "error"}
+"""States of modules, which patterns match too; no chunk of the library has such slots."""
 
 
 def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], folder: str = "") -> None:
@@ -28,7 +31,7 @@ def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], fo
     Args:
         pattern: The pattern.
         sources: The texts of the model.
-        modules: The names of the Python modules from which its parts come.
+        modules: The names of the Python modules from which chunks may come, besides the model's own text.
         folder: The folder of its helper modules; an empty text for none.
 
     Raises:
@@ -36,16 +39,27 @@ def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], fo
     """
     wanted = {slot for slot, _, _ in parse(pattern) if isinstance(slot, str)}
     sources = [*sources, *_helpers(folder)]
-    texts = [*sources, *_texts(modules)]
-    unknown = wanted.difference(*(_WORD.findall(text) for text in texts)) if wanted else set[str]()
+    library = list(_texts(modules))
+    given = [_given(text) for text in sources]
+    known = [*given, *({*_WORD.findall(text)} - STATES for text in library)]
+    unknown = wanted.difference(*known) if wanted else set[str]()
     if not unknown or any(_computes_slots(text) for text in sources):
         return
-    own, all_slots = (sorted({slot for text in given for slot in _slots(text)}) for given in (sources, texts))
+    own = sorted({slot for text, words in zip(sources, given, strict=True) for slot in _slots(text) if slot in words})
+    all_slots = sorted({*own, *(slot for text in library for slot in _slots(text))} - STATES)
     for slot in sorted(unknown):
         more = f" and {len(own) - MOST_TOLD} more" if len(own) > MOST_TOLD else ""
         there = f"; there are: {', '.join(own[:MOST_TOLD])}{more}" if own else "; its chunks have no named slots"
         near = did_you_mean(slot, own) or did_you_mean(slot, all_slots)
         raise Actr3dError(f"no chunk of this model can have a slot '{slot}'{near or there}")
+
+
+def _given(text: str) -> set[str]:
+    """Returns every name that the code of a text may make a slot; all its words if it cannot be parsed."""
+    try:
+        return Vocabulary(syntax_tree(text)).giving
+    except (SyntaxError, ValueError, RecursionError):
+        return {*_WORD.findall(text)}
 
 
 def _texts(modules: Iterable[str]) -> Iterable[str]:

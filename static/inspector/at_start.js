@@ -1,0 +1,9 @@
+// The note at the very start of a run: its panels show what is before the first event.
+
+import { html } from "../vendor/preact.js";
+import { session, state } from "../store.js";
+
+export function AtStart() {
+  if (!session.value || !state.value || state.value.time > 0 || state.value.status === "running") return null;
+  return html`<p class="note">This is before the first event: <code>init()</code> and the first productions come with the first tick.</p>`;
+}
