@@ -47,8 +47,8 @@ export function RecordingBanner() {
   const changed = cuts.length > 0;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
-    <span>${fileOf(model)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
-    <span class="quiet" title=${changed ? "" : "Running it shows again what happened."}>
+    <span title=${recorded}>${fileOf(model)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
+    <span class="quiet" title=${changed ? "What follows is new, and is not recorded." : "Running it shows again what happened."}>
       ${changed
         ? "You have changed its course: what follows is new, and is not recorded."
         : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}

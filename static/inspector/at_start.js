@@ -5,5 +5,5 @@ import { session, state } from "../store.js";
 
 export function AtStart() {
   if (!session.value || !state.value || state.value.time > 0 || state.value.status === "running") return null;
-  return html`<p class="note">This is before the first event: <code>init()</code> and the first productions come with the first tick.</p>`;
+  return html`<p class="at-start quiet">This is before the first event: <code>init()</code> and the first productions come with the first tick.</p>`;
 }
