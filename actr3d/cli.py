@@ -18,8 +18,8 @@ from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import SettingError, did_you_mean
-from actr3d.fields import Field
 from actr3d.output import all_written, standard_output
+from actr3d.parameter_schema import Parameter
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.runner.before_exit import before_the_end
 from actr3d.runner.build_check import check_build, has_build
@@ -95,7 +95,7 @@ def _keep_output(out: TextIO, printed: ModelOutput | None, record: str | None, l
             out.flush()
 
 
-def _settings(options: argparse.Namespace, fields: Sequence[Field]) -> dict[str, Any]:
+def _settings(options: argparse.Namespace, fields: Sequence[Parameter]) -> dict[str, Any]:
     """Returns the parameter values given on the command line."""
     return {**read_settings(options.set, fields), **read_options(options.words, fields, options.general)}
 

@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "fields", "warnings", "values", "registry", "forks", "trace_kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "trace_kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -26,7 +26,7 @@ PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
     "configuration": {"errors"},
-    "fields": set(),
+    "parameter_schema": {"errors", "configuration", "actr"},
     "warnings": {"errors"},
     "values": set(),
     "registry": set(),
@@ -41,13 +41,13 @@ PARTS: dict[str, set[str]] = {
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY,
     "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
-    "runner": BASE | BODILY | SENSES | RUNNING | {"printing"},
+    "runner": BASE | BODILY | SENSES | RUNNING | {"printing", "parameter_schema"},
     "benchmark": {"registry"},
     "experiment": BASE | BODILY | SENSES | RUNNING | {"runner", "benchmark"},
     "bench": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "benchmark"},
     "printing": set(),
     "output": {"printing"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "bench", "benchmark", "output", "printing"},
+    "cli": BASE | BODILY | SENSES | RUNNING | {"parameter_schema", "runner", "experiment", "bench", "benchmark", "output", "printing"},
     "__main__": {"cli"},
     "models": BASE | BODILY | SENSES | RUNNING | {"experiment"},
 }

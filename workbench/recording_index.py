@@ -13,9 +13,10 @@ import msgspec
 
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
+from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
 from actr3d.values import to_json
-from workbench.loader import Parameter, listing_of
+from workbench.loader import listing_of
 from workbench.retention import begun, size_of
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
-from dataclasses import MISSING
 from typing import Any
 
 from actr3d.errors import SettingError, did_you_mean
-from actr3d.fields import Field, literal
+from actr3d.parameter_schema import Parameter, literal
 
 _INDENT = 22
 _WIDTH = 110
 
 
-def read_options(words: Sequence[str], fields: Sequence[Field], others: Iterable[str] = ()) -> dict[str, Any]:
+def read_options(words: Sequence[str], fields: Sequence[Parameter], others: Iterable[str] = ()) -> dict[str, Any]:
     """Returns the values given by options, by the names of fields.
 
     Args:
@@ -33,20 +32,20 @@ def read_options(words: Sequence[str], fields: Sequence[Field], others: Iterable
         option = "--" + word.removeprefix("--").replace("_", "-")
         field = known.get(option)
         switch = known.get("--" + option.removeprefix("--no-")) if option.startswith("--no-") else None
-        if switch is not None and switch.choices == (True, False) and not equals:
+        if switch is not None and switch.takes == "switch" and not equals:
             settings[switch.name] = False
         elif field is None or not word.startswith("--"):
             raise SettingError(_unknown(word, known, others))
         elif equals or (waiting and not waiting[0].startswith("--")):
             settings[field.name] = field.value(text if equals else waiting.pop(0))
-        elif field.choices == (True, False):
+        elif field.takes == "switch":
             settings[field.name] = True
         else:
             raise SettingError(f"{option} takes a value: {field.domain()}")
     return settings
 
 
-def read_settings(texts: Sequence[str], fields: Sequence[Field]) -> dict[str, Any]:
+def read_settings(texts: Sequence[str], fields: Sequence[Parameter]) -> dict[str, Any]:
     """Returns parameters from texts `name=value`; an unknown name gets a value too, so that the builder can reject it.
 
     Raises:
@@ -62,19 +61,19 @@ def read_settings(texts: Sequence[str], fields: Sequence[Field]) -> dict[str, An
     return settings
 
 
-def options_help(fields: Sequence[Field]) -> str:
+def options_help(fields: Sequence[Parameter]) -> str:
     """Returns the help lines of all options: what each accepts, its meaning, and its default."""
     lines: list[str] = []
     for field in fields:
-        default = "must be given" if field.default is MISSING else f"default {field.default}"
+        default = "must be given" if field.required else f"default {field.default}"
         head = f"  {field.option}"
         lines.append(head.ljust(_INDENT) + f"{field.domain()}; {default}")
         pad = " " * _INDENT
-        lines += textwrap.wrap(field.meaning, _WIDTH, initial_indent=pad, subsequent_indent=pad)
+        lines += textwrap.wrap(field.help, _WIDTH, initial_indent=pad, subsequent_indent=pad)
     return "\n".join(lines)
 
 
-def _unknown(word: str, known: dict[str, Field], others: Iterable[str]) -> str:
+def _unknown(word: str, known: dict[str, Parameter], others: Iterable[str]) -> str:
     if not word.startswith("--"):
         return f"unexpected '{word}': a parameter is given as --name value"
     return f"no option '{word}'{did_you_mean(word, [*known, *others])}; the model has: {', '.join(known) or 'none'}"

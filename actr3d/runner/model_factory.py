@@ -11,7 +11,7 @@ from typing import Any, get_type_hints
 from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ConfigurationError, ModelFileError, SettingError, did_you_mean
-from actr3d.fields import Field, fields_of
+from actr3d.parameter_schema import Parameter, parameters_of
 from actr3d.runner.build_check import RIGHT, check_build, line_of_build
 from actr3d.simulation import Simulation
 
@@ -50,7 +50,7 @@ class Blueprint:
             if not isinstance(self._kind, type) or not is_dataclass(self._kind):
                 found = str(getattr(self._kind, "__name__", self._kind)).replace(f"{self._module.__name__}.", "")
                 raise ModelFileError(f"{self._place}: build({names[0]}: {found}) takes what is no dataclass; write {RIGHT}")
-        self.fields: tuple[Field, ...] = () if self._kind is None else fields_of(self._kind)
+        self.fields: tuple[Parameter, ...] = () if self._kind is None else parameters_of(self._kind)
         """Its parameters."""
 
     def build(self, settings: Mapping[str, Any]) -> tuple[Simulation, dict[str, Any]]:

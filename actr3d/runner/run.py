@@ -15,7 +15,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
-from actr3d.fields import Field
+from actr3d.parameter_schema import Parameter
 from actr3d.printing import TeeOutput
 from actr3d.recording import Recording
 from actr3d.runner.before_exit import before_the_end
@@ -48,7 +48,7 @@ class ProgramRecorder(Recorder, FactRecorder, Protocol):
 
 PATIENCE = 5.0
 """The maximum time to write a recording before the model ends its process [s]."""
-Settings = Callable[[Sequence[Field]], Mapping[str, Any]]
+Settings = Callable[[Sequence[Parameter]], Mapping[str, Any]]
 """Returns values of parameters, by name, for the given fields."""
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import MISSING
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import pytest
 from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.errors import SettingError
-from actr3d.fields import fields_of
+from actr3d.parameter_schema import parameters_of
 from actr3d.runner.cli_options import options_help, read_options, read_settings
 from tests.helpers.recording_forgery import forge
 
@@ -61,7 +60,7 @@ def lamp() -> Any:
 
 
 def test_fields_are_told_as_they_are_written(lamp: Any) -> None:
-    fields = fields_of(lamp.Parameters)
+    fields = parameters_of(lamp.Parameters)
     assert [(field.option, field.domain(), field.default) for field in fields] == [
         ("--power", "number, > 0, <= 100 [W]", 60.0),
         ("--shade", "paper or glass", "paper"),
@@ -70,14 +69,14 @@ def test_fields_are_told_as_they_are_written(lamp: Any) -> None:
         ("--name", "text", "lamp"),
         ("--place", "tuple [m]", (0.0, 0.0)),
     ]
-    assert fields[0].meaning == "How bright it is at full power [W]."
-    assert fields[2].meaning == ""
+    assert fields[0].help == "How bright it is at full power [W]."
+    assert fields[2].help == ""
 
 
 def test_a_field_without_default_must_be_given() -> None:
     text = "from dataclasses import dataclass\n@dataclass\nclass A:\n    a: int\n"
-    (field,) = fields_of(load_text(text, "a.py").A)
-    assert field.default is MISSING
+    (field,) = parameters_of(load_text(text, "a.py").A)
+    assert field.required
     assert "must be given" in options_help([field])
 
 
@@ -100,7 +99,7 @@ def test_a_field_without_default_must_be_given() -> None:
     ],
 )
 def test_options_are_read(lamp: Any, words: list[str], settings: dict[str, Any]) -> None:
-    assert read_options(words, fields_of(lamp.Parameters)) == settings
+    assert read_options(words, parameters_of(lamp.Parameters)) == settings
 
 
 @pytest.mark.parametrize(
@@ -116,11 +115,11 @@ def test_options_are_read(lamp: Any, words: list[str], settings: dict[str, Any])
 )
 def test_wrong_options_are_told(lamp: Any, words: list[str], message: str) -> None:
     with pytest.raises(SettingError, match=message):
-        read_options(words, fields_of(lamp.Parameters), ["--seed"])
+        read_options(words, parameters_of(lamp.Parameters), ["--seed"])
 
 
 def test_settings_know_texts(lamp: Any) -> None:
-    assert read_settings(["name=5", "power=5", "other=5"], fields_of(lamp.Parameters)) == {"name": "5", "power": 5, "other": 5}
+    assert read_settings(["name=5", "power=5", "other=5"], parameters_of(lamp.Parameters)) == {"name": "5", "power": 5, "other": 5}
 
 
 @pytest.fixture

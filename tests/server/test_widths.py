@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from workbench.loader import LiveCommand, Parameter
+from actr3d.parameter_schema import LiveCommand, Parameter
 from workbench.worker.widths import widths
 
 OPENS = LiveCommand(word="aperture")

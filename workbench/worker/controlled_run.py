@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
+from actr3d.parameter_schema import LiveCommand
 from actr3d.trace import Trace
-from workbench.loader import LiveCommand
 from workbench.worker.names import Names
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches

@@ -16,6 +16,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.clock import seconds
 from actr3d.errors import SimulationError
+from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.runner.facts import program_facts
 from actr3d.runner.model_stdout import ProgramOutput
@@ -24,7 +25,7 @@ from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
-from workbench.loader import Listing, LiveCommand
+from workbench.loader import Listing
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.helper_messages import helpers_of

@@ -11,6 +11,7 @@ from typing import Any
 from actr3d.camera import CameraParameters, Sight
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import Actr3dError
+from actr3d.parameter_schema import Parameter
 from actr3d.simulation import Simulation
 from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
@@ -18,7 +19,6 @@ from actr3d.world import Aperture, Floor, World
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors.touch import present
 from workbench.curves import Curves, stretch
-from workbench.loader import Parameter
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.state_history import Past
 from workbench.worker.stop_conditions import Touches

@@ -16,6 +16,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import Actr3dError, SimulationError
+from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.runner.facts import built_facts
 from actr3d.runner.model_factory import build
@@ -25,7 +26,7 @@ from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.branches import new_branch, superfluous_branches
-from workbench.loader import Listing, LiveCommand
+from workbench.loader import Listing
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.helper_messages import helpers_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from workbench.loader import Parameter
+from actr3d.parameter_schema import Parameter
 
 WIDEST = 300
 """Default maximum width of a doorway [cm], if no parameter limits it. Chosen here."""

@@ -1,0 +1,312 @@
+"""The parameters of a model: name, type, bounds, unit, help and default of each, read from a class or from a model's text alone.
+
+Options of the command line, controls of the page, REST and the worker of a run all use this one description.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import math
+import re
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import MISSING, dataclass, fields, replace
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
+
+import annotated_types
+
+from actr3d.actr.kernel.source_code import parse
+from actr3d.configuration import Live
+from actr3d.errors import ConfigurationError
+
+_UNIT = re.compile(r"\[([^\]]+)\]")
+_TAKES = {"float": "number", "int": "whole number", "str": "text", "bool": "switch"}
+_BOUNDS = {"Gt": "above", "Ge": "least", "Lt": "below", "Le": "most"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiveCommand:
+    """The command that changes a parameter during a run; see `actr3d.configuration.Live`."""
+
+    word: str
+    before: tuple[str, ...] = ()
+    body: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """One parameter of a model."""
+
+    name: str
+    takes: str
+    """`number`, `whole number`, `text`, `switch`, `choice`, or the text of any other declared type."""
+    required: bool = False
+    """Whether it has no default."""
+    default: Any = None
+    known: bool = True
+    """Whether the default is known without executing code; otherwise `default` is its source text."""
+    optional: bool = False
+    """Whether it may be None."""
+    choices: tuple[Any, ...] | None = None
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+    unit: str | None = None
+    """The first text in square brackets in its docstring."""
+    help: str = ""
+    """Its docstring, in one line."""
+    line: int = 0
+    """Its line in the model's text; 0 if it was read from a class."""
+    live: LiveCommand | None = None
+    """How the parameter is changed during a run; None if a change needs a new run."""
+
+    @property
+    def option(self) -> str:
+        """Returns the name of its command-line option."""
+        return "--" + self.name.replace("_", "-")
+
+    def value(self, text: str) -> Any:
+        """Returns the value of a text; a text that is not a Python literal is itself the value."""
+        if text == "None" and self.optional:
+            return None
+        if self.takes == "text" or (self.choices is not None and all(isinstance(choice, str) for choice in self.choices)):
+            return text
+        return literal(text)
+
+    def domain(self) -> str:
+        """Returns the accepted values in one line: `number, > 0, <= 3 [m]`."""
+        signs = ((">", self.above), (">=", self.least), ("<", self.below), ("<=", self.most))
+        bounds = [f"{sign} {limit}" for sign, limit in signs if limit is not None]
+        says = "True or False" if self.takes == "switch" else ", ".join([self.takes, *bounds])
+        if self.choices is not None:
+            says = " or ".join(map(str, self.choices))
+        if self.optional:
+            says += ", or None"
+        return f"{says} [{self.unit}]" if self.unit else says
+
+    def check(self, value: Any) -> None:
+        """Checks a value against the parameter's type and bounds.
+
+        Raises:
+            ConfigurationError: If the value is not allowed.
+        """
+        if value is None and self.optional:
+            return
+        if self.takes in ("number", "whole number"):
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+                raise ConfigurationError(f"{self.name}: must be a {self.takes} (got {value!r})")
+            bounds = ((self.above, value > (self.above or 0), ">"), (self.least, value >= (self.least or 0), ">="))
+            bounds += ((self.below, value < (self.below or 0), "<"), (self.most, value <= (self.most or 0), "<="))
+            for limit, holds, sign in bounds:
+                if limit is not None and not holds:
+                    raise ConfigurationError(f"{self.name}: must be {sign} {limit} (got {value!r})")
+        elif self.choices is not None and value not in self.choices:
+            raise ConfigurationError(f"{self.name}: must be one of {', '.join(map(repr, self.choices))} (got {value!r})")
+
+
+def literal(text: str) -> Any:
+    """Returns the value of a Python literal: a number, text, tuple, True, False or None; any other text is returned unchanged."""
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError):
+        return text
+
+
+# -- from a class
+
+
+def parameters_of(kind: type[Any]) -> tuple[Parameter, ...]:
+    """Returns the fields of a frozen dataclass as parameters, in order.
+
+    Args:
+        kind: A `Configuration`, or any other dataclass.
+    """
+    hints = get_type_hints(kind, include_extras=True)
+    words = _docstrings(kind)
+    return tuple(_of_field(field, hints[field.name], words.get(field.name, "")) for field in fields(kind) if field.init)
+
+
+def _of_field(field: Any, declared: Any, words: str) -> Parameter:
+    unit = _UNIT.search(words)
+    required = field.default is MISSING and field.default_factory is MISSING
+    default = None if required else field.default if field.default_factory is MISSING else field.default_factory()
+    found = Parameter(name=field.name, takes="", required=required, default=default, unit=unit and unit[1], help=words)
+    while get_origin(declared) in (Annotated, Union, UnionType):
+        parts = get_args(declared)
+        if get_origin(declared) is Annotated:
+            declared, *marks = parts
+            for mark in marks:
+                found = _with_mark(found, mark)
+        else:
+            found = replace(found, optional=found.optional or NoneType in parts)
+            declared = next(part for part in parts if part is not NoneType)
+    if get_origin(declared) is Literal:
+        return replace(found, takes="choice", choices=get_args(declared))
+    name = getattr(get_origin(declared) or declared, "__name__", str(declared))
+    return replace(found, takes=_TAKES.get(name, name))
+
+
+def _with_mark(found: Parameter, mark: object) -> Parameter:
+    match mark:
+        case annotated_types.Gt(gt=limit):
+            return replace(found, above=cast("float", limit))
+        case annotated_types.Ge(ge=limit):
+            return replace(found, least=cast("float", limit))
+        case annotated_types.Lt(lt=limit):
+            return replace(found, below=cast("float", limit))
+        case annotated_types.Le(le=limit):
+            return replace(found, most=cast("float", limit))
+        case Live():
+            return replace(found, live=LiveCommand(word=mark.word, before=mark.before, body=mark.body))
+        case _:
+            return found
+
+
+def _docstrings(kind: type[Any]) -> Mapping[str, str]:
+    """Returns the docstrings below the fields of a class and of its base classes, if their source is available."""
+    words: dict[str, str] = {}
+    for one in reversed(kind.__mro__):
+        with suppress(OSError, TypeError, SyntaxError):
+            (node,) = ast.parse(textwrap.dedent(inspect.getsource(one))).body
+            assert isinstance(node, ast.ClassDef)
+            for field, below in zip(node.body, node.body[1:], strict=False):
+                if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
+                    match below:
+                        case ast.Expr(value=ast.Constant(value=str(text))):
+                            words[field.target.id] = " ".join(inspect.cleandoc(text).split())
+                        case _:
+                            words.pop(field.target.id, None)
+    return words
+
+
+# -- from a text
+
+
+def parameters_in(tree: ast.Module, build: ast.FunctionDef | None) -> Iterator[Parameter]:
+    """Yields the fields of the parameter class of `build`, if it is defined in the same file; nothing is executed.
+
+    Args:
+        tree: The model's text.
+        build: Its function `build`; None if there is none.
+    """
+    argument = build.args.args[0] if build is not None and build.args.args else None
+    if argument is None or argument.annotation is None:
+        return
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    kind = classes.get(ast.unparse(argument.annotation).strip("'\""))
+    constants = dict(_constants(tree))
+    for node, below in zip(kind.body, [*kind.body[1:], ast.Pass()], strict=True) if kind is not None else ():
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            words = below.value.value if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) else ""
+            text = " ".join(sendable(inspect.cleandoc(words)).split()) if isinstance(words, str) else ""
+            unit = _UNIT.search(text)
+            declared = _declared(Parameter(name=node.target.id, takes=""), node.annotation, constants)
+            default = default_of(node.value, constants)
+            yield replace(declared, **default, help=text, unit=unit and unit[1], line=node.lineno)
+
+
+def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str, Any]) -> Parameter:
+    """Returns a parameter completed with its declared type."""
+    if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
+        try:
+            return _declared(parameter, parse(annotation.value, mode="eval").body, constants)
+        except (SyntaxError, ValueError):  # for example while it is being typed
+            return replace(parameter, takes=sendable(annotation.value))
+    if isinstance(annotation, ast.BinOp) and isinstance(annotation.op, ast.BitOr):
+        sides = [side for side in (annotation.left, annotation.right) if ast.unparse(side) != "None"]
+        inner = _declared(parameter, (sides or [annotation.left])[0], constants)
+        return (
+            replace(inner, optional=inner.optional or len(sides) == 1) if len(sides) == 1 else replace(inner, takes=ast.unparse(annotation))
+        )
+    if isinstance(annotation, ast.Subscript):
+        name = ast.unparse(annotation.value).rpartition(".")[2]
+        inside = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
+        if not inside:
+            return replace(parameter, takes=ast.unparse(annotation))
+        if name == "Annotated":
+            for mark in inside[1:]:
+                parameter = _marked(parameter, mark, constants)
+            return _declared(parameter, inside[0], constants)
+        if name == "Optional":
+            return replace(_declared(parameter, inside[0], constants), optional=True)
+        if name == "Literal":
+            with suppress(ValueError):
+                return replace(parameter, takes="choice", choices=tuple(_value(choice, constants) for choice in inside))
+    text = ast.unparse(annotation)
+    return replace(parameter, takes=_TAKES.get(text, text))
+
+
+def _marked(parameter: Parameter, mark: ast.expr, constants: Mapping[str, Any]) -> Parameter:
+    """Returns a parameter completed with one annotation of its type: a bound, or how it changes live."""
+    if not isinstance(mark, ast.Call):
+        return parameter
+    name = ast.unparse(mark.func).rpartition(".")[2]
+    try:
+        values = [_value(value, constants) for value in mark.args]
+        named = {word.arg: _value(word.value, constants) for word in mark.keywords if word.arg is not None}
+    except ValueError:
+        return parameter
+    if name in _BOUNDS and [*values, *named.values()]:
+        return replace(parameter, **{_BOUNDS[name]: [*values, *named.values()][0]})
+    if name == "Live" and values:
+        return replace(parameter, live=LiveCommand(word=values[0], before=tuple(values[1:]), body=named.get("body")))
+    return parameter
+
+
+def _constants(tree: ast.Module) -> Iterator[tuple[str, Any]]:
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
+            try:
+                yield node.targets[0].id, ast.literal_eval(node.value)
+            except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+                continue
+
+
+def default_of(node: ast.expr | None, constants: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the fields of a `Parameter` that describe a default; None means that there is none."""
+    if node is None:
+        return {"default": None, "known": False, "required": True}
+    try:
+        return {"default": _value(node, constants), "known": True}
+    except ValueError:
+        return {"default": ast.unparse(node), "known": False}
+
+
+def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
+    """Returns the value of a literal or of the name of a constant; a JSON form of it must exist.
+
+    Raises:
+        ValueError: If the expression is anything else.
+    """
+    if isinstance(node, ast.Name) and node.id in constants:
+        return constants[node.id]
+    try:
+        value = ast.literal_eval(node)
+    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+        raise ValueError(ast.unparse(node)) from None
+    if not _can_be_told(value):
+        raise ValueError(ast.unparse(node))
+    return value
+
+
+def _can_be_told(value: Any) -> bool:
+    """Returns whether JSON can represent a value."""
+    if isinstance(value, float):
+        return math.isfinite(value)
+    if isinstance(value, str):
+        return value == sendable(value)
+    if isinstance(value, (list, tuple)):
+        return all(map(_can_be_told, cast("Sequence[Any]", value)))
+    if isinstance(value, dict):
+        entries = cast("dict[Any, Any]", value)
+        return all(isinstance(key, str) and _can_be_told(key) and _can_be_told(each) for key, each in entries.items())
+    return value is None or isinstance(value, int)
+
+
+def sendable(text: str) -> str:
+    """Returns a text that can be sent: unpaired surrogate characters, which no encoding has, become escapes."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
