@@ -29,18 +29,23 @@ FORKS = {
 }
 
 
+def complaints(text: str) -> list[str]:
+    """Returns the lines on standard error but for Python's own warning about forks in processes with threads."""
+    return [line for line in text.splitlines() if "is multi-threaded, use of fork()" not in line]
+
+
 @pytest.mark.parametrize("forks", FORKS.values(), ids=FORKS)
 def test_a_recording_is_that_of_the_first_process_and_is_replayed(forks: str, tmp_path: Path) -> None:
     (tmp_path / "model.py").write_text(MODEL + forks, encoding="utf-8")
     done = run_command("run", "model.py", "--record", "run.sqlite", "--seed", "1", folder=tmp_path)
-    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    assert (done.returncode, complaints(done.stderr)) == (0, [])
     assert "child" in done.stdout
     with Recorded(tmp_path / "run.sqlite") as recorded:
         recorded.check()
         assert not any("child" in str(event.data.get("text")) for event in recorded.events())
         assert recorded.facts["ended"] == {"by": "end"}
     again = run_command("replay", "run.sqlite", folder=tmp_path)
-    assert (again.returncode, again.stderr) == (0, "")
+    assert (again.returncode, complaints(again.stderr)) == (0, [])
     assert again.stdout.splitlines()[-1].startswith("every byte agrees: ")
 
 

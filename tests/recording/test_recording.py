@@ -223,8 +223,8 @@ def test_a_folder_that_cannot_be_written_is_told_before_the_run_begins() -> None
         folder = Path(name)
         text = f"""
 import os, sys
-from actr3d.recording import Recording, form
-form.versions()
+from actr3d.recording import Recording, schema
+schema.versions()
 if os.geteuid() == 0:
     os.setuid(65534)  # root may write anywhere
 try:
