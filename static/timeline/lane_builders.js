@@ -120,6 +120,15 @@ function reward(lanes, time, source, { value }) {
   lanes.lane("rewards", "marks", "rewards").mark(time, { text: `${valueText(value)} to ${source}`, tone: "good" });
 }
 
+/** What a part holds or does ends on the axis with its run: a program may make other runs afterwards. */
+function stop(lanes, time, source) {
+  for (const lane of lanes.ofRun(source)) lane.suspend(time);
+}
+
+function run(lanes, time, source) {
+  for (const lane of lanes.ofRun(source)) lane.resume(time);
+}
+
 /** By the kind of the event: the function that adds it to the lanes, at a time of the axis [s]. */
 export const TAKERS = {
   ...Object.fromEntries(Object.keys(LEVELS).map((kind) => [kind, level(kind)])),
@@ -133,6 +142,8 @@ export const TAKERS = {
   moved,
   refused,
   start,
+  run,
+  stop,
   output,
   command,
   reward,

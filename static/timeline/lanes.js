@@ -37,8 +37,22 @@ class Lane {
     if (band.from === time && !band.mark && !end) this.bands.pop();
   }
 
+  /** Ends the open band, because its run has stopped; `resume` continues it if the run goes on. */
+  suspend(time) {
+    const band = this.open;
+    if (!band) return;
+    const { from, to, ...rest } = band;
+    band.to = time;
+    this.suspended = rest;
+  }
+
+  resume(time) {
+    if (this.suspended) this.begin(time, this.suspended);
+  }
+
   /** Starts a band; the previous one ends. */
   begin(time, band) {
+    this.suspended = null;
     this.close(time);
     this.bands.push({ from: time, to: null, ...band });
   }
@@ -73,6 +87,11 @@ export function bandText(band) {
   return band.text;
 }
 
+/** Returns which run of a program a source belongs to: "top" for the first, then "top#2" and so on. */
+function runOf(source) {
+  return /^top#\d+/.exec(source)?.[0] ?? "top";
+}
+
 /** All lanes of a run. */
 export class Lanes {
   constructor() {
@@ -96,6 +115,12 @@ export class Lanes {
     return lane;
   }
 
+  /** Returns the lanes of one run of a program. */
+  ofRun(source) {
+    const run = runOf(source);
+    return [...this.lanes.values()].filter(({ key }) => runOf(key.slice(key.indexOf(" ") + 1)) === run);
+  }
+
   /** Returns the colour of a name: different for each, as far as there are enough. */
   tone(name) {
     if (!this.tones.has(name)) this.tones.set(name, `series-${(this.tones.size % 6) + 1}`);
@@ -106,7 +131,7 @@ export class Lanes {
   take(event) {
     const [time, source, kind, data] = event;
     // If a program makes one run after another, each one's time starts at 0; on the axis they follow each other.
-    const run = source.startsWith("top#") ? source.slice(0, source.indexOf(".") < 0 ? undefined : source.indexOf(".")) : "top";
+    const run = runOf(source);
     const before = this.clocks.get(run) ?? 0;
     if (time > before) {
       this.clocks.set(run, time);

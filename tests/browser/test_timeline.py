@@ -403,3 +403,25 @@ def test_a_short_run_fits_and_the_slider_keeps_its_keys(pages: Callable[..., Pag
     names = [re.search(r"page \d+", one.locator("#browsers").inner_text()) for one in (page, other)]
     assert None not in names
     assert names[0] != names[1]
+
+
+RUNS = """async () => {
+    const { Lanes } = await import("/static/timeline/lanes.js");
+    const lanes = new Lanes();
+    const of = (time, source, kind, data = {}) => lanes.take([time * 1e6, source, kind, data]);
+    const hold = (time, source, text) => of(time, source, "buffer", { chunk: { 0: text } });
+    of(0, "top", "run");
+    hold(0, "walker.goal", "go");
+    of(4, "top", "stop");
+    of(0, "top#2", "run");
+    hold(0, "top#2.bob.goal", "go");
+    of(2, "top#2", "stop");
+    of(4, "top", "run");
+    of(5, "walker", "fire", { production: "end" });
+    const bands = (key) => lanes.lanes.get(key).bands.map(({ from, to }) => [from, to]);
+    return [bands("buffer walker.goal"), bands("buffer top#2.bob.goal")];
+}"""
+
+
+def test_what_a_buffer_holds_is_drawn_while_its_run_goes_on(page: Page) -> None:
+    assert page.evaluate(RUNS) == [[[0, 4], [6, None]], [[4, 6]]]
