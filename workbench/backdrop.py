@@ -12,7 +12,10 @@ from workbench.overlays.overlay import Lines
 from workbench.palette import channels, palette
 
 LIGHTS = (((-4.0, -6.0, 10.0), 2.4), ((-6.0, 6.0, 2.0), 2.0), ((6.0, 2.0, 3.0), 1.2))
-"""The positions of the directional lights and their intensities: the first casts the shadows, the others brighten the sides."""
+"""The positions of the directional lights and their intensities: the first casts the shadows, the others brighten the sides.
+
+They light only the picture on the page; the lights of the scene's MuJoCo model are not used here.
+"""
 HIGHEST = 2.0
 """Shapes higher above the ground than this [m] cast no soft shadow on it."""
 DARKEST, FADING = 0.36, 0.45

@@ -39,7 +39,7 @@ class ProductionReason:
     matches: bool | None
     """None if it is not known: see `condition` and `found`."""
     condition: str | None = None
-    """The first condition that fails; None if all hold."""
+    """The first of `conditions` that fails, for the text of the reason; None if all hold."""
     expected: str | None = None
     found: str | None = None
     seen: str | None = field(default=None, compare=False)

@@ -284,7 +284,8 @@ class Body:
         """Returns a frame at the positions of the last refresh.
 
         Args:
-            name: `"world"`, `"body"` (its base, along its heading, upright), a part or site of the body, any other site or body.
+            name: `"world"`, `"body"`, a part or site of the body, or any other site or body. `"body"` is at the base of the body with
+                x along its heading and z up; the frame of the base itself tilts with it.
 
         Raises:
             WorldError: If there is no frame of this name.

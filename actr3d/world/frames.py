@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Frame = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""The origin (3,) [m] and the axes as columns (3, 3), both in the world's frame."""
+"""The origin (3,) [m] and the axes as columns (3, 3), both in the world's frame: a vector v of the world is `v @ axes` in this frame."""
 
 WORLD_FRAME: Frame = (np.zeros(3), np.eye(3))
 

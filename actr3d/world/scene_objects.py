@@ -39,7 +39,7 @@ def yaw_quaternion(heading: float) -> tuple[float, float, float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class Floor(Configuration):
-    """The ground: an endless plane at z = 0, with a light above it."""
+    """The ground: an endless plane at z = 0, with a spotlight above the origin."""
 
     name: Name = "floor"
     """Its name in the scene."""

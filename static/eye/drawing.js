@@ -1,21 +1,22 @@
-// Draws what an eye sees: extents by row, coloured by label, paler with distance.
+// Draws what an eye sees: extents by row, coloured by label, nearer to the background with distance.
 
 import { scaled } from "../parts/surface.js";
 import { channels, labelColour } from "../scene/palette.js";
 import { colour } from "../theme.js";
 
-const FAR = 12; // from this distance on, colours get no paler [m]
+const FAR = 12; // from this distance on, colours no longer change [m]
 const PALEST = 0.6; // the share of the background in the colour of distant objects
-const GROUNDS = { light: 255, dark: 24 };
+const GROUNDS = { light: 255, dark: 24 }; // about the colour `field`, as a grey
 
-/** Returns the colour of a label at a distance [m]: that of its edges in the scene, paler with distance. */
+/** Returns the colour of a label at a distance [m]: that of its edges in the scene, nearer to the background with distance. */
 export function shadeOf(label, distance, dark) {
   const far = PALEST * Math.min(1, distance / FAR);
   const mixed = channels(labelColour(label)).map((part) => Math.round(part * (1 - far) + GROUNDS[dark ? "dark" : "light"] * far));
   return `rgb(${mixed.join(" ")})`;
 }
 
-/** Draws a view ({rows, extents}: each [row, label, y, x1, x2, d1, d2, a1, a2]); `chosen` is a label to frame. */
+/** Draws a view ({rows, extents}); an extent begins with row, label, y, x1, x2, d1, d2, see `EXTENT_FIELDS` of the camera. `chosen` is a
+ * label to frame. */
 export function drawView(canvas, view, dark, chosen = null) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const context = scaled(canvas, width, height);

@@ -12,16 +12,15 @@ export function extentText([row, label, , x1, x2, d1, d2]) {
 
 /**
  * @param view The answer to the question `view`; null if there is none yet.
- * @param chosen A label to frame.
  */
-export function Retina({ view, chosen = null }) {
+export function Retina({ view }) {
   const canvas = useRef(null);
   const [under, setUnder] = useState(null);
   const isDark = dark.value;
-  const draw = () => drawView(canvas.current, view, isDark, under?.[1] ?? chosen);
+  const draw = () => drawView(canvas.current, view, isDark, under?.[1]);
   const newest = useRef(draw);
   newest.current = draw;
-  useLayoutEffect(draw, [view, isDark, under, chosen]);
+  useLayoutEffect(draw, [view, isDark, under]);
   useLayoutEffect(() => {
     const watcher = new ResizeObserver(() => newest.current());
     watcher.observe(canvas.current);

@@ -4,7 +4,7 @@
 import { SceneCamera } from "./camera.js";
 import { Cutaway } from "./cutaway.js";
 import { Ground } from "./ground.js";
-import { Labels } from "./labels.js";
+import { Captions } from "./captions.js";
 import { VIEWS } from "./stage.js";
 
 const { scene: given } = window;
@@ -28,7 +28,7 @@ function theme() {
 const viewer = await ready();
 const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
-const labels = new Labels();
+const labels = new Captions();
 const cutaway = new Cutaway(viewer);
 let { stage } = given.facts;
 let shaded = null;

@@ -86,7 +86,7 @@ def drawing(page: Page) -> dict[str, Any]:
     return page.evaluate(
         """async () => {
           const { drawTimeline } = await import("/static/timeline/draw.js");
-          const { scene } = await import("/static/timeline/stage.js");
+          const { scene } = await import("/static/timeline/canvas.js");
           const { widthOf } = await import("/static/parts/surface.js");
           const [labels, marks] = [[], []];
           const surface = { fill() {}, line() {}, within: (x, y, width, height, draw) => draw() };

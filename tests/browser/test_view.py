@@ -136,7 +136,7 @@ def test_what_is_far_away_does_not_make_all_small(blank: Page) -> None:
 # -- where labels stand
 
 PLACED = """async ([wanted, blocked, size]) => {
-    const { placed } = await import("/static/scene/labels.js");
+    const { placed } = await import("/static/scene/captions.js");
     return placed(wanted, blocked, size);
 }"""
 

@@ -23,7 +23,7 @@ from actr3d.world.sensors.touch import present
 from tests.helpers.small_agents import near
 
 
-def living(*parts: Any, seed: int = 0, **of: Any) -> tuple[World, Body]:
+def walker_in(*parts: Any, seed: int = 0, **of: Any) -> tuple[World, Body]:
     """Returns a world with a floor, a mannequin called `walker` and more, and its body."""
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", **of), *parts)), seed)
     return world, world.bodies["walker"]
@@ -54,7 +54,7 @@ class Crate:
 
 
 def test_pose_and_velocity_are_of_this_moment() -> None:
-    world, body = living(position=(1.0, 2.0), heading=0.3)
+    world, body = walker_in(position=(1.0, 2.0), heading=0.3)
     body.set("walk", 1.2, 0.7)
     body.set("joint", "torso_yaw", 0.5)
     body.set("joint", "torso_pitch", 0.2)
@@ -72,7 +72,7 @@ def test_pose_and_velocity_are_of_this_moment() -> None:
 
 
 def test_the_gyroscope_turns_with_the_head() -> None:
-    world, body = living()
+    world, body = walker_in()
     body.set("walk", 0.0, 0.8)
     body.set("joint", "head_yaw", -0.3)
     ticks(world, 10)
@@ -81,7 +81,7 @@ def test_the_gyroscope_turns_with_the_head() -> None:
 
 
 def test_the_accelerometer_feels_rest_a_bend_and_free_fall() -> None:
-    world, body = living()
+    world, body = walker_in()
     assert body.get("accelerometer") == near((0, 0, 9.81), abs=1e-9)
     body.set("walk", 1.5, 0.8)
     ticks(world, 50)
@@ -105,7 +105,7 @@ def test_the_accelerometer_is_of_the_present_and_not_of_the_step_before() -> Non
 
 
 def test_joints_say_where_they_are() -> None:
-    world, body = living()
+    world, body = walker_in()
     body.set("position", "torso_yaw", 0.5, 2.0)
     body.set("joint", "head_yaw", -10.0)
     ticks(world, 60)
@@ -128,7 +128,7 @@ def test_contacts_add_up_to_the_weight() -> None:
 
 def test_a_blow_that_is_over_before_the_tick_is_felt() -> None:
     ball = Loose(name="ball", shape="sphere", size=(0.1,), mass=0.5, position=(0.5, 0.0, 1.0))
-    world, body = living(ball)
+    world, body = walker_in(ball)
     body.get("contacts")
     free = world.mj_model.joint("ball").dofadr[0]
     world.mj_data.qvel[free] = -8.0
@@ -144,7 +144,7 @@ def test_a_blow_that_is_over_before_the_tick_is_felt() -> None:
 
 
 def test_observers_feel_without_starting_a_watch() -> None:
-    world, body = living(Wall(name="wall", start=(0.3, -2.0), end=(0.3, 2.0), thickness=0.1))
+    world, body = walker_in(Wall(name="wall", start=(0.3, -2.0), end=(0.3, 2.0), thickness=0.1))
     body.set("walk", 1.0)
     ticks(world, 50)
     assert {touch.other for touch in present(body)} == {"wall"}
@@ -155,7 +155,7 @@ def test_observers_feel_without_starting_a_watch() -> None:
 
 @pytest.mark.parametrize(("angle", "elevation"), [(0.0, 0.0), (0.5, 0.0), (-1.0, 0.1)])
 def test_the_rangefinder_measures_from_the_eye(angle: float, elevation: float) -> None:
-    world, body = living(WALL)
+    world, body = walker_in(WALL)
     world.refresh()
     eye = world.mj_data.site("walker_eye").xpos[0]
     expected = (2.9 - eye) / (math.cos(angle) * math.cos(elevation))
@@ -165,7 +165,7 @@ def test_the_rangefinder_measures_from_the_eye(angle: float, elevation: float) -
 
 def test_its_own_body_and_what_it_holds_do_not_hide_the_world() -> None:
     cup = Loose(name="cup", size=(0.06, 0.06, 0.3), position=(0.05, -0.2, 0.68), mass=0.2)
-    _, body = living(WALL, cup)
+    _, body = walker_in(WALL, cup)
     assert body.get("rangefinder", at="torso") == near(2.9)
     assert body.get("rangefinder", at="left_upper_arm", angle=-math.pi / 2) is None
     assert body.get("rangefinder", at="left_upper_arm") == near(2.9)
@@ -175,7 +175,7 @@ def test_its_own_body_and_what_it_holds_do_not_hide_the_world() -> None:
 
 
 def test_the_laser_sweeps_from_left_to_right() -> None:
-    world, body = living(Aperture(position=(2.0, 0.0), width=0.8, thickness=0.1))
+    world, body = walker_in(Aperture(position=(2.0, 0.0), width=0.8, thickness=0.1))
     world.refresh()
     ahead = 1.95 - world.mj_data.site("walker_eye").xpos[0]
     scan = body.get("laser", rays=181, width=math.pi, reach=30.0)
@@ -187,14 +187,14 @@ def test_the_laser_sweeps_from_left_to_right() -> None:
         across = ahead * math.tan(angle)
         if 0.4 < abs(across) < 2.8:
             assert distance == near(ahead / math.cos(angle), abs=1e-9)
-    one_sided = living(Wall(name="left", start=(-5, 2), end=(5, 2)))[1].get("laser", rays=3, width=math.pi)
+    one_sided = walker_in(Wall(name="left", start=(-5, 2), end=(5, 2)))[1].get("laser", rays=3, width=math.pi)
     assert one_sided[0] == near(1.95)
     assert one_sided[1:] == (None, None)
 
 
 def test_proximity_is_the_nearest_surface() -> None:
     ball = Loose(name="ball", shape="sphere", size=(0.2,), mass=None, position=(0.0, 0.9, 0.818 * 1.75))
-    _, body = living(ball, WALL)
+    _, body = walker_in(ball, WALL)
     found = body.get("proximity", 3.0)
     assert (found.part, found.other) == ("left_shoulder_joint", "ball")
     assert found.distance == near(0.9 - 0.2 - 0.222, abs=1e-6)
@@ -208,7 +208,7 @@ def can_draw() -> bool:
 
 
 def test_pictures_show_what_the_eye_sees_or_say_what_is_missing() -> None:
-    world, body = living(WALL)
+    world, body = walker_in(WALL)
     if not can_draw():
         with pytest.raises(Actr3dError, match="pictures need EGL"):
             body.get("image")
@@ -231,7 +231,7 @@ def test_pictures_show_what_the_eye_sees_or_say_what_is_missing() -> None:
 def test_pictures_are_drawn_in_one_thread() -> None:
     if not can_draw():
         pytest.skip("there is no EGL here")
-    _, body = living(WALL)
+    _, body = walker_in(WALL)
     first = body.get("depth", 8, 6)
     with ThreadPoolExecutor() as others, pytest.raises(Actr3dError, match="draws its pictures in one thread, that of the first picture"):
         others.submit(body.get, "depth", 8, 6).result()
@@ -261,7 +261,7 @@ def test_without_egl_pictures_are_refused_with_a_reason() -> None:
 
 def test_reading_everything_changes_nothing() -> None:
     box = Loose(name="box", position=(0.9, 0.0, 0.15))
-    (read, body), (unread, other) = living(WALL, box), living(WALL, box)
+    (read, body), (unread, other) = walker_in(WALL, box), walker_in(WALL, box)
     for each in (body, other):
         each.set("walk", 1.4, 0.1)
         each.set("joint", "torso_yaw", 0.4)
@@ -275,7 +275,7 @@ def test_reading_everything_changes_nothing() -> None:
 
 
 def test_readings_stay_as_they_were() -> None:
-    world, body = living()
+    world, body = walker_in()
     pose, joints = body.get("pose"), body.get("joints")
     body.set("walk", 2.0)
     ticks(world, 10)
@@ -287,7 +287,7 @@ def test_readings_stay_as_they_were() -> None:
 
 
 def test_noise_has_the_size_it_is_given_and_none_by_default() -> None:
-    _, body = living(WALL)
+    _, body = walker_in(WALL)
     exact = body.get("rangefinder")
     readings = np.array([body.get("rangefinder", noise=0.05) for _ in range(2000)])
     assert readings.mean() == near(exact, abs=0.005)
@@ -297,14 +297,14 @@ def test_noise_has_the_size_it_is_given_and_none_by_default() -> None:
 
 
 def test_noise_by_field_leaves_the_others_exact() -> None:
-    _, body = living()
+    _, body = walker_in()
     pose = body.get("pose", noise={"x": 0.1})
     assert pose.x != 0
     assert replace(pose, x=0.0) == body.get("pose")
 
 
 def test_noise_comes_from_the_seed_and_from_its_own_sensor() -> None:
-    first, again, other = (living(seed=seed, noise=(("pose", 0.1),))[1] for seed in (1, 1, 2))
+    first, again, other = (walker_in(seed=seed, noise=(("pose", 0.1),))[1] for seed in (1, 1, 2))
     again.get("gyroscope", noise=1.0)
     one, two, three = (body.get("pose") for body in (first, again, other))
     assert one == two
@@ -312,7 +312,7 @@ def test_noise_comes_from_the_seed_and_from_its_own_sensor() -> None:
 
 
 def test_noise_goes_on_exactly_from_a_state() -> None:
-    world, body = living(noise=(("pose", 0.1),))
+    world, body = walker_in(noise=(("pose", 0.1),))
     body.get("pose")
     state = world.state()
     first = [body.get("pose") for _ in range(3)]
@@ -347,6 +347,6 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
     ],
 )
 def test_wrong_readings_are_refused_with_a_reason(word: Any, options: dict[str, Any], message: str) -> None:
-    _, body = living()
+    _, body = walker_in()
     with pytest.raises(Actr3dError, match=message.replace("?;", r"\?;")):
         body.get(word, **options)

@@ -243,8 +243,6 @@ class SimulationRun:
                 branch.unlink(missing_ok=True)  # nothing has changed
             raise
         kept = branch or (relived if ahead else None)  # what is lived through again is kept by its own recording
-        if kept is not None:
-            self._controller.channel.post(Branched(recording=kept.stem, at=at, until=until))
         if branch is not None:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
@@ -255,6 +253,9 @@ class SimulationRun:
             if self._recording is not None:
                 self._recording.fact("ended", None)
                 self._recording.fact("whole", None)
+        if kept is not None:
+            self.flush()  # pages list recordings again when they hear of the branch
+            self._controller.channel.post(Branched(recording=kept.stem, at=at, until=until))
         kept_as = "the rest was lost" if kept is None else "a branch was kept" if branch else "the recording keeps the rest"
         self._controller.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
 

@@ -1,6 +1,7 @@
 """Finds the productions that match: productions that test for a certain value are indexed by it, so that the others cost nothing.
 
 Each production is compiled into straight-line code that reads each slot at most once, and only if all tests before it hold.
+No reasons are kept: `actr3d.actr.explain.trial` tests the conditions of a production again when somebody asks why it does not match.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ BEFORE_FIRST_CYCLE: list[Callable[[ProductionSystem], Callable[[], object] | Non
 """Called with a system that is about to begin, before its methods without parameters; what they return is called after these.
 `actr3d.actr` adds the checks of models here."""
 EXPLAINERS: list[Callable[[ProductionSystem, float | None], Explanation]] = []
-"""Explains a system at a time; `actr3d.actr` sets the one that `ProductionSystem.explain` uses."""
+"""The function behind `ProductionSystem.explain`, given the system and the time; in a list so that `actr3d.actr` can set it."""
 
 
 @dataclass(eq=False)

@@ -1,4 +1,4 @@
-// The labels in the 3D view: HTML text over the picture, which never covers another label or a head.
+// Texts at features of the 3D view, such as measured widths: HTML over the picture, which never covers another text or a head.
 
 const GAP = 3; // between labels [px]
 const LIFT = 10; // the height of a label above its point [px]
@@ -32,7 +32,7 @@ export function placed(wanted, blocked, size) {
   });
 }
 
-export class Labels {
+export class Captions {
   constructor() {
     this.layer = document.createElement("div");
     this.layer.className = "scene-labels";
