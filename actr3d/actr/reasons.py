@@ -23,7 +23,7 @@ class ConditionReason:
     """None if it is not known, for example because it depends on a variable that no condition has bound."""
     expected: str
     found: str
-    seen: str | None
+    source: str | None
     """How what was found is known; None if it is certain at that time."""
 
 
@@ -42,7 +42,7 @@ class ProductionReason:
     """The first of `conditions` that fails, for the text of the reason; None if all hold."""
     expected: str | None = None
     found: str | None = None
-    seen: str | None = field(default=None, compare=False)
+    source: str | None = field(default=None, compare=False)
     """How what was found is known, such as «as seen since 0.050 s»; None if it is certain at that time."""
     bindings: Mapping[str, str]
     """The variables bound by the conditions before the failing one."""
@@ -60,13 +60,16 @@ class ProductionReason:
 
     def __str__(self) -> str:
         bound = "".join(f"  ?{name}={value}" for name, value in self.bindings.items())
-        seen = "" if self.seen is None else f" ({self.seen})"
+        source = "" if self.source is None else f" ({self.source})"
         origin = f"  (compiled from {' and '.join(self.parents)})" if self.parents else ""
         if self.matches:
-            lines = [f"  + {self.name}: matches{bound}{seen}{origin}"]
+            lines = [f"  + {self.name}: matches{bound}{source}{origin}"]
         else:
             sign = "?" if self.matches is None else "-"
-            lines = [f"  {sign} {self.name}: {self.condition}{origin}", f"      expected {self.expected}, found {self.found}{seen}{bound}"]
+            lines = [
+                f"  {sign} {self.name}: {self.condition}{origin}",
+                f"      expected {self.expected}, found {self.found}{source}{bound}",
+            ]
         if self.selected:
             lines[0] += f"  <- {self.verdict or 'selected'}{'' if self.matches else ', but it matches no longer'}"
         elif self.matches and self.verdict is not None:

@@ -18,7 +18,7 @@ function ConditionRow({ one, first }) {
       ${one.holds === true
         ? html`<span class="mono">${one.found}</span>`
         : html`${one.holds === false ? html`expected <span class="mono">${one.expected}</span>, found <span class="mono">${one.found}</span>` : one.found}`}
-      ${one.seen ? html` <span class="quiet">(${one.seen})</span>` : null}
+      ${one.source ? html` <span class="quiet">(${one.source})</span>` : null}
     </td>
   </tr>`;
 }

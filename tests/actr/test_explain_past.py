@@ -94,7 +94,7 @@ class Agent(ACTR):
 """)
     agent.traced()
     agent.run(0.02)
-    assert agent.explain(0.02).production("see").seen == "as seen since 0.000 s"
+    assert agent.explain(0.02).production("see").source == "as seen since 0.000 s"
     assert "(as seen since 0.000 s)" in str(agent.explain(0.02))
     assert agent.explain(0.02) == agent.explain()
     assert not agent.explain(0.02).production("nothing").matches
@@ -103,7 +103,7 @@ class Agent(ACTR):
     agent.run(0.01)
     past = agent.explain(0.025).production("see")
     assert past.matches
-    assert past.seen == "as seen since 0.000 s"
+    assert past.source == "as seen since 0.000 s"
 
 
 def test_a_chunk_changed_in_place_is_told_from_that_moment_on() -> None:

@@ -80,7 +80,7 @@ def test_the_past_of_any_model_is_told_as_its_present_was(seed: int) -> None:
         assert past.retrievals == then.retrievals
         for was, told in zip(then.productions, past.productions, strict=True):
             assert (told.parts, told.verdict, told.selected) == (was.parts, was.verdict, was.selected)
-            if told.seen is None and told.matches is not None and was.matches is not None:
+            if told.source is None and told.matches is not None and was.matches is not None:
                 certain += 1
                 assert told == was
     assert certain > 10

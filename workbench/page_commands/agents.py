@@ -38,7 +38,7 @@ class Explain(Question):
             explanation = agent.explain(self.at)
             reasons = [reason for reason in explanation.productions if self.production in (None, reason.name)]
             plain = plain_answer(explanation)
-            plain["productions"] = [{**plain_answer(reason), "seen": reason.seen, "text": str(reason)} for reason in reasons]
+            plain["productions"] = [{**plain_answer(reason), "source": reason.source, "text": str(reason)} for reason in reasons]
             plain["retrievals"] = [{**plain_answer(reason), "text": str(reason)} for reason in explanation.retrievals]
             explained.append(top.named(plain))
             names += [reason.name for reason in explanation.productions]

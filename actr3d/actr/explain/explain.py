@@ -47,7 +47,7 @@ def why(system: ProductionSystem, production: Production, state: AgentState) -> 
         condition=failed.condition if failed is not None else None,
         expected=failed.expected if failed is not None else None,
         found=failed.found if failed is not None else None,
-        seen=trial.seen,
+        source=trial.source,
         bindings=trial.bindings,
         conditions=trial.conditions,
         utility=sum(known) if len(known) == len(parts) else None,
@@ -63,7 +63,7 @@ def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
     systems = list(_systems(agent))
     for system in systems:
         prepare_context(system)
-    memories, eyes = _seen(Memory, agent, systems), _seen(Searching, agent, systems)
+    memories, eyes = _modules_in_sight(Memory, agent, systems), _modules_in_sight(Searching, agent, systems)
     state = Present(agent) if at is None else _past(agent, at, systems, [*memories, *eyes])
     productions = [
         why(system, p, state)
@@ -104,8 +104,8 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     begin = next((event.time for event in trace if event.run == run), agent.now())
     if time < microseconds(begin):
         raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
-    seen = [target for system in systems for target in rules_of(system).context.values() if isinstance(target, Model)]
-    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *modules, *seen)}.values()))
+    visible = [target for system in systems for target in rules_of(system).context.values() if isinstance(target, Model)]
+    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *modules, *visible)}.values()))
     if not state.exists(agent):
         came = next(place.time for place in places_in(agent, trace) if place.path is not None)
         raise ParameterError(f"explain(at): '{path_of(agent)}' did not exist at {at:g} s; it was added at {seconds(came):g} s")
@@ -118,7 +118,7 @@ def _systems(agent: ProductionSystem) -> Iterator[ProductionSystem]:
             yield part
 
 
-def _seen(kind: type[Kind], agent: Model, systems: list[ProductionSystem]) -> list[Kind]:
+def _modules_in_sight(kind: type[Kind], agent: Model, systems: list[ProductionSystem]) -> list[Kind]:
     """Returns an agent's modules of a kind, and those of its ancestors that its productions see by name."""
     found = [part for part in subtree(agent) if isinstance(part, kind)]
     for system in systems:

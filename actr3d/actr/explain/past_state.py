@@ -13,7 +13,7 @@ from actr3d.actr.kernel.buffer import Buffer, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, places_in
 from actr3d.actr.procedural.conflict_set import ConflictSet
-from actr3d.actr.procedural.observed_values import answer_label, records_changes
+from actr3d.actr.procedural.observed_values import records_changes, result_label
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, utility_part_names
 from actr3d.actr.procedural.safe_reading import plain_empty
@@ -37,7 +37,7 @@ class _Part:
 
     def __init__(self) -> None:
         self.attributes: dict[str, Record] = {}
-        self.seen: dict[str, Record] = {}
+        self.observations: dict[str, Record] = {}
         self.parts: dict[str, dict[str, float | None]] = {}
         self.conflict: dict[str, Any] | None = None
         self.chosen: str | None = None
@@ -56,7 +56,7 @@ class _Part:
         if kind in ("state", "buffer"):
             self._note(self.attributes, number, event)
         elif kind == "observe":
-            self._note(self.seen, number, event)
+            self._note(self.observations, number, event)
         elif kind == "conflict":
             self.conflict, self.chosen = data, None
             self.matched, self.latest_match = data["utilities"], number
@@ -133,21 +133,21 @@ class Past:
         target = rules_of(system).context[name]
         if reads_chunk(target, key):
             return self._slot_of_chunk(target, key)
-        seen = self._seen(target, key)
+        found = self._observations(target, key)
         recorded = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and records_changes(target, key) else None
         certain = recorded is not None and type(recorded.value) in LASTING_TYPES
-        latest = max((record.event if certain else held for record, held in seen), default=-1)
-        if seen and (recorded is None or recorded.event < latest):
-            record, _ = max(seen, key=lambda pair: pair[0].event)
+        latest = max((record.event if certain else held for record, held in found), default=-1)
+        if found and (recorded is None or recorded.event < latest):
+            record, _ = max(found, key=lambda pair: pair[0].event)
             return Fact(MISSING if record.value is None else record.value, _since(record))
         return Fact(as_text(recorded.value)) if recorded is not None and certain else NOT_KNOWN
 
-    def _seen(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
+    def _observations(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
         """Returns what production systems read of an object, under any name, and the event until which it was valid for each."""
         found: list[tuple[Record, int]] = []
         for system, name in self._named.get(id(target), ()):
             known = self._of(system)
-            record = known.seen.get(f"{name}.{key}")
+            record = known.observations.get(f"{name}.{key}")
             if record is not None:
                 found.append((record, max(record.event, known.latest_match)))
         return found
@@ -170,9 +170,9 @@ class Past:
         if isinstance(target, Buffer):
             recorded = self._of(target).attributes.get("chunk")
             return NOT_KNOWN if recorded is None else Fact(not recorded.value)
-        seen = self._seen(target, None)
-        if seen:
-            record, _ = max(seen, key=lambda pair: pair[0].event)
+        found = self._observations(target, None)
+        if found:
+            record, _ = max(found, key=lambda pair: pair[0].event)
             return Fact(record.value, _since(record))
         empty = plain_empty(target)
         return NOT_KNOWN if is_unknown(empty) or hasattr(cast("Any", type(target)), "__len__") else Fact(empty)
@@ -184,12 +184,12 @@ class Past:
             return list(recorded.value or ()) if recorded is not None else []
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
-        seen = self._of(system).seen.get(answer_label(production.name, number))
-        if seen is None:
+    def function_result(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
+        observation = self._of(system).observations.get(result_label(production.name, number))
+        if observation is None:
             return None
-        given, agrees, bound = seen.value
-        return FunctionResult(given, agrees, bound, _since(seen))
+        given, agrees, bound = observation.value
+        return FunctionResult(given, agrees, bound, _since(observation))
 
     def matched(self, system: ProductionSystem, production: Production) -> bool:
         return production.name in self._of(system).matched

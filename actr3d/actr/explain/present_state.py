@@ -67,7 +67,7 @@ class Present:
             return [str(key) for key in target.chunk or ()]
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
+    def function_result(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
         asked = _observed(system).asked.get((production.name, number))
         if asked is None:
             return None

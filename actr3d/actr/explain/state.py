@@ -19,7 +19,7 @@ class Fact(NamedTuple):
 
     value: Any
     """Text, MISSING for no such slot, True or False for emptiness; UNKNOWN if it is not known."""
-    seen: str | None = None
+    source: str | None = None
     """How it is known, such as «as seen since 0.050 s», or why it is not; None if it is certain at that time."""
 
 
@@ -31,7 +31,7 @@ class FunctionResult(NamedTuple):
     agrees: bool
     bound: Bindings
     """The variables after the call."""
-    seen: str
+    source: str
 
 
 NOT_KNOWN = Fact(UNKNOWN, "no production has looked at it")
@@ -67,7 +67,7 @@ class AgentState(Protocol):
         """Returns the existing slots, for messages."""
         ...
 
-    def answer(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
+    def function_result(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
         """Returns the last result of the function in a condition; it is not called again."""
         ...
 

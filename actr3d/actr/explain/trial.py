@@ -46,8 +46,8 @@ class ProductionTrial:
         """The variables that are bound to an unknown value."""
         self._fact: str | None = None
         """What the current condition has found, and how that is known."""
-        self._how: str | None = None
-        self.seen: str | None = None
+        self._source: str | None = None
+        self.source: str | None = None
         """How the facts that it depends on are known; None if all are certain."""
         self.bindings: dict[str, str] = {}
         """The variables bound by the conditions before the failing one, as text."""
@@ -62,17 +62,21 @@ class ProductionTrial:
     def _try(self, number: int, condition: Condition) -> ConditionReason:
         """Tests one condition; the first that fails decides the result."""
         settled = self.failure is not None
-        self._fact = self._how = None
+        self._fact = self._source = None
         failure = self._failure(number, condition)
         if not settled:
             self.failure = failure
-            self.seen = self._how or self.seen
+            self.source = self._source or self.source
             self.bindings = {name: as_text(value) for name, value in self._bound.items()}
         if failure is None:
             found = self._fact or "what is not known"
-            return ConditionReason(condition=_text(condition), holds=True, expected=self._expected(condition), found=found, seen=self._how)
+            return ConditionReason(
+                condition=_text(condition), holds=True, expected=self._expected(condition), found=found, source=self._source
+            )
         holds = None if failure.unknown else False
-        return ConditionReason(condition=failure.condition, holds=holds, expected=failure.expected, found=failure.found, seen=self._how)
+        return ConditionReason(
+            condition=failure.condition, holds=holds, expected=failure.expected, found=failure.found, source=self._source
+        )
 
     def _expected(self, condition: Condition) -> str:
         if condition.op in ("empty", "call"):
@@ -88,7 +92,7 @@ class ProductionTrial:
         if op == "empty":
             fact = self._known(self._state.empty(system, name))
             if is_unknown(fact.value):
-                return self._unknown(_text(condition), "nothing in it", fact.seen)
+                return self._unknown(_text(condition), "nothing in it", fact.source)
             self._fact = "nothing in it" if fact.value else "something"
             return None if fact.value else Failure(condition=_text(condition), expected="nothing in it", found="something")
         if isinstance(key, str) and key[:1] == "?":
@@ -103,7 +107,7 @@ class ProductionTrial:
         if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
             if op == "bind":
                 self._open.add(value)
-            return self._unknown(_text(condition), expected, fact.seen)
+            return self._unknown(_text(condition), expected, fact.source)
         if isinstance(fact.value, Missing):
             return Failure(condition=_text(condition), expected=expected, found=self._nothing(name, key))
         if op in ("same", "differs") and value not in self._bound:
@@ -117,7 +121,7 @@ class ProductionTrial:
 
     def _known(self, fact: Fact) -> Fact:
         if not is_unknown(fact.value):
-            self._how = fact.seen
+            self._source = fact.source
         return fact
 
     def _nothing(self, name: str, key: Any) -> str:
@@ -130,26 +134,26 @@ class ProductionTrial:
         return Failure(condition=_text(condition), expected=expected, found=f"?{variable} is not bound", unknown=settled)
 
     def _failure_of_function(self, number: int, condition: Condition) -> Failure | None:
-        answer = self._state.answer(self._system, self._production, number)
+        result = self._state.function_result(self._system, self._production, number)
         text, expected = _text(condition), "anything but False"
         if self.failure is not None:
             return _not_known(text, expected, "it is asked only where all before it holds")
-        if answer is None:
+        if result is None:
             return self._unknown(text, expected, "it has not been asked")
-        self._how = answer.seen
-        if self._open or _texts(answer.given) != _texts(self._bound):
-            with_what = " ".join(f"?{name}={as_text(value)}" for name, value in answer.given.items())
+        self._source = result.source
+        if self._open or _texts(result.given) != _texts(self._bound):
+            with_what = " ".join(f"?{name}={as_text(value)}" for name, value in result.given.items())
             return _not_known(text, expected, f"it was last asked with {with_what or 'no variables'}")
-        if not answer.agrees:
+        if not result.agrees:
             return Failure(condition=text, expected=expected, found="False, or an error for want of a slot")
-        self._bound.update(answer.bound)
+        self._bound.update(result.bound)
         self._fact = "it agreed"
         return None
 
     def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
         """Returns None, for a condition that holds, if the production matched last; otherwise an unknown failure."""
         if self.failure is None and self._state.matched(self._system, self._production):
-            self._how = AT_THE_LAST_MATCH
+            self._source = AT_THE_LAST_MATCH
             return None
         return _not_known(text, expected, why or "it depends on what is not known")
 

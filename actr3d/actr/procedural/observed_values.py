@@ -41,7 +41,7 @@ def _plain(bound: Bindings) -> dict[str, Any]:
     return found
 
 
-def answer_label(production: str, number: int) -> str:
+def result_label(production: str, number: int) -> str:
     """Returns the label under which a trace has the result of the function in a production's condition."""
     return f"{production}()[{number}]"
 
@@ -114,7 +114,7 @@ class Observed:
                 if value is not UNKNOWN:
                     known[label] = value
         for (name, number), asked in self.asked.items():
-            known[answer_label(name, number)] = asked.plain()
+            known[result_label(name, number)] = asked.plain()
         return known
 
     def _reading(self, label: str, target: Any, key: Any) -> Any:
