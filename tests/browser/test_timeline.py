@@ -78,7 +78,9 @@ def ended(pages: Callable[..., Page]) -> Page:
     )
     expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     # Curves come by a request of their own, after the events.
-    until(page, lambda: page.evaluate("async () => (await import('/static/timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')"))
+    page.wait_for_function(
+        "async () => (await import('/static/timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')", polling=50
+    )
     return page
 
 
