@@ -19,7 +19,7 @@ from starlette.staticfiles import StaticFiles
 
 from tests.helpers.page import open_tab, until
 from workbench.auth import Gate, Guard, Token
-from workbench.cli import _listen as listen  # pyright: ignore[reportPrivateUsage] # the socket that the command opens
+from workbench.cli import listen
 from workbench.shipped import static
 
 ROOT = Path(__file__).parents[2]
