@@ -1,4 +1,4 @@
-"""What a worker is needed for that is no run: it does one thing, and ends."""
+"""Runs jobs in workers: a job, such as writing a CSV file of a recording, is a worker's only task."""
 
 from __future__ import annotations
 
@@ -16,39 +16,39 @@ from workbench.worker_monitor import WorkerMonitor, subject_of
 PATIENCE = 120.0
 """Maximum time without progress before a worker is ended [s]."""
 LOOK = 0.25
-"""How often it is looked how far it has come [s]."""
+"""The interval at which progress is checked [s]."""
 
 
 class StuckError(Actr3dError):
-    """A worker comes no further."""
+    """A worker makes no progress."""
 
     status = 409
 
 
 class Job:
-    """One thing that a worker does, as far as it has come."""
+    """Tracks the progress and the result of one job."""
 
     def __init__(self) -> None:
         self.share = 0.0
-        """How much is done, from 0 to 1."""
+        """The share that is done, from 0 to 1."""
         self.result: bytes | None = None
-        """What came of it, as JSON; None where nothing did, or not yet."""
+        """The result as JSON; None if there is none, or none yet."""
         self.notices: deque[Notice] = deque(maxlen=MOST_NOTICES)
-        """What the worker complained of."""
+        """The warnings and errors that the worker has sent."""
         self.subject = "the worker"
-        """What the worker is called."""
+        """The name of the worker in error messages."""
         self.ending = ""
-        """How the worker ended, where that was not in good order."""
+        """Why the worker ended, if it did not end normally."""
         self.over = asyncio.Event()
 
     async def stages(self, stage: Callable[[], float]) -> AsyncGenerator[float]:
-        """Yields again and again how far the worker has come, until it is over.
+        """Yields the progress of the worker repeatedly until the job is over.
 
         Args:
-            stage: Returns how far the worker is.
+            stage: Returns the progress.
 
         Raises:
-            StuckError: If it comes no further.
+            StuckError: If there is no progress for `PATIENCE`.
         """
         loop = asyncio.get_running_loop()
         furthest, since = stage(), loop.time()
@@ -59,17 +59,17 @@ class Job:
             if now > furthest:
                 furthest, since = now, loop.time()
             elif loop.time() - since > PATIENCE:
-                raise StuckError(f"it came no further for {PATIENCE:g} s")
+                raise StuckError(f"no progress for {PATIENCE:g} s")
             yield furthest
 
     @property
     def problem(self) -> str:
-        """Why nothing came of it."""
+        """Why the job failed."""
         errors = [notice.text for notice in self.notices if notice.level == "error"]
         return errors[-1] if errors else self.ending or f"{self.subject} has ended"
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
-        """Takes what the worker says."""
+        """Processes a message of the worker."""
         if isinstance(message, Share):
             self.share = message.done
         elif isinstance(message, Reply):
@@ -78,42 +78,42 @@ class Job:
             self.add_notice(message)
 
     def reply(self, message: Reply) -> None:
-        """Takes what came of it, or why nothing did."""
+        """Stores the result, or the error."""
         if message.error is None:
             self.result = message.result
         else:
             self.notices.append(Notice(level="error", text=message.error))
 
     def take_end(self, worker: Worker, ending: str) -> None:
-        """Takes how the worker ended."""
+        """Stores why the worker ended, and marks the job as over."""
         self.ending = ending
         self.over.set()
 
     def add_notice(self, notice: Notice) -> None:
-        """Takes what the worker complains of."""
-        if notice.level != "info":  # what is printed is of no interest
+        """Stores a warning or an error; what is printed is ignored."""
+        if notice.level != "info":
             self.notices.append(notice)
 
     def halt(self, worker: Worker, name: str) -> None:
-        """Ends a worker that was stopped by a signal: nothing would continue it."""
+        """Kills a worker that was stopped by a signal: nothing would continue it."""
         if name:
             self.add_notice(Notice(level="error", text=f"{self.subject} was stopped by {name}, and ended"))
             worker.kill()
 
     def busy(self, worker: Worker) -> bool:
-        """Ignores where the worker is: no user watches a job."""
+        """Returns False: no user watches a job, so silence is not reported."""
         return False
 
 
 @asynccontextmanager
 async def doing(workers: Workers, start: Start, job: Job | None = None, memory: int | None = None) -> AsyncGenerator[Job]:
-    """Has a worker do something inside the block, and kills it at the end of the block if it is not done.
+    """Runs a job in a worker inside the block; kills the worker at the end of the block if it is not done.
 
     Args:
-        workers: Who gives workers.
+        workers: The pool that starts workers.
         start: The first message to the worker.
-        job: Where it is noted how far it has come; None for a new one.
-        memory: How much memory it may take [MB]; None for as much as a model may.
+        job: The job that tracks the progress; None for a new one.
+        memory: The maximum memory of the worker [MB]; None for that of a model.
 
     Raises:
         OSError: If no worker can be started.

@@ -1,4 +1,4 @@
-"""Has workers read recordings: the server itself opens none of them, so that no file can block, fill or crash it."""
+"""Reads recordings in workers: the server itself opens none of them, so that no file can block, fill or crash it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class ReadingError(Actr3dError):
 
 
 class Readers:
-    """Has workers read recordings, and write what is asked for to files.
+    """Reads recordings in workers, which write the results to files.
 
     Args:
         workers: Who gives workers.

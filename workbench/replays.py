@@ -36,7 +36,7 @@ class Reruns:
         self._going_on: list[tuple[Path, Job]] = []
 
     def share(self, path: Path) -> float | None:
-        """Returns how much of a recording has been run again, from 0 to 1; None where it is not being run."""
+        """Returns the share of a recording that has been run again, from 0 to 1; None if it is not being run again."""
         return max((job.share for other, job in self._going_on if other == path), default=None)
 
     async def run(self, path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:

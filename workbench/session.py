@@ -342,7 +342,7 @@ class Session:
         self._changed(facts=True)
 
     async def ask(self, command: Command) -> Reply:
-        """Has a worker carry out a command: the worker of the run on screen if it is for that run, otherwise that of the newest run.
+        """Sends a command to a worker: that of the run on screen if the command is for that run, otherwise that of the newest run.
 
         After a user has started a new run, commands go to it, although the previous run is on screen until the new one is built.
         """
@@ -354,7 +354,7 @@ class Session:
         return await self._waiting.ask(self._worker, command)
 
     async def ask_all(self, command: Command) -> Reply:
-        """Has the worker of the run on screen carry out a command, and that of the run being built, too."""
+        """Sends a command to the worker of the run on screen, and to that of the run being built."""
         async with self._beginning:
             loading = self._loading
         if loading is None or self._worker is None:

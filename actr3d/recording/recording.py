@@ -68,7 +68,7 @@ class Recording:
             self._over[name] = value is not None
 
     def leave(self) -> None:
-        """Writes that the user left the run where it is now, unless it was over, or had failed."""
+        """Records that the user left the run at its current time, unless it was over or had failed."""
         if not any(self._over.values()):
             self.fact("ended", {"by": LEFT})
 

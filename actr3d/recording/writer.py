@@ -79,7 +79,7 @@ class NoWriter:
         """Does nothing."""
 
     def copy_to(self, path: Path) -> None:
-        """Refuses: the copy of the process has not what is to be written.
+        """Raises an error: a copy of the process does not have the data to be written.
 
         Raises:
             RecordingError: Always.
@@ -316,7 +316,7 @@ class Writer:
         return last
 
     def _mark_as_left(self, copy: sqlite3.Connection) -> None:
-        """Writes to a copy that the run was left where it ends, unless the run was over there."""
+        """Records in a copy that the run was left at the copy's end, unless the run was over there."""
         facts = dict(copy.execute("SELECT name, value FROM facts WHERE name IN ('ended', 'failed')"))
         if any(value != "null" for value in facts.values()):
             return

@@ -101,7 +101,7 @@ def _built(recorded: Recorded, helpers: HelperTexts) -> tuple[Simulation, dict[s
 
 
 def _sealed(recorded: Recorded, within: Path | None) -> AbstractContextManager[HelperTexts]:
-    """Lets nothing be imported but what the recording holds, the standard library and installed packages."""
+    """Restricts imports to the modules in the recording, the standard library and installed packages."""
     facts = recorded.facts
     return sealed(facts["file"], facts["sources"][facts["file"]], facts.get("helpers", {}), within)
 
@@ -177,12 +177,12 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, beside: Besid
 
 
 def _ended_by(simulation: Simulation) -> str | None:
-    """Returns what ends a simulation where it is now; None if it can go on."""
+    """Returns why a simulation ends at its current time; None if it can continue."""
     return simulation.over or (None if simulation.timeline.lockstep.may_tick() else "limits")
 
 
 def _end(recorded: Recorded, simulation: Simulation, ended: str | None) -> None:
-    """Does what the recorded run did after its last whole tick.
+    """Repeats what the recorded run did after its last whole tick.
 
     Raises:
         BaseException: What the model raises.
@@ -201,7 +201,7 @@ def _failed(recorded: Recorded) -> bool:
 
 
 def _compared(recorded: Recorded, beside: Beside, trouble: str) -> Comparison:
-    """Returns what came of a comparison whose run is over; what is recorded beyond that is a difference, unless it was broken off there.
+    """Returns the result of a comparison whose run is over; further recorded events differ, unless the recorded run was broken off.
 
     Args:
         recorded: The recording.

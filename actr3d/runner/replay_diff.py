@@ -48,7 +48,7 @@ class Differs(EndOfRun):
 
 
 class Beside:
-    """Takes what a run does in place of its recording, and compares it with what is recorded, each kind of thing in its order.
+    """Compares a run with a recording, in place of the run's recorder: facts, events, states, answers and commands, each in order.
 
     Args:
         recorded: The recording.
@@ -73,15 +73,15 @@ class Beside:
         detach_in_copies(self)
 
     def detach(self) -> None:
-        """Compares nothing from now on: this is a forked copy of the process, whose events were not recorded."""
+        """Stops comparing: this is a forked copy of the process, whose events were not recorded."""
         self._detached = True
 
     def fact(self, name: str, value: Any) -> None:
-        """Takes a fact of the new run."""
+        """Compares a fact of the new run."""
         self.facts[name] = value
 
     def event(self, event: TraceEvent) -> None:
-        """Takes one event of the new run.
+        """Compares an event of the new run.
 
         Raises:
             Differs: If it is another than the recorded one, or the recording ends before.
@@ -96,7 +96,7 @@ class Beside:
     """Of a program that may record nothing but events."""
 
     def state(self, run: int, tick: int, data: bytes) -> None:
-        """Takes the physics at the start of a run, or at the end of a tick.
+        """Compares the physics at the start of a run, or at the end of a tick.
 
         Raises:
             Differs: As `event` does.
@@ -117,7 +117,7 @@ class Beside:
         self.ticks += tick > 0
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
-        """Takes what a body answered.
+        """Compares the answer of a body.
 
         Raises:
             Differs: As `event` does.
@@ -130,7 +130,7 @@ class Beside:
         self._compare(f"answer {self.answers}", None if then is None else json.dumps(then), now)
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
-        """Takes what a user did.
+        """Compares a command of a user.
 
         Raises:
             Differs: As `event` does.

@@ -31,18 +31,18 @@ if TYPE_CHECKING:
 
 
 class FactRecorder(Protocol):
-    """Takes the facts that become known during a run."""
+    """Receives the facts that become known during a run."""
 
     def fact(self, name: str, value: Any) -> None:
-        """Takes a fact."""
+        """Receives a fact."""
         ...
 
 
 class ProgramRecorder(Recorder, FactRecorder, Protocol):
-    """Takes everything that a program does: a recording, or what compares it with one."""
+    """Receives everything that a program does: a recording, or a comparison with one."""
 
     def event_alone(self, event: TraceEvent) -> None:
-        """Takes an event."""
+        """Receives an event."""
         ...
 
 

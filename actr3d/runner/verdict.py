@@ -121,7 +121,7 @@ def _ended(status: int) -> str:
 
 @contextmanager
 def _ended_in_order() -> Generator[None]:
-    """Lets what terminates this process inside the block end it in order, so that nothing it has started outlives it."""
+    """Handles signals that terminate this process inside the block, so that it ends its child processes first."""
     signs = [signal.SIGTERM, signal.SIGHUP]
     before: dict[signal.Signals, Any] = {sign: signal.getsignal(sign) for sign in signs if signal.getsignal(sign) is signal.SIG_DFL}
     for sign in before:

@@ -111,7 +111,7 @@ class Agents:
             sch.run((end - sch.now_us) / MICROSECONDS)
 
     def take(self, request: Request, answer: Any) -> None:
-        """Gives an agent an answer, available from the next tick on."""
+        """Delivers an answer to an agent, available from the next tick on."""
         # `_take` is private because productions see every public name of a model.
         self._sch.call_after(0, request.port._take, (request, answer))  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 

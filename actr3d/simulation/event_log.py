@@ -66,7 +66,7 @@ class EventLog:
         """The standard output of the agents."""
 
     def raise_level(self, level: str, *, keep: bool = False) -> None:
-        """Sets the level of the next trace to at least this one, and lets it keep its events if `keep` is true.
+        """Sets the level of the next trace to at least this one; if `keep` is true, the trace keeps its events.
 
         Raises:
             ParameterError: If the level is unknown.
@@ -87,7 +87,7 @@ class EventLog:
         self._listeners.append(listener)
 
     def join_program(self, trace: Trace, recorder: Recorder | None) -> None:
-        """Passes events on to the trace of the whole program, as many as that one records, and the rest to its recorder."""
+        """Passes to the trace of the whole program the events of its level, and all other events to its recorder."""
         self.raise_level(trace.level)
         if trace.level != "none":
             log = ref(self)  # the program's trace does not keep the simulation alive

@@ -129,5 +129,5 @@ def test_it_ends_when_nobody_waits_any_more_and_when_it_comes_no_further(
     assert first == second == {"agrees": None, "text": "cancelled"}
     assert isinstance(third, BusyError)
     monkeypatch.setattr("workbench.jobs.PATIENCE", 0.5)
-    assert desk.do(reruns.run(path, waits)) == {"agrees": None, "text": "it came no further for 0.5 s"}
+    assert desk.do(reruns.run(path, waits)) == {"agrees": None, "text": "no progress for 0.5 s"}
     assert reruns.share(path) is None

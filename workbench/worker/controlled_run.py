@@ -58,7 +58,7 @@ class ControlledRun(Protocol):
         ...
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        """Gives the simulation a command; what lies ahead is kept as a branch.
+        """Sends the simulation a command; the future of the run is kept as a branch.
 
         Args:
             word: The command.

@@ -114,7 +114,7 @@ class ProgramRun:
                 self._recording.close()
 
     def _foresee(self) -> None:
-        """Shows all of the recorded run that is lived through again, where it is one."""
+        """Shows the whole timeline of a recorded run that is run again."""
         recorded = self._controller.channel.start.recorded
         if recorded is not None:
             foreknown = Foreknown(Path(recorded))
@@ -262,7 +262,7 @@ class ProgramRun:
                 return
 
     def _tick(self, simulation: Simulation, passed: int) -> None:
-        """Takes note that a simulation has ticked, or is about to begin; holds the program up until it may go on."""
+        """Processes that a simulation has ticked, or is about to begin; delays the program until it may continue."""
         controller = self._controller
         if controller.channel.left:
             return  # in a copy of the process that the model has made, which nobody watches
@@ -287,7 +287,7 @@ class ProgramRun:
                 return
 
     def _check_left(self) -> None:
-        """Leaves the program where it is to be left, also one that has caught that and goes on.
+        """Ends the program at the tick where it is to be left, even if it catches the exception and continues.
 
         Raises:
             EndOfRun: If it is to be left.
@@ -298,7 +298,7 @@ class ProgramRun:
             raise _Again
 
     def _show(self, simulation: Simulation) -> None:
-        """Lets this simulation be shown from now on."""
+        """Shows this simulation from now on."""
         if self._shown is not None and self._shown.simulation is simulation:
             return
         self._shown = next((shown for shown, _ in self._simulations.values() if shown.simulation is simulation), None)
@@ -379,7 +379,7 @@ class ProgramRun:
             self._output.finish()
 
     def flush(self) -> None:
-        """Writes what is still to be recorded."""
+        """Writes everything that is not written yet."""
         if self._recording is not None:
             self._recording.flush()
 

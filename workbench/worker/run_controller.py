@@ -98,7 +98,7 @@ class RunController:
 
     @property
     def repeats(self) -> bool:
-        """Whether the run, after going back, has not yet come to where it was."""
+        """Whether the run, after going back, is still before the furthest time that it had reached."""
         return self._reached > 0 and self.run.clock < self._reached
 
     def embodied(self) -> None:
@@ -247,7 +247,7 @@ class RunController:
     def change(
         self, word: str, values: tuple[Any, ...], named: Mapping[str, Any] | None = None, body: str | None = None, *, drop: bool = False
     ) -> None:
-        """Gives the running simulation a command; see `ControlledRun.change`.
+        """Sends the running simulation a command; see `ControlledRun.change`.
 
         Raises:
             Exception: If it cannot be carried out.

@@ -222,7 +222,7 @@ class SimulationRun:
         return parameter.live
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        """Gives the simulation a command; what lies ahead is kept as a branch, or, if `drop` is true, may be lost.
+        """Sends the simulation a command; the future of the run is kept as a branch, or dropped if `drop` is true.
 
         Raises:
             SimulationError: If the run is over, or what lies ahead cannot be kept and may not be lost.
@@ -283,7 +283,7 @@ class SimulationRun:
         return path
 
     def _tell_failure(self, text: str | None) -> None:
-        """Records what the model raised; None where the run goes another way now."""
+        """Records the exception of the model; None if the run continues differently now."""
         self._failed = text is not None
         if self._recording is not None:
             self._recording.fact("failed", text)
@@ -293,7 +293,7 @@ class SimulationRun:
         self._simulation.event_log.stdout.finish()
 
     def flush(self) -> None:
-        """Writes what is still to be recorded."""
+        """Writes everything that is not written yet."""
         if self._recording is not None:
             self._recording.flush()
 

@@ -224,7 +224,7 @@ class Workers:
             self.begin()
 
     def _say_ended(self) -> None:
-        """Informs those who wait for a worker that none can be started."""
+        """Reports to all callers that wait for a worker that none can be started."""
         self._control = None
         self._ready.set()
         self._born.put_nowait(-1)
