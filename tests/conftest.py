@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import tempfile
 
+import pytest
 from hypothesis import settings
 
 # The same examples each time, so that a failure is the change's own. EXPLORE=1 looks for new ones.
@@ -13,9 +15,29 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None)
 settings.load_profile("explore" if os.environ.get("EXPLORE") else "same")
 
+# Hundreds of tests start Python again: without bytecode on disk, each would compile all libraries for seconds.
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", None) is not None:
+    sys.dont_write_bytecode = False
+
 # Tests leave the user's cache and key alone.
 os.environ["XDG_CACHE_HOME"] = os.environ["XDG_DATA_HOME"] = tempfile.mkdtemp(prefix="actr3d-tests-")
 
 # A shell ignores SIGINT for what it starts in the background, and what the tests start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest leaves out what is marked as slow
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks as `slow` all cases of a test but the `n` that are marked to be run daily: `@pytest.mark.daily(n)`, evenly spaced."""
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("daily") is not None:
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for test in cases.values():
+        marker = test[0].get_closest_marker("daily")
+        assert marker is not None
+        kept = {number * len(test) // marker.args[0] for number in range(marker.args[0])}
+        for number, item in enumerate(test):
+            if number not in kept:
+                item.add_marker(pytest.mark.slow)

@@ -221,6 +221,7 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
     assert json.loads(done.stdout)["data"] == {"text": "\u2211"}
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -300,6 +301,7 @@ def test_nothing_comes_between_the_lines_of_json(tmp_path: Path) -> None:
     assert sorted(done.stderr.split()) == ["child", "grandchild", "raw"]
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
 @pytest.mark.parametrize(
     ("source", "message"),

@@ -20,6 +20,7 @@ def calm(page: Page) -> None:
     expect(page.locator(".changed")).to_have_count(0)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: Any) -> None:
     page = pages(theme=theme)
@@ -58,6 +59,7 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: An
     assert problems == []
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_what_asks_and_compares_can_be_read_named_and_reached(pages: Callable[..., Page], workbench: Served, theme: Any) -> None:
     file = workbench.folder / f"asks_{theme}.py"

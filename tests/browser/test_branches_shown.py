@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import open_tab, shows
@@ -27,6 +28,7 @@ def change_the_past(page: Page) -> None:
     shows(page, "#status", r"changed at 0\.50 s")
 
 
+@pytest.mark.slow
 def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown_once(page: Page) -> None:
     shows(page, "#status", "at its start")
     change_the_past(page)
@@ -47,6 +49,7 @@ def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown
     expect(page.locator(".branched")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_a_run_that_goes_another_way_after_its_end_is_listed_as_such_at_once(page: Page) -> None:
     shows(page, "#status", "at its start")
     open_tab(page, "Runs")

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import choose, drawn, open_tab, shows, until
@@ -61,6 +62,7 @@ def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     shows(page, "#status", re.escape("ended: the model called stop(); walker touched nothing more"))
 
 
+@pytest.mark.slow
 def test_a_breakpoint_that_an_edit_has_lost_is_kept_and_said_to_be(pages: Callable[..., Page], workbench: Served) -> None:
     source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
     (workbench.folder / "edited.py").write_text(source, encoding="utf-8")
@@ -129,6 +131,7 @@ def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     expect(page.locator(".retina output")).to_have_text(re.compile(rf"label {view['extents'][0][1]} · row {row} · .* m to .* m"))
 
 
+@pytest.mark.slow
 def test_an_eye_with_nothing_in_view_says_so_and_nothing_is_about_to_fire_in_a_run_that_is_over(
     pages: Callable[..., Page], workbench: Served
 ) -> None:
@@ -186,6 +189,7 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
     expect(page.get_by_role("button", name="Theme: light")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_zoom_is_kept_for_the_next_run_of_a_model_and_another_model_is_shown_as_a_whole(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
@@ -276,6 +280,7 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     expect(bar).to_have_attribute("aria-valuenow", str(after))
 
 
+@pytest.mark.slow
 def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None:
     for width, height in ((1280, 800), (1920, 1080), (1024, 700)):
         page = pages("doorway.py", width, height)
@@ -284,6 +289,7 @@ def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None
         page.close()
 
 
+@pytest.mark.slow
 def test_a_value_of_a_parameter_that_has_another_name_now_is_left_out_by_a_restart(pages: Callable[..., Page], workbench: Served) -> None:
     source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
     file = workbench.folder / "renamed.py"

@@ -97,6 +97,7 @@ def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[...,
     assert path.read_text(encoding="utf-8") == "# mended\n" + MIND.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_what_a_run_says_is_marked_at_its_lines(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     written(
         "helping.py", "import warnings\n\ndef fail():\n    warnings.warn('beware')\n    raise ValueError('<img src=x onerror=alert(1)>')\n"
@@ -162,6 +163,7 @@ def test_an_error_scrolls_its_line_into_view_and_leaves_the_cursor_where_it_is(
     expect(wrong).to_be_in_viewport()
 
 
+@pytest.mark.slow
 def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     path = written("shared.py", "a = 1\nb = 2\n")
     page = pages("counting.py")
@@ -261,6 +263,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     shows(third, ".strip", "has changed on disk")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("choice", "seen"), [("A mind alone", "the program is over"), ("A mind with a body in a world", r"the model called stop\(\)")]
 )
@@ -317,6 +320,7 @@ def test_files_are_copied_renamed_and_deleted_while_one_runs(
     assert not (workbench.folder / "sub" / "second.py").exists()
 
 
+@pytest.mark.slow
 def test_another_text_is_shown_while_completions_of_a_longer_one_are_open(
     pages: Callable[..., Page], written: Callable[[str, str], Path]
 ) -> None:
@@ -343,6 +347,7 @@ def test_another_text_is_shown_while_completions_of_a_longer_one_are_open(
     ends(page, "\nproduc")
 
 
+@pytest.mark.slow
 def test_each_text_keeps_its_history_and_tab_can_leave(page: Page, workbench: Served) -> None:
     choose(page, "doorway.py")
     edit(page, "doorway.py")
@@ -372,6 +377,7 @@ def test_each_text_keeps_its_history_and_tab_can_leave(page: Page, workbench: Se
     unsaved(page).not_to_have_text(re.compile("unsaved"))
 
 
+@pytest.mark.slow
 def test_what_cannot_be_opened_or_saved_is_told(pages: Callable[..., Page], workbench: Served, written: Callable[[str, str], Path]) -> None:
     page = pages("counting.py")
     open_tab(page, "Editor")

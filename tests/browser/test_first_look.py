@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.helpers.page import drawn, open_tab, shows, until
@@ -151,6 +152,7 @@ def test_the_console_has_what_is_printed_as_it_is_printed_and_goes_back_with_the
     expect(page.locator(".cm-activeLine")).to_have_text("            raise ValueError('too much')")
 
 
+@pytest.mark.slow
 def test_a_long_output_is_whole_though_few_of_its_lines_are_drawn(pages: Pages, workbench: Served) -> None:
     (workbench.folder / "many.py").write_text(MANY, encoding="utf-8")
     page = pages("many.py", tab="console")

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
 from tests.helpers.page import choose, drawn, open_tab, shows, until
@@ -159,6 +160,7 @@ def test_a_step_is_made_where_the_user_has_gone_to_though_the_run_is_still_on_it
     shows(page, "#time", "0.22 s")
 
 
+@pytest.mark.slow
 def test_a_question_to_a_run_that_is_shown_no_more_does_not_keep_others_waiting(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
@@ -202,6 +204,7 @@ def test_each_click_on_cycle_is_one(page: Page) -> None:
 # -- what is written and chosen
 
 
+@pytest.mark.slow
 def test_a_row_chosen_before_the_next_picture_stays_chosen(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
@@ -240,6 +243,7 @@ def test_the_focus_is_where_an_arrow_key_has_taken_it_at_once(page: Page) -> Non
     assert moved
 
 
+@pytest.mark.slow
 def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     for _ in range(2):
@@ -263,6 +267,7 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     expect(second).to_have_attribute("aria-selected", "true")
 
 
+@pytest.mark.slow
 def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")
@@ -284,6 +289,7 @@ def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Ca
     assert len(asked) == 1
 
 
+@pytest.mark.slow
 def test_what_is_written_in_fields_stays_as_it_is_written(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
@@ -319,6 +325,7 @@ def test_a_dialog_takes_what_is_pressed_at_once(page: Page) -> None:
 # -- files
 
 
+@pytest.mark.slow
 def test_a_file_chosen_while_another_is_made_or_saved_stays_shown(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
@@ -345,6 +352,7 @@ def test_a_file_chosen_while_another_is_made_or_saved_stays_shown(pages: Callabl
     shows(page, "#status", "at its start")
 
 
+@pytest.mark.slow
 def test_a_text_that_is_being_saved_is_in_no_conflict_with_itself(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "saved.py").write_text("a = 1\n", encoding="utf-8")
     page = pages("counting.py")
@@ -367,6 +375,7 @@ def test_a_text_that_is_being_saved_is_in_no_conflict_with_itself(pages: Callabl
     expect(page.locator(".strip")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_what_a_file_is_called_now_is_nothing_to_be_opened(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "before.py").write_text((workbench.folder / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
     page = pages("before.py")
@@ -384,6 +393,7 @@ def test_what_a_file_is_called_now_is_nothing_to_be_opened(pages: Callable[..., 
     expect(page.get_by_label("File", exact=True)).to_have_value("doorway.py")
 
 
+@pytest.mark.slow
 def test_what_loading_says_of_a_text_is_not_taken_back_by_a_glance_at_it(pages: Callable[..., Page], workbench: Served) -> None:
     source = "def build(parameters: None) -> Simulation: ...\nraise ValueError('at its top')\n"
     (workbench.folder / "glanced.py").write_text(source, encoding="utf-8")
@@ -401,6 +411,7 @@ def test_what_loading_says_of_a_text_is_not_taken_back_by_a_glance_at_it(pages: 
     shows(page, ".problems", "ValueError|NameError")
 
 
+@pytest.mark.slow
 def test_a_tab_keeps_its_unsaved_work_however_slowly_the_page_before_goes(pages: Callable[..., Page], workbench: Served) -> None:
     path: Path = workbench.folder / "kept.py"
     path.write_text("a = 1\n", encoding="utf-8")
@@ -449,6 +460,7 @@ def test_nothing_is_asked_of_a_new_run_before_its_own_first_state_is_there(pages
     assert told == [False, True, True, False]
 
 
+@pytest.mark.slow
 def test_the_dialog_of_run_until_stays_open_until_the_server_has_checked(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
@@ -470,6 +482,7 @@ def test_the_dialog_of_run_until_stays_open_until_the_server_has_checked(pages: 
     shows(page, "#status", "look fired")
 
 
+@pytest.mark.slow
 def test_run_while_a_restart_is_under_way_runs_the_new_run(pages: Callable[..., Page], workbench: Served) -> None:
     source = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
     (workbench.folder / "slow.py").write_text(source + SLOW, encoding="utf-8")

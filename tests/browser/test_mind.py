@@ -151,6 +151,7 @@ def test_buffers_and_modules_are_shown_and_what_changed_lights_up(pages: Pages, 
     expect(module(page, "memory").get_by_role("row", name="threshold 0")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_long_chunk_takes_few_lines_unless_all_of_it_is_asked_for(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "long.py", LONG)
     chunk, whole = buffer(page, "imaginal"), page.get_by_role("button", name="All of imaginal")
@@ -227,6 +228,7 @@ def test_the_trace_goes_back_and_says_why(pages: Pages, workbench: Served) -> No
     expect(page.get_by_role("list", name="Productions of top").get_by_role("listitem")).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_the_keyboard_alone_does_for_the_trace_and_the_productions(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "counting.py")
     open_tab(page, "Productions")
@@ -249,6 +251,7 @@ def test_the_keyboard_alone_does_for_the_trace_and_the_productions(pages: Pages,
     expect(page.get_by_role("button", name="Breakpoint on start_counting")).to_have_attribute("aria-pressed", "false")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_a_breakpoint_is_a_dot_that_can_be_seen(pages: Pages, workbench: Served, theme: str) -> None:
     page = opened(pages, workbench, "counting.py", theme=theme)
@@ -357,6 +360,7 @@ def test_a_mind_with_nothing_in_it_says_so(pages: Pages, workbench: Served) -> N
     expect(page.locator("#panel-memory")).to_have_text("This model has no declarative memory.")
 
 
+@pytest.mark.slow
 def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "long.py", "for n in range(60000):\n    print('line', n)\n")
     open_tab(page, "Productions")
@@ -382,6 +386,7 @@ def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
     expect(page.get_by_role("button", name="To the present")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "loops.py", LOOPS)
     open_tab(page, "Productions")
@@ -410,6 +415,7 @@ def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pa
     expect(page.get_by_role("region", name="Search of walker.vision").first).to_contain_text("feature:opening")
 
 
+@pytest.mark.slow
 def test_a_past_moment_is_explained_while_the_run_goes_on(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "doorway.py")
     open_tab(page, "Productions")
@@ -445,6 +451,7 @@ def build() -> Simulation:
 """
 
 
+@pytest.mark.slow
 def test_the_trace_tells_where_something_is_touched(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "bumps.py", BUMPS)
     open_tab(page, "Productions")

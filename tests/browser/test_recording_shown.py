@@ -68,6 +68,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
 
 
+@pytest.mark.slow
 @pytest.mark.scene
 def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before(pages: Pages, workbench: Served) -> None:
     name = recorded(workbench, "doorway.py")
@@ -95,6 +96,7 @@ def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before
     in_frame(page, recording)
 
 
+@pytest.mark.slow
 def test_from_a_recording_one_can_go_to_any_run_that_is_open(pages: Pages, workbench: Served) -> None:
     name = recorded(workbench, "counting.py")
     page = pages("counting.py", tab="runs")
@@ -112,6 +114,7 @@ def test_from_a_recording_one_can_go_to_any_run_that_is_open(pages: Pages, workb
     shows(page, "#time", "t = 0.05 s")
 
 
+@pytest.mark.slow
 def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two_drag_is_the_same_for_both(
     pages: Pages, workbench: Served
 ) -> None:
@@ -173,6 +176,7 @@ def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browse
         shows(page, "#status", "paused")
 
 
+@pytest.mark.slow
 def test_what_was_settled_does_not_come_back_with_a_reload(pages: Pages, workbench: Served) -> None:
     (workbench.folder / "unlucky.py").write_text(FAILS, encoding="utf-8")
     page = pages("unlucky.py", tab="buffers")

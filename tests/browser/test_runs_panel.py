@@ -50,6 +50,7 @@ def row(page: Page, name: str) -> Locator:
     return page.locator(f"tr[data-run='{name}']")
 
 
+@pytest.mark.slow
 def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Page, recordings: Path, two: list[str]) -> None:
     (recordings / "torn-20250101-101010-aaaa.sqlite").write_bytes(b"<img src=x onerror=alert(1)>" * 100)
     with Recording(recordings / "old-20250102-101010-aaaa.sqlite", {"kind": "program", "form": "actr3d recording 1"}):
@@ -84,6 +85,7 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     expect(present).to_contain_text("the model called stop()")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("chosen", [False, True])
 def test_a_small_window_lists_several_runs(page: Page, recordings: Path, two: list[str], chosen: bool) -> None:
     open_tab(page, "Runs")
@@ -111,6 +113,7 @@ Agent().run(1)
 """
 
 
+@pytest.mark.slow
 def test_a_recording_that_is_run_again_shows_how_far_it_is(page: Page, workbench: Served, recordings: Path) -> None:
     (workbench.folder / "half.py").write_text(HALF, encoding="utf-8")
     name = recorded(workbench, "half.py")
@@ -254,6 +257,7 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     expect(dialog).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_what_was_changed_while_a_run_went_on_is_told_beside_what_it_began_with(page: Page, two: list[str]) -> None:
     expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     page.click("#step")
@@ -269,6 +273,7 @@ def test_what_was_changed_while_a_run_went_on_is_told_beside_what_it_began_with(
     expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(re.compile(r"≠width0\.5.* → 0\.9 at 0\.01 s$"))
 
 
+@pytest.mark.slow
 def test_a_recording_is_compared_with_the_present_run_of_another_model(pages: Callable[..., Page], two: list[str]) -> None:
     page = pages("counting.py")
     expect(page.locator("#status")).to_have_text(re.compile("at its start"))
@@ -281,6 +286,7 @@ def test_a_recording_is_compared_with_the_present_run_of_another_model(pages: Ca
     expect(dialog.get_by_role("figure", name="walker speed").locator(".plot-of")).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_of_a_thousand_recordings_those_are_drawn_that_are_seen(pages: Callable[..., Page], workbench: Served, recordings: Path) -> None:
     name = recorded(workbench, "counting.py")
     copies = [recordings / f"many-20200101-{n // 60:02}{n % 60:02}00-aaaa.sqlite" for n in range(1000)]

@@ -67,6 +67,7 @@ def shown(workbench: Served, session: str, overlay: str) -> bool:
     return next(one["shown"] for one in told(workbench, session)["session"]["overlays"] if one["name"] == overlay)
 
 
+@pytest.mark.slow
 def test_viser_alone_has_all_controls_and_they_are_those_of_the_session(workbench: Served, page: Page, session: str) -> None:
     page.goto(f"{workbench.url}/viser/{session}/")
     expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
@@ -102,6 +103,7 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
     expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
 
 
+@pytest.mark.slow
 def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_loading_anew(workbench: Served, page: Page) -> None:
     held: list[Route] = []
     page.route("**/static/viser_shim.js", lambda route: held.append(route))
@@ -147,6 +149,7 @@ def test_a_browser_that_cannot_draw_in_3d_is_told_what_to_do(workbench: Served, 
     expect(page.locator(".scene-cover progress")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_where_the_processor_draws_there_are_no_shadows_and_edges_are_not_smoothed(workbench: Served, page: Page, session: str) -> None:
     lights: list[str] = []
 
@@ -198,6 +201,7 @@ def test_between_slow_pictures_of_a_hurried_run_it_rests(page: Page) -> None:
     assert page.evaluate(RESTING) == [[True, False, False], [True, True, False], [True, True, True], 0]
 
 
+@pytest.mark.slow
 def test_the_3d_view_draws_when_the_page_does_while_a_run_is_hurried(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = page.frame_locator("iframe[title='3D view']")
@@ -216,6 +220,7 @@ def test_the_3d_view_draws_when_the_page_does_while_a_run_is_hurried(pages: Call
     assert page.evaluate(draws, 0) is True
 
 
+@pytest.mark.slow
 def test_what_a_model_calls_its_things_is_text(workbench: Served, page: Page) -> None:
     evil = "<img src=x onerror=document.title='run'>"
     source = (

@@ -107,6 +107,7 @@ def drawing(page: Page) -> dict[str, Any]:
     )
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("time", ["0.00", "1.96", "2.00", "3.50"])
 def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page, time: str) -> None:
     page = ended
@@ -131,6 +132,7 @@ def test_what_happens_at_the_start_is_seen_whole(page: Page) -> None:
     assert left[1] >= NAMES
 
 
+@pytest.mark.slow
 def test_lanes_and_plots_tell_what_was_when(ended: Page) -> None:
     page = ended
     everything = "\n---\n".join(told(page, 5.0 / 8))
@@ -217,6 +219,7 @@ def test_going_back_and_forth(ended: Page) -> None:
     assert any(re.search(r"torso\w* -?[01]\.\d+ deg", text) for text in told(page, 5.8 / 8))  # it is wide enough not to turn
 
 
+@pytest.mark.slow
 def test_zoom_and_choice_of_rows(ended: Page) -> None:
     page = ended
     fit = page.get_by_role("button", name="Fit")
@@ -262,6 +265,7 @@ def test_zoom_and_choice_of_rows(ended: Page) -> None:
     until(page, lambda: any("contact force at" in text for text in told(page, 0.5)))  # once the curve has come
 
 
+@pytest.mark.slow
 def test_pictures(ended: Page, tmp_path: Path) -> None:
     page = ended
 
@@ -290,6 +294,7 @@ def test_pictures(ended: Page, tmp_path: Path) -> None:
     assert int.from_bytes(png[16:20]) > 2000  # sharp enough to print [pixels across]
 
 
+@pytest.mark.slow
 def test_what_a_model_says_is_text(pages: Callable[..., Page], workbench: Served) -> None:
     """Also of a program whose models run one after another, whose times follow each other on the axis."""
     (workbench.folder / "twice.py").write_text(
@@ -341,6 +346,7 @@ def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None
     assert counts["calls"] < 3 * 900
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("end", "width"), [(1, 400), (12.5, 1100), (3, 1700), (0.02, 900)])
 def test_no_text_of_the_axis_is_cut(page: Page, end: float, width: int) -> None:
     shows(page, "#time", "t =")
@@ -391,6 +397,7 @@ def test_curves_have_every_tick_after_a_restart_and_a_reload(ended: Page) -> Non
     until(page, lambda: page.evaluate(EVERY_TICK))
 
 
+@pytest.mark.slow
 def test_a_short_run_fits_and_the_slider_keeps_its_keys(pages: Callable[..., Page]) -> None:
     page, other = pages("counting.py"), pages("counting.py")
     shows(page, "#status", "at its start")

@@ -93,6 +93,7 @@ def blank(browser: Browser, workbench: Served) -> Iterator[Page]:
         yield page
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("width", [0.4, 0.8])
 @pytest.mark.parametrize("view", ["follow", "free"])
 def test_walker_and_doorway_are_seen_well_from_the_start_to_behind_it(blank: Page, view: str, width: float) -> None:
@@ -146,6 +147,7 @@ def overlap(a: dict[str, float], b: dict[str, float]) -> bool:
     return across and a["top"] < b["top"] + b["height"] and b["top"] < a["top"] + a["height"]
 
 
+@pytest.mark.slow
 def test_labels_never_cover_each_other_or_a_head_or_leave_the_picture(blank: Page) -> None:
     chance, size, found = random.Random(1), {"width": 600, "height": 400}, 0
     for _ in range(40):
@@ -320,6 +322,7 @@ WATCH_RESTART = """() => {
 """Notes of each picture how far the next shape is from where the body is said to be, and how many shapes there are."""
 
 
+@pytest.mark.slow
 def test_no_picture_mixes_two_runs(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)
@@ -338,6 +341,7 @@ def test_no_picture_mixes_two_runs(pages: Callable[..., Page]) -> None:
     assert max(one["at"] for one in told) < 0.05, told
 
 
+@pytest.mark.slow
 def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)
@@ -393,6 +397,7 @@ def part_seen(page: Page, frame: Frame, body: str) -> float:
     return float((np.abs(pictures[0] - pictures[1]).max(axis=2) > 12).mean())
 
 
+@pytest.mark.slow
 def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)
@@ -408,6 +413,7 @@ def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(page
     assert part_seen(page, frame, "/bodies/walker") < 0.5 * plain
 
 
+@pytest.mark.slow
 def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_own(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)

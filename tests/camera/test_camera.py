@@ -170,6 +170,7 @@ def test_more_extents_than_there_is_room_for_at_first() -> None:
     assert len(seen(fence, rows=5)[1].as_array()) == 5 * 90
 
 
+@pytest.mark.slow
 def test_no_memory_is_lost() -> None:
     mj_model, mj_data = compiled(BALL)
     camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=10))

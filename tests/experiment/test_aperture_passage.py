@@ -54,6 +54,7 @@ def angles(model: Any, apertures: tuple[float, ...], **given: Any) -> list[float
 # -- people
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("group", ["small", "large"])
 @pytest.mark.parametrize("condition", ["normal", "fast"])
 def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, group: str, condition: str) -> None:
@@ -68,6 +69,7 @@ def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, 
     assert wider == pytest.approx(0, abs=0.1)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("group", "least", "most"), [("small", 0.055, 0.075), ("large", 0.06, 0.09)])
 @pytest.mark.parametrize("aperture", [0.4, 0.45])
 def test_hips_that_turn_leave_the_margin_where_it_is_narrow(model: Any, group: str, least: float, most: float, aperture: float) -> None:
@@ -97,12 +99,14 @@ def test_it_walks_at_the_speed_it_was_given(model: Any) -> None:
     assert passed(model, aperture=0.8, speed=0.9).speed_m_s == pytest.approx(0.9, abs=0.01)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("speed", [0.3, 0.6, 0.9])
 def test_who_walks_slowly_has_turned_in_time_too(model: Any, speed: float) -> None:
     """As far as it can, where it must: it used to stop before the wall where it had not done so in time."""
     assert passed(model, aperture=0.37, group="large", speed=speed).wall_angle_deg == pytest.approx(80, abs=1)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("speed", [0.1, 0.3])
 def test_who_walks_slowly_turns_in_time_too(model: Any, speed: float) -> None:
     """1.6 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
@@ -176,6 +180,7 @@ def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> Pas
     return simulation.result()
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(
     ("at", "to", "given"),
     [
@@ -196,6 +201,7 @@ def test_who_notices_late_touches_nothing(model: Any, at: float, to: float, give
         assert shrunk(model, at, to, seed, aperture=0.6, **given).contacts == 0
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("at", "given"), [(6.45, {}), (6.6, {"speed": 0.5}), (6.0, {"variant": "replication"})])
 def test_who_notices_that_there_is_no_way_through_stops(model: Any, at: float, given: dict[str, Any]) -> None:
     for seed in (1, 2):
@@ -203,6 +209,7 @@ def test_who_notices_that_there_is_no_way_through_stops(model: Any, at: float, g
         assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("at", "speed"), [(6.0, None), (6.3, None), (6.4, 0.5), (5.3, 3.0)])
 def test_who_notices_in_time_turns_where_it_stands_and_goes_on(model: Any, at: float, speed: float | None) -> None:
     result = shrunk(model, at, 0.38, 2, aperture=0.6, speed=speed)
@@ -210,6 +217,7 @@ def test_who_notices_in_time_turns_where_it_stands_and_goes_on(model: Any, at: f
     assert (result.wall_angle_deg or 0) > 54
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("aperture", "first", "then"), [(0.3, 0.3, 2.0), (0.35, 0.3, None), (0.3, 0.5, 3.0)])
 def test_who_is_to_walk_faster_close_before_it_still_turns_in_time(model: Any, aperture: float, first: float, then: float | None) -> None:
     """The turn that is under way gets faster, too, and it stands still earlier."""
@@ -244,12 +252,14 @@ def test_who_is_held_gives_up(model: Any) -> None:
 # -- the replication
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("aperture", [0.55, 0.7])
 def test_the_replication_turns_before_any_doorway(model: Any, aperture: float) -> None:
     turns = [passed(model, seed, variant="replication", aperture=aperture).logged_angle_deg or 0 for seed in range(1, 6)]
     assert sum(turns) / len(turns) == pytest.approx(18, abs=4)
 
 
+@pytest.mark.slow
 def test_the_replication_begins_where_the_original_did(model: Any) -> None:
     """Source: 1.17 m (small) and 1.44 m (large) before the wall, on average over apertures (human-data)."""
     for group, distance in (("small", 1.17), ("large", 1.44)):
@@ -299,6 +309,7 @@ def test_renaming_every_object_changes_no_byte(model: Any, variant: str) -> None
     assert not any("aperture" in line.replace("aperture_passage", "") for line in lines)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("variant", ["human", "replication"])
 def test_a_seed_gives_the_same_bytes_however_it_is_run(model: Any, variant: str) -> None:
     straight, stepped, wandering = (scene_with(model, ("floor", "aperture", "walker"), variant) for _ in range(3))
@@ -322,6 +333,7 @@ def test_another_seed_is_another_trial(model: Any) -> None:
     assert len(results) > 1
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("variant", ["human", "replication"])
 def test_it_is_recorded_and_replayed(variant: str, tmp_path: Path, capsys: Any) -> None:
     recording = tmp_path / "run"
@@ -395,6 +407,7 @@ def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
 # -- a speed that changes
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("variant", ["human", "replication"])
 @pytest.mark.parametrize(("first", "then"), [(None, 0.6), (0.8, 1.7), (0.8, None)])
 def test_who_is_to_walk_at_another_speed_does_on_the_way(model: Any, variant: str, first: float | None, then: float | None) -> None:
@@ -441,6 +454,7 @@ def test_a_run_in_which_the_speed_changed_goes_back_and_on_with_the_same_bytes(m
     assert outcome(wandering) == outcome(straight)
 
 
+@pytest.mark.slow
 def test_a_run_in_which_the_speed_changed_is_replayed(tmp_path: Path) -> None:
     text = FILE.read_text(encoding="utf-8")
     with RunLimits(seed=1):

@@ -107,6 +107,7 @@ def test_odd_values_are_recorded_as_the_trace_tells_them(tmp_path: Path) -> None
     assert json.loads(first.to_json())["data"]["word"].startswith("größe ")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("wait", [0.6, 1.7])
 def test_a_killed_run_leaves_all_but_the_last_second(wait: float, tmp_path: Path) -> None:
     path = tmp_path / "run"
@@ -199,6 +200,7 @@ LIMIT = SLOW + "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1_00
 FULL = SLOW + "recording._writer._file.execute('PRAGMA max_page_count = 250')"
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("before", "reason"), [(LIMIT, r""), (FULL, "the disk is full")])
 def test_a_full_disk_stops_the_run_and_spoils_nothing(before: str, reason: str, tmp_path: Path) -> None:
     path = tmp_path / "run"
@@ -436,6 +438,7 @@ with simulation.record({path!r}):
 """
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("size", [1_000, 20_000, 60_000])
 def test_a_run_that_begins_on_a_full_disk_leaves_no_empty_recording(size: int, tmp_path: Path) -> None:
     path = tmp_path / "runs" / "run"

@@ -212,6 +212,7 @@ CHANGES = [
 ]
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(("change", "message"), CHANGES)
 def test_a_replay_says_where_it_differs(change: str, message: str, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
@@ -348,6 +349,7 @@ def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, 
     assert '"text": "moreend..."' in capsys.readouterr().out
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("leave", ["1 / 0", "raise SystemExit(0)", "raise BaseException"])
 def test_a_replay_that_fails_differs(
     leave: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -527,6 +529,7 @@ ENDS = [
 ]
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(("text", "name", "then", "other"), ENDS)
 def test_a_replay_compares_how_the_run_ended(
     text: str, name: str, then: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

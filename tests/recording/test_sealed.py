@@ -164,6 +164,7 @@ def test_a_replay_from_the_folder_itself_as_a_module_does_not_import_from_it(tmp
     assert not trap.exists()
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("name", ["a\\u0000b.py", "", "/", "x" * 5000])
 def test_a_file_with_an_impossible_name_ends_in_no_traceback(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded(tmp_path / "own", BUILT)

@@ -29,6 +29,7 @@ def build() -> Simulation:
 PROGRAM = "import os, sys, threading, time\nprint('one')\nprint('two', end='')\n{end}\n"
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("text", [PROGRAM, BUILT], ids=["program", "built"])
 @pytest.mark.parametrize(
     ("end", "code"),

@@ -58,6 +58,7 @@ def taken(desk: Desk, folder: Path, name: str) -> Path:
     return away / "taken.sqlite"
 
 
+@pytest.mark.slow
 def test_what_is_taken_of_a_run_that_has_ended_is_replayed_while_its_session_is_open(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.3})
     events = ended(talk)["events"]

@@ -57,6 +57,7 @@ def all_end(processes: set[int]) -> None:
         time.sleep(0.02)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_nothing_stays_behind(tmp_path: Path, sign: signal.Signals) -> None:
     with served(tmp_path / "models") as running:
@@ -78,6 +79,7 @@ while mark.exists():
 """
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL])
 def test_a_recording_that_is_run_again_ends_with_the_server(tmp_path: Path, sign: signal.Signals) -> None:
     with served(tmp_path / "models") as running:

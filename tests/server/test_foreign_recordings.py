@@ -113,6 +113,7 @@ def test_nothing_can_be_had_of_them_but_the_file_and_a_clear_error(desk: Desk, h
     assert desk.ask(hostile, "/api/recordings/linked").status == 404
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     "scene",
     [

@@ -92,6 +92,7 @@ def test_a_child_that_holds_the_wire_does_not_hold_up_the_end(desk: Desk, tmp_pa
     runs_again(talk, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_model_that_ends_the_process_all_come_from_ends_all_runs_and_no_more(tmp_path: Path) -> None:
     desk = Desk()
     try:
@@ -131,6 +132,7 @@ def test_a_folder_that_is_gone(desk: Desk, tmp_path: Path) -> None:
     runs_again(talk, tmp_path)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     "does",
     [

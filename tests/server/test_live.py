@@ -204,6 +204,7 @@ server_app = make_app(Path("/tmp"), GATE)
 schema: Any = schemathesis.openapi.from_dict(server_app.openapi())
 
 
+@pytest.mark.daily(8)
 @schema.parametrize()
 @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 def test_no_input_gives_an_error_of_the_server(case: Any, server: Served) -> None:
@@ -225,6 +226,7 @@ HOSTILE = [
 PLACES = ["/api/sessions/{}", "/api/recordings/{}", "/api/recordings/{}/file", "/api/recordings/{}/curves", "/viser/{}/", "/static/{}"]
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize("path", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_paths_are_refused_on_every_route(path: str, server: Served) -> None:
     told = [

@@ -177,6 +177,7 @@ def test_the_planned_posture_is_what_is_commanded_until_it_is_there(desk: Desk, 
     assert place > 0
 
 
+@pytest.mark.slow
 def test_who_looks_changes_nothing(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
     desk.do(draw(talk, ALL))

@@ -52,6 +52,7 @@ WRONG: list[Any] = [
 ]
 
 
+@pytest.mark.daily(6)
 @pytest.mark.parametrize("text", WRONG, ids=range(len(WRONG)))
 def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) -> None:
     async def talk() -> None:
@@ -100,6 +101,7 @@ def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(s
     assert server.post(f"/api/sessions/{session}/say", {"say": {"type": "speed", "factor": None}}).status_code == 200
 
 
+@pytest.mark.slow
 def test_who_asks_without_end_and_reads_nothing_is_sent_away(server: Served, session: str) -> None:
     async def talk() -> None:
         bearer = {"authorization": f"Bearer {server.token}"}

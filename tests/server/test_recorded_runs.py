@@ -52,6 +52,7 @@ def agrees(path: Path) -> bool:
         return replay(recorded).difference is None
 
 
+@pytest.mark.slow
 def test_the_passage_of_an_aperture_is_measured_recorded_and_replayed(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
     assert talk.state["result"] is None
@@ -74,6 +75,7 @@ def test_the_aperture_of_the_model_changes_while_it_runs(desk: Desk, tmp_path: P
     assert agrees(recording(desk, talk))
 
 
+@pytest.mark.slow
 def test_a_run_that_has_ended_is_over_there_whenever_one_comes_back(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.3})
     ended(talk)

@@ -14,6 +14,7 @@ DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
 COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("wanted", "told"),
     [
@@ -38,6 +39,7 @@ def test_what_there_is_not_is_refused_before_anything_runs(desk: Desk, tmp_path:
     talk.until("paused", tick=2)
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(
     ("wanted", "told"),
     [

@@ -64,6 +64,7 @@ def gone(pid: int) -> bool:
         return True
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     "does",
     [
@@ -118,6 +119,7 @@ def test_a_program_that_exits_leaves_its_run(desk: Desk, tmp_path: Path, does: s
     runs_again(talk, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_loop_that_prints_until_memory_is_full_is_said_to_have_used_too_much(tmp_path: Path) -> None:
     desk = Desk(memory=300)
     try:
@@ -148,6 +150,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
     assert explained.error == "the run has ended"
 
 
+@pytest.mark.daily(5)
 @pytest.mark.parametrize(
     ("does", "told"),
     [
@@ -179,6 +182,7 @@ def test_a_worker_that_ends_is_told_of(desk: Desk, tmp_path: Path, does: str, to
     runs_again(talk, tmp_path)
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(
     "does",
     [
@@ -267,6 +271,7 @@ def test_texts_with_half_characters_are_told(desk: Desk, tmp_path: Path) -> None
     talk.wait_for_notice("half \\ud800 a character")
 
 
+@pytest.mark.slow
 def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behind() -> None:
     ours, theirs = socket.socketpair()
     ours.close()

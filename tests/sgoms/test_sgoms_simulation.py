@@ -73,6 +73,7 @@ def walking() -> Simulation:
     return Simulation(scene_of("walker"), {"walker": module.Walker}, seed=3, trace="all")
 
 
+@pytest.mark.slow
 def test_seek_goes_back_into_an_interruption_and_on_from_there_exactly() -> None:
     simulation = walking()
     digests = [digest(simulation)]
@@ -100,6 +101,7 @@ def test_seek_goes_back_into_an_interruption_and_on_from_there_exactly() -> None
             assert digest(simulation) == digests[later]
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", ["mind alone", "with a body"])
 def test_a_recording_is_replayed_byte_for_byte(kind: str, tmp_path: Path) -> None:
     text = f"{HEAD}class Agent(Base):\n    DM = Memory(SGOMS.b_DM)\nworld = World()\nworld.agent = Agent()\n"

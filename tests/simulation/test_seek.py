@@ -43,6 +43,7 @@ def first_run(ticks: int = 200, simulation: Simulation | None = None) -> tuple[S
     return simulation, digests
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("answers", [10_000, 7, 0], ids=["all answers", "first answers", "no answers"])
 def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(timeline, "MOST_ANSWERS", answers)

@@ -250,6 +250,7 @@ def test_noise_of_delays_comes_from_the_seed() -> None:
     assert sum(first) / 20 == near(0.1, abs=0.015)
 
 
+@pytest.mark.slow
 def test_errors_come_at_their_rate() -> None:
     failed = [arrivals(ONCE, ", error_rate=0.3", seed)[0][1]["failed"] for seed in range(200)]
     assert 40 <= sum(failed) <= 82  # 60 are expected; 3.4 standard deviations

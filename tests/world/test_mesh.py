@@ -184,6 +184,7 @@ def test_parts_hold_a_ball_inside_a_bowl(tmp_path: Path) -> None:
     assert world.mj_data.body("ball").xpos[2] == near(1.0, abs=0.03), "on the bottom inside, 0.1 below the origin of the bowl"
 
 
+@pytest.mark.slow
 def test_parts_are_the_same_in_every_process(tmp_path: Path) -> None:
     path = written(tmp_path, creation.annulus(0.3, 0.5, 0.4, sections=12), "stl")
     code = (
