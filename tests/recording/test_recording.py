@@ -196,7 +196,7 @@ def test_a_reader_does_not_hold_up_the_end(tmp_path: Path) -> None:
 
 
 SLOW = "import time; simulation.observe(lambda seen: time.sleep(0.002)); "
-LIMIT = SLOW + "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, 1_000_000))"
+LIMIT = SLOW + "import resource, sys; sys.dont_write_bytecode = True; resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, 1_000_000))"
 FULL = SLOW + "recording._writer._file.execute('PRAGMA max_page_count = 250')"
 
 
@@ -428,6 +428,7 @@ def test_each_second_of_simulated_time_is_written_however_soon_it_comes(tmp_path
 
 FULL_DISK = """
 import resource, sys
+sys.dont_write_bytecode = True
 sys.path.insert(0, {tests!r})
 from tests.helpers.walkers import driving
 simulation = driving()

@@ -164,6 +164,25 @@ def test_a_copy_that_cannot_be_written_is_told(desk: Desk, tmp_path: Path) -> No
     assert answers["replay.html"].body == b'{"error":"it cannot be read or written: File too large"}'
 
 
+def test_a_disk_that_was_full_leaves_no_broken_bytecode(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python 3.11 leaves half a file of bytecode on a full disk, and fails whenever it reads it again."""
+    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(tmp_path / "bytecode"))
+    (tmp_path / ".workbench" / "recordings").mkdir(parents=True)
+    written(tmp_path, "m", firing(3))
+    desk = Desk()
+    try:
+        assert download(desk, tmp_path, "m", "events.csv").status == 200
+        zygote = desk.workers._zygote
+        assert zygote is not None
+        limits = resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE)
+        resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, (1_000, limits[1]))
+        assert download(desk, tmp_path, "m", "replay.html").status == 409
+        resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, limits)
+        assert download(desk, tmp_path, "m", "replay.html").status == 200
+    finally:
+        desk.close()
+
+
 def test_what_is_no_recording_is_not_copied(desk: Desk, tmp_path: Path) -> None:
     path = tmp_path / "m.sqlite"
     path.write_bytes(b"no recording at all" * 100)
