@@ -59,7 +59,7 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: An
     assert problems == []
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_what_asks_and_compares_can_be_read_named_and_reached(pages: Callable[..., Page], workbench: Served, theme: Any) -> None:
     file = workbench.folder / f"asks_{theme}.py"

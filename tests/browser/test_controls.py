@@ -252,6 +252,7 @@ def test_after_a_click_the_keys_belong_to_the_page_and_after_a_key_to_what_has_t
     expect(page.locator("#aperture")).to_have_value(page.locator("#aperture").get_attribute("min") or "")
 
 
+@pytest.mark.slow
 def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")

@@ -60,6 +60,7 @@ def unsaved(page: Page) -> Any:
     return expect(page.locator(".file-status .state"))
 
 
+@pytest.mark.slow
 def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     path = written("loads.py", MIND.read_text(encoding="utf-8"))
     page = pages("loads.py")
@@ -141,6 +142,7 @@ def test_what_a_run_says_is_marked_at_its_lines(pages: Callable[..., Page], writ
     shows(page, ".problems", "No problems")
 
 
+@pytest.mark.slow
 def test_an_error_scrolls_its_line_into_view_and_leaves_the_cursor_where_it_is(
     pages: Callable[..., Page], written: Callable[[str, str], Path]
 ) -> None:

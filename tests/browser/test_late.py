@@ -117,6 +117,7 @@ def edit(page: Page, model: str) -> None:
 # -- what the run says
 
 
+@pytest.mark.slow
 def test_what_is_set_twice_before_the_run_has_answered_counts_twice(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
@@ -141,6 +142,7 @@ def test_what_is_set_twice_before_the_run_has_answered_counts_twice(pages: Calla
         expect(dots.nth(n)).to_have_attribute("aria-pressed", "true")
 
 
+@pytest.mark.slow
 def test_a_step_is_made_where_the_user_has_gone_to_though_the_run_is_still_on_its_way(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     wire = Wire(page)

@@ -77,7 +77,7 @@ def test_the_manual_is_complete_and_loads_nothing_from_elsewhere(site: Path) -> 
     assert {f"workbench/{panel}/index.html" for panel in [*panels, "scene", "timeline"]} <= texts.keys()
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_manual_can_be_read_and_searched_offline(opened: Callable[..., tuple[Page, str]], theme: Any) -> None:
     page, manual = opened(theme)

@@ -315,6 +315,7 @@ def test_the_conflict_set_and_a_failed_retrieval(pages: Pages, workbench: Served
     expect(retrieval.get_by_role("columnheader", name="base level")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_memory_is_searched_and_sorted(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "base_level.py")
     open_tab(page, "Memory")
@@ -400,6 +401,7 @@ def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> Non
     expect(page.locator("#reasons-panel")).to_contain_text("The run was stopped")
 
 
+@pytest.mark.slow
 def test_the_walker_has_a_result_a_body_schema_and_has_seen_an_opening(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "aperture_passage.py")
     page.click("#run")

@@ -21,6 +21,7 @@ def sessions(workbench: Served) -> list[str]:
     return [one["id"] for one in workbench.get("/api/sessions").json()["sessions"]]
 
 
+@pytest.mark.slow
 def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, workbench: Served) -> None:
     name = recorded(workbench, "doorway.py")
     page = pages("counting.py", tab="runs")

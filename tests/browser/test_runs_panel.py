@@ -225,6 +225,7 @@ def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], 
     assert (recordings / f"{name}.sqlite").exists()
 
 
+@pytest.mark.slow
 def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     open_tab(page, "Runs")
     row(page, two[0]).locator("input").check()

@@ -88,6 +88,7 @@ def test_viser_alone_has_all_controls_and_they_are_those_of_the_session(workbenc
     assert told(workbench, session)["session"]["controlled_by"] == "3D view"  # who has stepped
 
 
+@pytest.mark.slow
 def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, page: Page, session: str) -> None:
     page.goto(f"{workbench.url}/viser/{session}/?panel=hidden&darkMode")
     expect(page.locator("canvas").first).to_be_visible(timeout=PATIENCE)

@@ -377,6 +377,7 @@ EVERY_TICK = """async () => {
 """Whether the curves have a value of each tick, once."""
 
 
+@pytest.mark.slow
 def test_curves_have_every_tick_after_a_restart_and_a_reload(ended: Page) -> None:
     page = ended
     until(page, lambda: page.evaluate(EVERY_TICK))

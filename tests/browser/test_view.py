@@ -226,6 +226,7 @@ def drag(page: Page, x: float, y: float, button: Any = "left") -> None:
     page.wait_for_timeout(200)
 
 
+@pytest.mark.slow
 def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)

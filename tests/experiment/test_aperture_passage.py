@@ -89,6 +89,7 @@ def test_hips_turn_with_the_shoulders_and_the_eye_looks_ahead(model: Any) -> Non
     assert body.get("pose").heading == pytest.approx(0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_wide_shoulders_turn_more_at_equal_width(model: Any) -> None:
     small, large = (angles(model, (0.45, 0.55), group=group, noise=0.0) for group in ("small", "large"))
     assert all(b > a + 5 for a, b in zip(small, large, strict=True))
@@ -106,7 +107,7 @@ def test_who_walks_slowly_has_turned_in_time_too(model: Any, speed: float) -> No
     assert passed(model, aperture=0.37, group="large", speed=speed).wall_angle_deg == pytest.approx(80, abs=1)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.1, 0.3])
 def test_who_walks_slowly_turns_in_time_too(model: Any, speed: float) -> None:
     """1.6 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
@@ -237,6 +238,7 @@ def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> Non
     assert simulation.result().outcome == "passed"
 
 
+@pytest.mark.slow
 def test_a_doorway_whose_edges_are_out_of_sight_is_not_doubted(model: Any) -> None:
     """Where little room is left, the eye is beside the middle, and looks again until the doorway's edges are beside it."""
     for seed in range(1, 7):
@@ -442,6 +444,7 @@ def test_a_speed_taken_back_before_it_walks_is_that_of_its_condition(model: Any)
     assert (simulation.result().outcome, simulation.result().speed_m_s) == ("passed", pytest.approx(1.29, abs=0.02))
 
 
+@pytest.mark.slow
 def test_a_run_in_which_the_speed_changed_goes_back_and_on_with_the_same_bytes(model: Any) -> None:
     straight, wandering = (scene_with(model, ("floor", "aperture", "walker"), "human") for _ in range(2))
     for simulation in (straight, wandering):

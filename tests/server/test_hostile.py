@@ -132,7 +132,7 @@ def test_a_folder_that_is_gone(desk: Desk, tmp_path: Path) -> None:
     runs_again(talk, tmp_path)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "does",
     [
@@ -187,6 +187,7 @@ def test_a_flood_of_warnings_is_bounded(desk: Desk, tmp_path: Path) -> None:
     runs_again(talk, tmp_path)
 
 
+@pytest.mark.slow
 def test_memory_is_watched_where_the_system_does_not_limit_it() -> None:
     text = """
 from workbench.worker import memory

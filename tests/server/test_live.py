@@ -340,6 +340,7 @@ def test_nonsense_on_the_websocket_is_told_and_hurts_nobody(server: Served) -> N
     server.post(f"/api/sessions/{name}/close")
 
 
+@pytest.mark.slow
 def test_a_frozen_browser_holds_up_nobody(server: Served) -> None:
     (server.folder / "busy.py").write_text(
         "from actr3d.actr import *\nclass Busy(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('n:0')\n"

@@ -94,6 +94,7 @@ def test_an_endless_loop_is_found_and_stopped(desk: Desk, tmp_path: Path, does: 
     runs_again(talk, tmp_path)
 
 
+@pytest.mark.slow
 def test_code_that_lets_nothing_else_happen_is_said_to_be_busy(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("sum(range(10**12))"), run=True, wait="running")
     talk.wait(lambda: talk.facts["stuck"] == {"file": None, "line": None, "function": ""})

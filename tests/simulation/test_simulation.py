@@ -502,6 +502,7 @@ def test_nothing_is_asked_of_a_body_that_nobody_wants(asked: Counter[str]) -> No
     assert isinstance(simulation.minds["walker"], (ACTR, Model))
 
 
+@pytest.mark.slow
 def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(timeline, "MOST_STATES", 8)
     monkeypatch.setattr(timeline, "MOST_ANSWERS", 100)
