@@ -20,8 +20,6 @@ from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
-pytestmark = pytest.mark.long
-
 FILE = Path(__file__).parents[2] / "models" / "aperture_passage.py"
 WALKING = 5.5
 """When it has learned and judged, and walks [s]."""
