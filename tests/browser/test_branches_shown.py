@@ -64,6 +64,7 @@ def test_a_run_that_goes_another_way_after_its_end_is_listed_as_such_at_once(pag
     expect(page.locator("tr[data-run]", has_text="branch at 2.00 s")).to_contain_text("the model called stop()")
 
 
+@pytest.mark.slow
 def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages()
     shows(page, "#status", "at its start")

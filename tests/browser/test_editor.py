@@ -288,6 +288,7 @@ def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str)
     expect(page.get_by_label("Model", exact=True)).to_have_value(f"new {choice[-5:]}.py")
 
 
+@pytest.mark.slow
 def test_files_are_copied_renamed_and_deleted_while_one_runs(
     pages: Callable[..., Page], workbench: Served, written: Callable[[str, str], Path]
 ) -> None:

@@ -64,6 +64,7 @@ def restless(trace: str = "all") -> Simulation:
     return Simulation(scene, {"walker": Restless, "other": Restless}, seed=3, trace=trace)
 
 
+@pytest.mark.slow
 def test_any_past_time_comes_back_exactly() -> None:
     simulation = restless()
     digests = [digest(simulation)]

@@ -12,8 +12,8 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import closing
+from collections.abc import Generator, Iterator
+from contextlib import closing, contextmanager
 from io import FileIO
 from pathlib import Path
 
@@ -146,22 +146,30 @@ def test_a_copy_that_nobody_waits_for_any_more_is_given_up(desk: Desk, tmp_path:
         assert b"nobody waits for it any more" in desk.do(left(holder)).body
 
 
-def test_a_copy_that_cannot_be_written_is_told(desk: Desk, tmp_path: Path) -> None:
-    (tmp_path / ".workbench" / "recordings").mkdir(parents=True)
+@contextmanager
+def nearly_full_disk(desk: Desk, room: int) -> Generator[None]:
+    """Lets no worker write a file of more than `room` bytes."""
     zygote = desk.workers._zygote
     assert zygote is not None
+    limits = resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, (room, limits[1]))
+    try:
+        yield
+    finally:
+        resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, limits)
+
+
+def test_a_copy_that_cannot_be_written_is_told(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / ".workbench" / "recordings").mkdir(parents=True)
     with Recording(tmp_path / ".workbench" / "recordings" / "m.sqlite", {"kind": "program", "text": "x" * 200_000}):
-        limits = resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE)
-        answers: dict[str, Answer] = {}
-        for form, room in {"sqlite": 50_000, "replay.html": 1_000}.items():
-            resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, (room, limits[1]))  # as on a disk that is nearly full
-            try:
-                answers[form] = download(desk, tmp_path, "m", form)
-            finally:
-                resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, limits)
-    assert [answer.status for answer in answers.values()] == [409, 409]
-    assert b"the recording cannot be copied: " in answers["sqlite"].body
-    assert answers["replay.html"].body == b'{"error":"it cannot be read or written: File too large"}'
+        assert download(desk, tmp_path, "m", "events.csv").status == 200  # all that a worker needs is loaded now
+        with nearly_full_disk(desk, 50_000):
+            copy = download(desk, tmp_path, "m", "sqlite")
+        with nearly_full_disk(desk, 1_000):
+            page = download(desk, tmp_path, "m", "replay.html")
+    assert (copy.status, page.status) == (409, 409)
+    assert b"the recording cannot be copied: " in copy.body
+    assert page.body == b'{"error":"it cannot be read or written: File too large"}'
 
 
 def test_a_disk_that_was_full_leaves_no_broken_bytecode(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -172,12 +180,8 @@ def test_a_disk_that_was_full_leaves_no_broken_bytecode(tmp_path: Path, monkeypa
     desk = Desk()
     try:
         assert download(desk, tmp_path, "m", "events.csv").status == 200
-        zygote = desk.workers._zygote
-        assert zygote is not None
-        limits = resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE)
-        resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, (1_000, limits[1]))
-        assert download(desk, tmp_path, "m", "replay.html").status == 409
-        resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, limits)
+        with nearly_full_disk(desk, 1_000):
+            assert download(desk, tmp_path, "m", "replay.html").status == 409
         assert download(desk, tmp_path, "m", "replay.html").status == 200
     finally:
         desk.close()

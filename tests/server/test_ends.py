@@ -79,7 +79,7 @@ while mark.exists():
 """
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL])
 def test_a_recording_that_is_run_again_ends_with_the_server(tmp_path: Path, sign: signal.Signals) -> None:
     with served(tmp_path / "models") as running:

@@ -157,6 +157,7 @@ def test_a_ball_falls_into_a_ring_of_parts_lies_on_its_hull_and_passes_no_collis
     assert rest(tmp_path, "none") == near(0.1, abs=5e-3)
 
 
+@pytest.mark.slow
 def test_parts_hold_a_ball_inside_a_bowl(tmp_path: Path) -> None:
     outer, inner = creation.cylinder(0.5, 0.4, sections=16), creation.cylinder(0.4, 0.4, sections=16)
     # A bowl by hand: walls outside and inside, a rim between the two, a bottom for each.

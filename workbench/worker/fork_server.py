@@ -99,6 +99,7 @@ def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int],
 
     pid = os.fork()
     if pid == 0:
+        sys.dont_write_bytecode = True  # on a full disk, Python leaves half a file of it, and fails to read it ever after
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         for descriptor in pipe:

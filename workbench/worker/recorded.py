@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import resource
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -54,7 +53,6 @@ def make(channel: Channel) -> None:
     paths, to = [Path(path) for path in start.recordings], Path(start.to)
 
     def made() -> bytes:
-        sys.dont_write_bytecode = True  # Python would leave half a file of it where the limit is reached
         room = max(LEAST_ROOM, ROOM * sum(path.stat().st_size for path in paths))
         soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (room if soft == resource.RLIM_INFINITY else min(room, soft), hard))
