@@ -6,7 +6,7 @@ import asyncio
 from pathlib import Path
 from typing import Any
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, ModelFileError
 from workbench.files import ModelFolder
 from workbench.jobs import doing
 from workbench.listing import Listing
@@ -112,7 +112,11 @@ class Sessions:
         """
         where = self.folder.locate(model)
         self.folder.read(model)
-        return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run), real_time=real_time)
+        try:
+            return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run), real_time=real_time)
+        except ModelFileError:
+            self.folder.read(model)  # raises the error of a file that does not exist, if it was renamed or deleted in the meantime
+            raise
 
     async def beginning(self, recording: str) -> Beginning:
         """Returns what a recorded run began with; its code is not executed.

@@ -14,7 +14,7 @@ from actr3d.runner.model_factory import build
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
-from workbench.files import ModelFolder
+from workbench.files import ModelFile, ModelFolder, NoSuchFileError
 from workbench.session import Session
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -497,3 +497,18 @@ def test_settings_of_a_parameter_that_has_another_name_now_are_said_to_be_wrong(
     talk.say("restart", settings={"gap": 0.7})
     talk.wait(lambda: talk.session.run == 2)
     assert talk.facts["settings"] == {"gap": 0.7}
+
+
+def test_a_file_that_is_deleted_while_its_session_begins_is_said_not_to_exist(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read_and_delete(folder: ModelFolder, path: str) -> ModelFile:
+        found = read(folder, path)
+        (tmp_path / path).unlink()
+        return found
+
+    read = ModelFolder.read
+    monkeypatch.setattr(ModelFolder, "read", read_and_delete)
+    (tmp_path / "m.py").write_text("print(1)\n", encoding="utf-8")
+    with pytest.raises(NoSuchFileError, match="'m.py'"):
+        desk.do(desk.sessions(tmp_path).open("m.py", {}, seed=1, record=False, run=False))
