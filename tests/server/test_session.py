@@ -510,5 +510,5 @@ def test_a_file_that_is_deleted_while_its_session_begins_is_said_not_to_exist(
     read = ModelFolder.read
     monkeypatch.setattr(ModelFolder, "read", read_and_delete)
     (tmp_path / "m.py").write_text("print(1)\n", encoding="utf-8")
-    with pytest.raises(NoSuchFileError, match="'m.py'"):
+    with pytest.raises(NoSuchFileError, match=r"'m\.py'"):
         desk.do(desk.sessions(tmp_path).open("m.py", {}, seed=1, record=False, run=False))
