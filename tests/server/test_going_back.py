@@ -249,7 +249,7 @@ def test_every_answer_is_that_of_its_moment_for_all_tutorial_models(desk: Desk, 
 def test_every_answer_is_that_of_its_moment_in_whole_runs(variant: str, seed: int) -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
     with shown_of(source, seed, variant=variant, aperture=0.4 + 0.1 * seed) as shown:
-        check_going_back(shown, 1_300, 40, random_seed=seed)
+        check_going_back(shown, 1_300, 16, random_seed=seed)
 
 
 @pytest.mark.slow
@@ -257,4 +257,4 @@ def test_every_answer_is_that_of_its_moment_in_whole_runs(variant: str, seed: in
 def test_every_answer_is_that_of_its_moment_in_long_runs_of_other_models(seed: int) -> None:
     for source in ((MODELS / "doorway.py").read_text(encoding="utf-8"), LOOKING):
         with shown_of(source, seed) as shown:
-            check_going_back(shown, 900, 30, random_seed=seed)
+            check_going_back(shown, 900, 12, random_seed=seed)
