@@ -121,7 +121,6 @@ class Workers:
         if self._zygote is None:
             self._zygote = spawn()
         self._control = self._zygote.control
-        self._ready = asyncio.Event()
         self._born = asyncio.Queue()
         self._listening = asyncio.create_task(self._listen(self._zygote))
         self._going = asyncio.create_task(self._keep_going(self._zygote))
@@ -161,8 +160,8 @@ class Workers:
     async def _birth(self, wire: socket.socket, output: int, memory: int) -> int:
         """Requests a new worker with this connection and output, and returns its process id."""
         try:
-            await self._ready.wait()
             async with self._launching:
+                await self._ready.wait()
                 if self._control is None:
                     raise OSError(NO_MORE)
                 socket.send_fds(self._control, [ASK.pack(memory)], [wire.fileno(), output])
@@ -211,7 +210,11 @@ class Workers:
         if self._going is not None:
             self._going.cancel()
         useful = self._ready.is_set()
-        self._say_ended()
+        if useful:  # from now on, callers wait for the new process
+            self._ready.clear()
+            self._born.put_nowait(-1)
+        else:  # a process that failed to load would fail again
+            self._say_ended()
         workers = list(self._alive.values())
         self._alive.clear()
         for worker in workers:
@@ -219,7 +222,7 @@ class Workers:
             if not worker.exit.done():
                 worker.exit.set_result(LOST)
         await asyncio.to_thread(zygote.end)
-        if useful:  # a process that failed to load would fail again
+        if useful:
             self._zygote = None
             self.begin()
 
