@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import html
+import signal
 import socket
 import sys
 import tempfile
@@ -65,6 +66,13 @@ def listen(host: str, port: int) -> socket.socket:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command until it is interrupted and returns its exit code."""
     options = _parser().parse_args(arguments)
+    interrupted = threading.Event()
+
+    def interrupt(*_: object) -> None:
+        interrupted.set()
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
     if not 0 <= options.port < 65536 or min(options.memory, options.recordings, options.recordings_size) < 0:
         print("error: a port is a number from 0 to 65535, and memory and recordings not below 0", file=sys.stderr)
         return 2
@@ -87,7 +95,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         keeping = Keeping(number=options.recordings, megabytes=options.recordings_size)
         started = partial(_tell, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
-        serve(make_app(folder, gate, memory=options.memory, keeping=keeping, zygote=zygote), listening, started)
+        app = make_app(folder, gate, memory=options.memory, keeping=keeping, zygote=zygote)
+        if interrupted.is_set():  # the import of a library may have swallowed the exception
+            raise KeyboardInterrupt
+        serve(app, listening, started)
     except KeyboardInterrupt:
         return 130
     return 0

@@ -152,3 +152,29 @@ def test_it_is_interrupted_while_it_starts(tmp_path: Path, after: float) -> None
     # Python itself may not be there yet, which it says in its own words.
     assert process.returncode in (0, 130, -signal.SIGINT, 1)
     assert "Traceback" not in complaints or "workbench/server.py" not in complaints
+
+
+SWALLOWED = """
+import builtins, os, signal, sys
+import workbench.cli
+load = builtins.__import__
+def swallows(name, *rest):
+    if name == "workbench.app":
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except BaseException:
+            pass
+    return load(name, *rest)
+builtins.__import__ = swallows
+sys.exit(workbench.cli.main([sys.argv[1], "--no-browser"]))
+"""
+
+
+def test_an_interruption_that_a_library_swallows_still_ends_it(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", SWALLOWED, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            printed, complaints = process.communicate(timeout=PATIENCE)
+        finally:
+            process.kill()
+    assert (process.returncode, printed, complaints) == (130, "", "")
