@@ -294,7 +294,8 @@ def watched(page: Page, frame: Frame, act: Callable[[], None], travelled: float)
         act: What goes on.
         travelled: So far the body goes at least [m].
     """
-    frame.evaluate("() => { window.watched = []; }")
+    frame.evaluate("() => { window.watched = []; window.__viserMutable.requestRender(); }")
+    until(page, lambda: frame.evaluate("() => window.watched.length > 0"))  # one before it starts
     act()
     told = frame.evaluate("() => window.watched")
     drawn_at = np.array([one["drawn"] for one in told])
