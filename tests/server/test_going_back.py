@@ -244,16 +244,16 @@ def test_every_answer_is_that_of_its_moment_for_all_tutorial_models(desk: Desk, 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("variant", ["human", "replication"])
 def test_every_answer_is_that_of_its_moment_in_whole_runs(variant: str, seed: int) -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
-    with shown_of(source, seed, variant=variant, aperture=0.4 + 0.1 * seed) as shown:
+    with shown_of(source, seed, variant=variant, aperture=0.4 + 0.15 * seed) as shown:
         check_going_back(shown, 1_300, 16, random_seed=seed)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_every_answer_is_that_of_its_moment_in_long_runs_of_other_models(seed: int) -> None:
     for source in ((MODELS / "doorway.py").read_text(encoding="utf-8"), LOOKING):
         with shown_of(source, seed) as shown:

@@ -144,7 +144,7 @@ class Storm:
         return {**required, **chosen, **({"text": "x = 1\n"} if "text" in required else {})}
 
 
-@pytest.mark.parametrize(("clients", "rounds"), [(3, 1), pytest.param(8, 4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("clients", "rounds"), [(3, 1), pytest.param(8, 2, marks=pytest.mark.slow)])
 def test_every_answer_is_whole_or_a_clear_error(server: Served, whole: Path, clients: int, rounds: int) -> None:
     storms = [Storm(server, whole, seed) for seed in range(clients)]
     with ThreadPoolExecutor(clients) as pool:
