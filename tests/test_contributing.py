@@ -65,6 +65,7 @@ CHECKS = {
         assert not question.takes_control
     """,
     "workbench/overlays/heads.py": """
+        from types import SimpleNamespace
         from actr3d.camera import CameraParameters
         from actr3d.simulation import Simulation
         from actr3d.world import Car, Floor, Scene
@@ -72,7 +73,12 @@ CHECKS = {
         from workbench.protocol import COMMAND
         COMMAND.validate_python({"type": "overlay", "name": "heads", "shown": True})
         observed = Observed(Simulation(Scene(parts=(Floor(), Car()))), lambda body: CameraParameters(), dict)
-        assert OVERLAYS["heads"].data(observed)["car"][3] > 1.4
+        data = OVERLAYS["heads"].data(observed)
+        assert data["car"][3] > 1.4
+        lines = []
+        server = SimpleNamespace(scene=SimpleNamespace(add_line_segments=lambda name, points, **_: lines.append((name, points.shape))))
+        OVERLAYS["heads"](SimpleNamespace(server=server)).draw(None, data)
+        assert lines == [("/overlays/heads", (1, 2, 3))]
     """,
     "actr3d/bench/copying.py": """
         from actr3d.cli import main

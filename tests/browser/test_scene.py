@@ -107,12 +107,13 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
 @pytest.mark.slow
 def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_loading_anew(workbench: Served, page: Page) -> None:
     held: list[Route] = []
-    page.route("**/static/viser_shim.js", lambda route: held.append(route))
+    released: list[bool] = []
+    page.route("**/static/viser_shim.js", lambda route: route.continue_() if released else held.append(route))
     page.goto(f"{workbench.url}/?model=aperture_passage.py")
     cover = page.locator(".scene-cover")
     expect(cover).to_have_text("The 3D view loads …", timeout=PATIENCE)
     until(page, lambda: bool(held))
-    page.unroute("**/static/viser_shim.js")
+    released.append(True)
     for route in held:
         route.continue_()
     expect(cover).to_have_count(0, timeout=PATIENCE)

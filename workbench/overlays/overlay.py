@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
+import numpy as np
 from mujoco import MjData, MjModel
 
 from actr3d.registry import Registry
@@ -125,9 +126,11 @@ class Lines:
         """Replaces the lines.
 
         Args:
-            points: The ends of the lines `(n, 2, 3)`, 4-byte floats [m].
-            colours: The colours of the ends `(n, 2, 3)`, 0 to 255; None for the same colour for all.
+            points: The ends of the lines `(n, 2, 3)`, an array or nested lists [m].
+            colours: The colours of the ends `(n, 2, 3)`, an array or nested lists, 0 to 255; None for the same colour for all.
         """
+        points = np.asarray(points, dtype=np.float32)
+        colours = None if colours is None else np.asarray(colours, dtype=np.uint8)
         data = points.tobytes() + (b"" if colours is None else colours.tobytes())
         if data == self._last:
             return
