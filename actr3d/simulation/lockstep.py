@@ -62,6 +62,10 @@ class Lockstep:
         """Whether it cannot continue from here: a tick is incomplete."""
         return self._phase != "ready"
 
+    def fail(self) -> None:
+        """Prevents that the run continues from here, because the present is not what it should be."""
+        self._phase = "failed"
+
     # -- one tick
 
     def may_tick(self) -> bool:

@@ -60,10 +60,12 @@ class Observers:
 
     Args:
         random: The global random numbers of the agents, which observers must not use up.
+        world: The world, whose bodies observers must not move, and may read without a trace.
     """
 
-    def __init__(self, random: GlobalRandom) -> None:
+    def __init__(self, random: GlobalRandom, world: World) -> None:
         self._random = random
+        self._physics = world.physics
         self._observers: list[Observer] = []
         self.looking = False
         """Whether an observer, a listener or a condition is being called now."""
@@ -89,8 +91,9 @@ class Observers:
     def only_looking(self) -> Generator[None]:
         """Prevents changes to the simulation inside the block, those of the agents' random numbers included."""
         before, self.looking = self.looking, True
+        self._physics.observed = True
         try:
             with self._random.aside():
                 yield
         finally:
-            self.looking = before
+            self.looking = self._physics.observed = before

@@ -85,7 +85,7 @@ class Simulation:
             self.event_log.join_program(limits.trace, limits.recorder)
         self._random = GlobalRandom()
         self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
-        self._observers = Observers(self._random)
+        self._observers = Observers(self._random, self.world)
         self._measure: Measure | None = None
         self.timeline = Timeline(self.world, self._begin, self.event_log)
         """The run in time; for recorders and runners."""

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from actr3d.errors import SimulationError
 from actr3d.simulation.commands import Command, command_of
 from actr3d.simulation.event_log import EventLog
 from actr3d.simulation.lockstep import Lockstep
+from actr3d.trace import Trace, TraceEvent
 from actr3d.world import World, WorldState
 
+SHOWN = 120
+"""Greatest length of an event in an error [characters]."""
 SPACING = 50
 """Ticks between two stored states at first."""
 MOST_STATES = 256
@@ -201,9 +205,9 @@ class Timeline:
         state.
 
         Raises:
-            SimulationError: If the agents act differently than the first time.
+            SimulationError: If the agents act differently than the first time, as far as the trace shows it.
         """
-        present = self.lockstep
+        present, before = self.lockstep, self._log.trace
         if present.broken or to <= present.ticks:
             self._lockstep = None
             self._world.restore(self._history.before(0)[1])
@@ -212,6 +216,12 @@ class Timeline:
             self._repeat(to)
         finally:
             self._log.silent = False
+        if before is not None and self._log.trace is not None and before is not self._log.trace:
+            try:
+                _check_repeated(before, self._log.trace)
+            except SimulationError:
+                self.lockstep.fail()
+                raise
 
     def _repeat(self, to: int) -> None:
         history, lockstep = self._history, self.lockstep
@@ -224,3 +234,23 @@ class Timeline:
         while lockstep.ticks < to:
             self.tick()
             self.tock()
+
+
+def _check_repeated(first: Trace, again: Trace) -> None:
+    """Compares the events of a repeated run with those of the first time.
+
+    Raises:
+        SimulationError: If they differ.
+    """
+    for was, now in zip(first, again, strict=False):
+        if was != now and was.to_json() != now.to_json():
+            raise SimulationError(
+                f"the agents act differently than the first time from {now.time:.3f} s on (then: {_brief(was)}; now: {_brief(now)}): they "
+                "use something that neither comes from the seed nor belongs to an agent, such as a global variable or an attribute of a "
+                "class that the model changes; keep it in the agent, such as self.count in init()"
+            )
+
+
+def _brief(event: TraceEvent) -> str:
+    text = f"{event.source} {event.kind} {' '.join(f'{key}={value}' for key, value in event.data.items())}"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar, cast
 
@@ -136,8 +137,10 @@ class Body:
             named: The same, by name.
 
         Raises:
-            WorldError: If this body has no such actuator or joint, or a value is wrong.
+            WorldError: If this body has no such actuator or joint, or a value is wrong, or an observer calls this.
         """
+        if self.physics.observed:
+            raise WorldError(f"{self.name}: an observer cannot give commands (given '{word}'); call simulation.command after the run")
         if isinstance(word, str) and word in ACTUATORS and word not in self.actuators:  # pyright: ignore[reportUnnecessaryIsInstance]
             self.actuators = ACTUATORS.of(self)  # the module that registers it may have been imported since
         ACTUATORS[known(word, self.actuators, self.name, "actuator")](self, *values, **named)
@@ -145,8 +148,8 @@ class Body:
     def get(self, word: str, *values: Any, noise: StandardDeviation = None, **options: Any) -> Any:
         """Reads a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
 
-        This is for agents. Observers call the functions of the `sensors` package (for contacts `touch.present`): those use up no
-        random numbers and do not change what the agent senses later.
+        What the agent senses later depends on it: noise is drawn, and senses with a state begin to work. For an observer of the
+        simulation, and a condition of `Simulation.run`, nothing changes.
 
         Args:
             word: One of `sensors`; see the functions in the `sensors` package.
@@ -160,9 +163,23 @@ class Body:
         """
         if isinstance(word, str) and word in SENSORS and word not in self.sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
             self.sensors = SENSORS.of(self)
-        reading = SENSORS[known(word, self.sensors, self.name, "sensor")](self, *values, **options)
-        sd = self._noise.get(word) if noise is None else noise
-        return reading if sd is None else self.noise.added(word, reading, sd)
+        with self._unchanged() if self.physics.observed else nullcontext():
+            reading = SENSORS[known(word, self.sensors, self.name, "sensor")](self, *values, **options)
+            sd = self._noise.get(word) if noise is None else noise
+            return reading if sd is None else self.noise.added(word, reading, sd)
+
+    @contextmanager
+    def _unchanged(self) -> Generator[None]:
+        """Restores after the block what later readings depend on."""
+        noise, touched, used = self.noise.state(), self.touched, list(self._used)
+        senses = {key: self._senses[key].state() for key in used}
+        try:
+            yield
+        finally:
+            self.noise.restore(noise)
+            self.touched, self._used = touched, used
+            for key, sense in self._senses.items():
+                sense.restore(senses.get(key))
 
     def moving(self) -> tuple[str, ...]:
         """Returns the joints that a command still moves, or tries to."""

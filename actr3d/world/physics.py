@@ -55,6 +55,8 @@ class Physics:
         """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
         self.grasped: dict[int, int] = {}
         """By weld of a hand: the MuJoCo body that the hand holds."""
+        self.observed = False
+        """Whether an observer looks at the world now, who must leave it unchanged."""
         self.renderer: Any = None
         """Draws pictures; None before the first picture."""
 

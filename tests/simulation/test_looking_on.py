@@ -1,25 +1,26 @@
-"""What is there for who looks on: a trace from a number on, memories as tables, glances, held-up programs; the run never knows."""
+"""What observers of a run can do: read the trace from a number on, memories, the eye and the senses. The run does not change."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
 import pytest
 
-from actr3d.actr import ACTR, Buffer, DMBaseLevel, DMNoise, DMSpreading, Memory
+from actr3d.actr import ACTR, Buffer, DMBaseLevel, DMNoise, DMSpreading, Memory, Model
 from actr3d.actr.declarative.activation import MemorySubModule
 from actr3d.actr.explain.memory_table import memory_rows
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.camera import CameraParameters, glance
 from actr3d.configuration import Live
-from actr3d.errors import CameraError, ParameterError, SimulationError
+from actr3d.errors import CameraError, ParameterError, SimulationError, WorldError
 from actr3d.runner.model_factory import build
 from actr3d.runner.traceback_report import traceback_report
-from actr3d.simulation import Command, Simulation
+from actr3d.simulation import BodyPort, Command, Simulation
 from actr3d.trace import Trace
-from actr3d.world import ImportedBody, Scene, World
+from actr3d.world import Floor, ImportedBody, Mannequin, Scene, Wall, World
 from tests.helpers.walkers import digest, driving
 
 DOORWAY = Path(__file__).parents[2] / "models" / "doorway.py"
@@ -45,6 +46,57 @@ class Knowing(ACTR):
     def init() -> None:  # type: ignore[misc]
         memory.add("animal dog", baselevel=1)  # type: ignore[name-defined] # noqa: F821
         memory.add("animal cat", baselevel=2)  # type: ignore[name-defined] # noqa: F821
+
+
+class Senses(Model):
+    """Walks to a wall, and reads noisy senses and the skin, the skin first when it has walked for a while."""
+
+    def start(self) -> Any:
+        body = self.parent.body
+        body.set("walk", 1.2)
+        yield 1.4
+        for _ in range(12):
+            yield body.get("rangefinder", noise=0.05)
+            yield 0.02
+            yield body.get("contacts")
+            yield 0.02
+
+
+class Sensing(ACTR):
+    body = BodyPort()
+    senses = Senses()
+
+
+def sensing() -> Simulation:
+    scene = Scene(parts=(Floor(), Wall(name="wall", start=(2, -1), end=(2, 1)), Mannequin(name="walker")))
+    return Simulation(scene, {"walker": Sensing}, seed=1, trace="all")
+
+
+def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_same() -> None:
+    alone, observed = sensing(), sensing()
+    alone.run(2)
+    body = observed.world.bodies["walker"]
+    seen: list[Any] = []
+
+    def look(_: object) -> None:
+        for word in set(body.sensors) - {"image", "depth"}:  # these have no state, and take long
+            with suppress(WorldError):  # some need options
+                seen.append(body.get(word, noise=0.1 if word == "rangefinder" else None))
+
+    observed.observe(look)
+    observed.run(2, until=lambda _: bool(body.get("contacts")) and observed.time > 1.9)
+    assert any(isinstance(value, tuple) and value for value in seen)
+    once, again = ([event.to_json() for event in run.trace or () if event.time < observed.time] for run in (alone, observed))
+    assert len(once) > 30
+    assert again == once
+
+
+def test_an_observer_cannot_give_a_body_commands() -> None:
+    simulation = sensing()
+    simulation.observe(lambda _: simulation.world.bodies["walker"].set("walk", 0.0))
+    with pytest.raises(WorldError, match="walker: an observer cannot give commands"):
+        simulation.run(0.1)
+    simulation.world.bodies["walker"].set("walk", 0.0)
 
 
 def test_the_events_from_a_number_on() -> None:

@@ -43,6 +43,44 @@ def first_run(ticks: int = 200, simulation: Simulation | None = None) -> tuple[S
     return simulation, digests
 
 
+COUNTED = """
+from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+count = 0
+seen = []
+
+class Counter(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("go 0")
+
+    def go(goal="go ?n"):
+        global count
+        count += 1
+        seen.append(n)
+        Counter.seen.append(n)
+        goal.set(f"go {KEPT}")
+
+Counter.seen = []
+
+def build():
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="counter"))), {"counter": Counter}, seed=1, trace="all")
+"""
+
+
+@pytest.mark.parametrize("kept", ["count", "len(seen)", "len(Counter.seen)"])
+def test_a_run_whose_agents_use_what_going_back_cannot_undo_says_so_and_does_not_go_on(kept: str) -> None:
+    simulation = load_text(COUNTED.replace("KEPT", kept)).build()
+    simulation.run(1)
+    for _ in range(2):
+        with pytest.raises(SimulationError, match=r"act differently than the first time from 0\.0[05]0 s on .* such as a global variable"):
+            simulation.seek(0.5)
+        with pytest.raises(SimulationError, match="cannot go on; seek an earlier time"):
+            simulation.step()
+
+
 @pytest.mark.daily(1)
 @pytest.mark.parametrize("answers", [10_000, 7, 0], ids=["all answers", "first answers", "no answers"])
 def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:

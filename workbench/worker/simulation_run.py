@@ -199,10 +199,16 @@ class SimulationRun:
         """Goes to the tick that is nearest to a time [us].
 
         Raises:
-            SimulationError: If the run has not been there.
+            SimulationError: If the run has not been there, or does not repeat what it did; then it has failed.
         """
         tick = round(time / self.period)
-        self._simulation.seek(seconds(tick * self.period))
+        try:
+            self._simulation.seek(seconds(tick * self.period))
+        except SimulationError as error:
+            if self._simulation.timeline.lockstep.broken:
+                self._controller.end("failed", str(error))
+                self._controller.show()
+            raise
         if self._end is None or tick != self._end[0]:
             self._controller.went_back()
             return
