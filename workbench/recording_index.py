@@ -74,7 +74,7 @@ def summary_json(path: Path) -> bytes:
             found = _read(recorded, size)
     except UNREADABLE as error:
         reason = str(error) if isinstance(error, (RecordingError, OSError)) else f"it is damaged ({type(error).__name__}: {error})"
-        found = unreadable(path, reason.replace(f"'{path}'", "it"))
+        found = unreadable(path, reason.replace(f"the recording '{path}'", "it").replace(f"'{path}'", "it"))
     summary = to_json(vars(found)).encode()
     if len(summary) > MOST_TEXT:
         return to_json(vars(unreadable(path, "the description of its run is too long to be listed"))).encode()

@@ -52,7 +52,8 @@ class Senses(Model):
     """Walks to a wall, and reads noisy senses and the skin, the skin first when it has walked for a while."""
 
     def start(self) -> Any:
-        body = self.parent.body
+        agent: Any = self.parent
+        body = agent.body
         body.set("walk", 1.2)
         yield 1.4
         for _ in range(12):
@@ -85,7 +86,7 @@ def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_sam
 
     observed.observe(look)
     observed.run(2, until=lambda _: bool(body.get("contacts")) and observed.time > 1.9)
-    assert any(isinstance(value, tuple) and value for value in seen)
+    assert [value for value in seen if value == body.touched and value]
     once, again = ([event.to_json() for event in run.trace or () if event.time < observed.time] for run in (alone, observed))
     assert len(once) > 30
     assert again == once

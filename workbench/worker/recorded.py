@@ -43,7 +43,7 @@ def replay_again(channel: Channel) -> None:
             comparison = replay(recorded, trust=True, progress=progress, within=Path(channel.start.to))  # the server has checked the trust
         found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
-        found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"'{path}'", "it")}
+        found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"the recording '{path}'", "it").replace(f"'{path}'", "it")}
     channel.post(Reply(id=0, result=to_json(found).encode()))
 
 
