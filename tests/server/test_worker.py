@@ -170,6 +170,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
         ("os.kill(os.getpid(), signal.SIGALRM)", "ended by SIGALRM"),
         ("os.abort()", "ended by SIGABRT"),
         ("raise KeyboardInterrupt", "KeyboardInterrupt"),
+        ("os.kill(os.getpid(), signal.SIGINT)", "KeyboardInterrupt"),
         ("raise BaseException('odd')", "odd"),
         ("input()", "EOFError"),
     ],

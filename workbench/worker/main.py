@@ -125,7 +125,7 @@ def _settle(output: int) -> None:
     """Detaches the process: no terminal, no keyboard, its own process group."""
     with suppress(OSError):
         os.setsid()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     nothing = os.open(os.devnull, os.O_RDWR)
     os.dup2(nothing, 0)
     os.dup2(output, 1)
