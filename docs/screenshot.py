@@ -82,7 +82,7 @@ def prepare(address: str, shot: Shot) -> None:
         time.sleep(0.2)
         state = ask(f"/sessions/{session}")["state"]
     for command in ({"type": "overlay", "name": "features", "shown": True}, {"type": "until", "time": shot.time}):
-        ask(f"/sessions/{session}/say", {"say": command})
+        ask(f"/sessions/{session}/command", {"command": command})
     while state["time"] < shot.time:
         time.sleep(0.2)
         state = ask(f"/sessions/{session}")["state"]

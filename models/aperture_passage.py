@@ -20,7 +20,7 @@ starts 1.6 s before the wall; hips and legs turn with the shoulders, until there
 not turn: 0.30 of the shoulder width. The faster it walks, the faster it turns. The size of its body is proportional to its shoulder
 width.
 
-The `replication` variant follows the original ACT-R 3D (facts about its code and its trials: human-data). An object within 3 times its
+The `replication` variant follows the original ACT-R 3D (facts about its code and its trials: docs/human-data.md). An object within 3 times its
 width starts a turn at 240 degrees/s, of which the torso alone contributes 120, whatever the size of the opening. The turn stops at
 each answer of vision, and continues if no opening was found. So it turns by 17.5, 35, 46, 55, 64 … degrees, in pieces of 73 ms, one
 every 175 ms. The original's means are at these angles, and a fast walker turns less because it has time for fewer pieces. It turns by
@@ -70,11 +70,11 @@ SHOULDERS, CHEST = 0.259, 0.563
 
 TORSO, CLAVICLE, SIDEWAYS = 60, 20, 80
 """The greatest turn of the replication's torso, of the shoulders relative to it, and of a person [degrees].
-Source: the original's limits of 20 and 80 (human-data)."""
+Source: the original's limits of 20 and 80 (docs/human-data.md)."""
 NECK = 60
 """The greatest turn of the head against a turned body [degrees]; the eye does the rest. Source: the mannequin's limit."""
 BEARING = 19.6
-"""Objects further from the walking direction are no obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (human-data)."""
+"""Objects further from the walking direction are no obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (docs/human-data.md)."""
 TIGHT = 1.03
 """If the walker cannot turn further, it passes an opening this many times its width. Source: chosen for this model."""
 BESIDE = 57.3
@@ -113,7 +113,7 @@ class Parameters(Configuration):
 
     margin: Annotated[float, Ge(0), Le(1)] | None = None
     """The walker turns if an opening exceeds its width by less than this fraction; None: 0.30 for people (Warren & Whang 1987), 0.139
-    in the replication (human-data)."""
+    in the replication (docs/human-data.md)."""
 
     noise: Annotated[float, Ge(0), Le(0.2)] = 0.01
     """The standard deviation of perceived distances, as a fraction of them; 0 judges exactly. Source: chosen for this model."""
@@ -207,7 +207,7 @@ class WholeBody(Shoulders):
 class Eyes(ACTR):
     """Scans for obstacles ahead, asks for an opening when there is an obstacle, and turns the shoulders.
 
-    Source of the times: productions 10 ms, a scan 50 ms, a search for obstacles 20 ms, a request 50 ms (human-data).
+    Source of the times: productions 10 ms, a scan 50 ms, a search for obstacles 20 ms, a request 50 ms (docs/human-data.md).
     """
 
     production_time = 0.01
@@ -345,7 +345,7 @@ class EyesAtOnce(Eyes):
 class Walker(SGOMS):
     """The common part of both variants.
 
-    Source of the times: productions 50 ms, no latency of declarative memory (human-data). Source of the standard deviation of 20 ms:
+    Source of the times: productions 50 ms, no latency of declarative memory (docs/human-data.md). Source of the standard deviation of 20 ms:
     the original's angle before wide doorways has one of 4.7 degrees, at 240 degrees/s.
     """
 
@@ -469,7 +469,7 @@ class Walker(SGOMS):
 
 
 class Replication(Walker):
-    """The original ACT-R 3D's model. Source of all numbers: facts about its code (human-data)."""
+    """The original ACT-R 3D's model. Source of all numbers: facts about its code (docs/human-data.md)."""
 
     eyes = EyesInPieces()
     shoulders = Shoulders()
@@ -534,7 +534,7 @@ width is what turns, and the edges of a doorway are beside it."""
 STOPPING = 0.25
 """The time in which a person sees that there is no way through, and stops [s]. Source: chosen for this model: three answers of vision."""
 RADIUS = 3.0
-"""The distance at which an obstacle alerts the replication, in shoulder widths. Source: human-data."""
+"""The distance at which an obstacle alerts the replication, in shoulder widths. Source: docs/human-data.md."""
 HEIGHT = 1.714
 """The height of the replication's body, in both groups [m]. Source: shoulders of 0.444 m, the mean of both, over `SHOULDERS`."""
 TRUNK = 0.11
@@ -550,23 +550,23 @@ def body_of(parameters: Parameters) -> Mannequin:
     return Mannequin(name="walker", height=HEIGHT, shoulder_width=width, trunk="box", depth=TRUNK)
 
 
-def mind_of(parameters: Parameters) -> Walker:
+def agent_of(parameters: Parameters) -> Walker:
     """Returns the agent in that body."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
     given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise}
     if p.variant == "human":
-        mind = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
+        agent = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:
-        mind = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
-    mind.pace.wanted = mind.pace.kept = p.speed
-    mind.go_at(p.speed or mind.usual)
-    return mind
+        agent = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
+    agent.pace.wanted = agent.pace.kept = p.speed
+    agent.go_at(p.speed or agent.usual)
+    return agent
 
 
 def build(parameters: Parameters) -> Simulation:
     """Puts a walker 7 m before a doorway."""
     scene = Scene(parts=(Floor(), Aperture(width=parameters.aperture), body_of(parameters)))
-    simulation = Simulation(scene, {"walker": lambda: mind_of(parameters)})
+    simulation = Simulation(scene, {"walker": lambda: agent_of(parameters)})
     simulation.measure(Passage("walker"))
     return simulation

@@ -109,10 +109,10 @@ class Walker(ACTR):
 def build(parameters: Parameters) -> Simulation:
     """Puts a walker in front of a doorway."""
 
-    def mind():
+    def agent():
         walker = Walker()
         walker.speed, walker.walks_at = parameters.speed, 0.0
         return walker
 
     scene = Scene(parts=(Floor(), Aperture(width=parameters.width), Mannequin(name="walker", shoulder_width=SHOULDERS)))
-    return Simulation(scene, {"walker": mind})
+    return Simulation(scene, {"walker": agent})

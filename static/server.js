@@ -116,7 +116,7 @@ export async function showModel(model, { run = false } = {}) {
   if (!wanted() && !run) return;
   if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
-    if (there && run) await call("POST", `/api/sessions/${there.id}/say`, { say: { type: "restart", run } });
+    if (there && run) await call("POST", `/api/sessions/${there.id}/command`, { command: { type: "restart", run } });
     const { id } = there ?? (await call("POST", "/api/sessions", { model, run, real_time: true }));
     if (wanted()) show(id);
   } catch (error) {
@@ -206,7 +206,7 @@ export function say(what) {
     }
     number += 1;
     waiting.set(number, { resolve, reject });
-    socket.send(JSON.stringify({ id: number, say: what }));
+    socket.send(JSON.stringify({ id: number, command: what }));
   });
 }
 

@@ -11,7 +11,7 @@ from markdown_it.tree import SyntaxTreeNode
 
 from actr3d.actr.kernel.source_code import parse
 from actr3d.errors import ConfigurationError
-from workbench.loader import Listing, listing_of
+from workbench.loader import ModelListing, listing_of
 
 LONGEST = 20_000
 """How much of a docstring is shown [characters]: about ten pages of a book."""
@@ -59,7 +59,7 @@ def _tree(text: str) -> SyntaxTreeNode:
     return SyntaxTreeNode(markdown.parse(text))
 
 
-def _inside(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
+def _inside(node: SyntaxTreeNode, listing: ModelListing) -> Iterator[Node]:
     """Yields the contents of a text's paragraphs without the paragraphs themselves."""
     for child in node.children:
         if child.type in ("paragraph", "inline", "heading"):
@@ -68,12 +68,12 @@ def _inside(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
             yield from _node(child, listing)
 
 
-def _nodes(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
+def _nodes(node: SyntaxTreeNode, listing: ModelListing) -> Iterator[Node]:
     for child in node.children:
         yield from _node(child, listing)
 
 
-def _node(node: SyntaxTreeNode, listing: Listing) -> Iterator[Node]:
+def _node(node: SyntaxTreeNode, listing: ModelListing) -> Iterator[Node]:
     """Yields what the page shows for a node; for an unknown node, only its texts."""
     match node.type:
         case "text" | "text_special" | "html_inline" | "html_block":
@@ -113,7 +113,7 @@ def _is_tight(item: SyntaxTreeNode) -> bool:
     return len(item.children) == 1 and item.children[0].type == "paragraph" and bool(item.children[0].hidden)
 
 
-def _settings_in(code: str, listing: Listing) -> dict[str, Any] | None:
+def _settings_in(code: str, listing: ModelListing) -> dict[str, Any] | None:
     """Returns the parameter values in code such as `width = 0.5, speed = 2`; None if the code is anything else."""
     try:
         call = parse(f"_({code})", mode="eval").body

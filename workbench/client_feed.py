@@ -73,7 +73,7 @@ class EventLog:
         return self.first + begin, found
 
 
-class Shown(Protocol):
+class FeedSource(Protocol):
     """The part of a session that a feed sends."""
 
     @property
@@ -128,7 +128,7 @@ class Feed:
         name: The browser's name, as other users see it.
     """
 
-    def __init__(self, shown: Shown, name: str) -> None:
+    def __init__(self, shown: FeedSource, name: str) -> None:
         self.name = name
         self._shown = shown
         self._changed = asyncio.Event()

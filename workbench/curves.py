@@ -169,7 +169,7 @@ class Force(Source):
         return (max(forces.values(), default=0.0),)
 
 
-class Curves:
+class CurveReader:
     """Computes curves from the recorded states of a run; the run itself is not touched.
 
     Args:

@@ -97,7 +97,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
         RecordingError: If the recording cannot be read.
     """
     from actr3d.world.compiled import from_text, loaded
-    from workbench.curves import NOTHING, Curves, stretch, stride
+    from workbench.curves import NOTHING, CurveReader, stretch, stride
 
     with Recorded(path) as recorded:
         facts = recorded.facts
@@ -109,7 +109,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
         every = stride(end + 1 - begin, most - 1)
         states = ((tick, state) for _, tick, state, _ in recorded.states() if begin <= tick <= end)
         moments = ((seconds(tick * period), state) for tick, state in states if tick % every == 0 or tick == end)
-        return Curves(loaded(from_text(facts["compiled"])), facts["world"]).sampled(moments, names)
+        return CurveReader(loaded(from_text(facts["compiled"])), facts["world"]).sampled(moments, names)
 
 
 @form("comparison")

@@ -27,7 +27,7 @@ class Problem:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Listing:
+class ModelListing:
     """Describes a model file, as far as this is possible without executing it."""
 
     title: str = ""
@@ -55,13 +55,13 @@ class Listing:
         return known[name]
 
 
-def listing_of(source: str, filename: str = "model.py") -> Listing:
+def listing_of(source: str, filename: str = "model.py") -> ModelListing:
     """Returns the description of a model's text; errors and warnings are in `problems`."""
     problems = tuple(problems_of(source, filename))
     tree = syntax_tree(source)
     text = sendable(ast.get_docstring(tree) or "")
     builds = has_build(source)
-    return Listing(
+    return ModelListing(
         title=text.split("\n", 1)[0],
         text=text,
         kind="simulation" if builds else "program",

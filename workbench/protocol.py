@@ -34,7 +34,7 @@ class Request(PageMessage):
     """Any later message of a page: a command or question with a number, which the reply repeats."""
 
     id: int = Field(ge=0, lt=2**53)
-    say: AnyCommand
+    command: AnyCommand
 
 
 def problem_of(error: Mapping[str, Any]) -> str:

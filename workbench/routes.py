@@ -73,10 +73,10 @@ class Open(PageMessage):
     """Whether a run with a body goes in real time until a speed is chosen; otherwise every run goes as fast as possible."""
 
 
-class Saying(PageMessage):
+class CommandRequest(PageMessage):
     """A command or question."""
 
-    say: AnyCommand
+    command: AnyCommand
 
 
 def sessions_of(request: Request) -> Sessions:
@@ -198,13 +198,13 @@ def about(request: Request, session: Id) -> dict[str, Any]:
     return about_of(source, found.model)
 
 
-@router.post("/sessions/{session}/say")
-async def say_to(request: Request, session: Id, body: Saying) -> Response:
+@router.post("/sessions/{session}/command")
+async def command(request: Request, session: Id, body: CommandRequest) -> Response:
     """Carries out a command or answers a question, and waits a limited time for the result.
 
     409 if it fails; 202 if it is not done yet, for example because the model is busy.
     """
-    work = asyncio.create_task(sessions_of(request).get(session).carry_out(body.say, "API"))
+    work = asyncio.create_task(sessions_of(request).get(session).carry_out(body.command, "API"))
     done, _ = await asyncio.wait([work], timeout=ANSWER_TIME)
     if not done:
         return Response(

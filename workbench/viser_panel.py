@@ -10,7 +10,7 @@ from workbench.overlays import OVERLAYS
 from workbench.page_commands.changes import Aperture
 from workbench.page_commands.moving import Back
 from workbench.page_commands.running import Pause, Run, Step
-from workbench.page_commands.session import Overlay
+from workbench.page_commands.session import ShowOverlay
 from workbench.view_settings import ViewSettings
 from workbench.worker.messages import State
 
@@ -77,4 +77,4 @@ class Panel:
 
     def _switched(self, name: str, box: Any, event: Any) -> None:
         if event.client_id is not None:
-            self._said(Overlay(name=name, shown=box.value))
+            self._said(ShowOverlay(name=name, shown=box.value))

@@ -31,9 +31,9 @@ def measure(ticks: int = TICKS) -> list[Figure]:
     for _ in range(PARTS):
         spent += seconds_of(lambda: simulation.step(ticks // PARTS))
         memory.append(resident())
-    mind = simulation.minds["walker"]
+    agent = simulation.agents["walker"]
     expected = ticks * 10_000
-    drift = abs(mind.sch.now_us - expected) + abs(simulation.world.time - expected)
+    drift = abs(agent.sch.now_us - expected) + abs(simulation.world.time - expected)
     # The history kept for going back grows to its limits in the first part.
     growth = memory[-1] - memory[1]
     return [

@@ -54,7 +54,7 @@ class Motor(WithParameters, Port):
         memory: The declarative memory that stores postures; None for none. (By the rules of ACT-R 7 a memory collects the chunks
             that leave buffers; there a buffer alone is enough.)
         speed: Default speed of joints and of turns of the whole body [degrees/s].
-            Source: the original ACT-R 3D's torso and clavicle (human-data).
+            Source: the original ACT-R 3D's torso and clavicle (docs/human-data.md).
         angle_grid: Step to which felt angles are rounded [degrees]; this and the next two apply once the body is known.
         size_grid: Step to which felt lengths are rounded [m]. Source: chosen, fine enough to judge a doorway to a hundredth of the
             shoulder width.

@@ -264,7 +264,7 @@ def _parsed(text: str) -> Any:
 
 
 def _is_command(data: Any) -> bool:
-    """Returns whether a value has the form that `Command.to_data` returns."""
+    """Returns whether a value has the form that `actr3d.simulation.Command.to_data` returns."""
     if not isinstance(data, dict):
         return False
     command = cast("dict[str, Any]", data)

@@ -14,7 +14,7 @@ from actr3d.errors import RecordingError
 from actr3d.forks import detach_in_copies
 from actr3d.recording.facts import check_fact
 from actr3d.recording.schema import FORM, LEFT, versions
-from actr3d.recording.writer import Answer, Command, NoWriter, State, Writer
+from actr3d.recording.writer import Answer, CommandRow, NoWriter, State, Writer
 from actr3d.trace import TraceEvent
 
 USUAL_PERIOD = 10_000
@@ -111,7 +111,7 @@ class Recording:
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
         """Writes a user's command that was given after a tick."""
         self.commands += 1
-        self._writer.commands.append(Command(run, tick, json.dumps(data)))
+        self._writer.commands.append(CommandRow(run, tick, json.dumps(data)))
 
     def state(self, run: int, tick: int, data: bytes) -> None:
         """Writes the physics state of a run at its start, and then at the end of each tick; it must be the last item of the tick.

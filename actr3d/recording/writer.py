@@ -45,7 +45,7 @@ class State(NamedTuple):
     """The number of events until then."""
 
 
-class Command(NamedTuple):
+class CommandRow(NamedTuple):
     """A user's command, as JSON."""
 
     run: int
@@ -109,7 +109,7 @@ class Writer:
         self.events: deque[TraceEvent] = deque()
         self.answers: deque[Answer] = deque()
         self.states: deque[State] = deque()
-        self.commands: deque[Command] = deque()
+        self.commands: deque[CommandRow] = deque()
         self.facts: deque[tuple[str, str]] = deque()
         self._written = {"events": 0, "answers": 0, "states": 0, "ticks": 0, "commands": 0}
         """The number of items of each sort in the file, including those of the current transaction."""
@@ -237,7 +237,7 @@ class Writer:
         events: list[tuple[list[TraceEvent], str]],
         states: list[State],
         facts: list[tuple[str, str]],
-        commands: list[Command],
+        commands: list[CommandRow],
         answers: list[Answer],
     ) -> None:
         for part, text in events:

@@ -143,10 +143,10 @@ class Agents:
 
 def _made(name: str, factory: Factory) -> Model:
     if not callable(factory):
-        raise SimulationError(f"minds['{name}']: must be an agent's class, or a function without arguments (got {factory!r})")
+        raise SimulationError(f"agents['{name}']: must be an agent's class, or a function without arguments (got {factory!r})")
     agent = factory()
     if not isinstance(agent, Model):
-        raise SimulationError(f"minds['{name}']: must make an agent (made {agent!r})")
+        raise SimulationError(f"agents['{name}']: must make an agent (made {agent!r})")
     if agent.__dict__.get("parent") is not None or (is_converted(agent) and agent.sch.now_us > 0):
-        raise SimulationError(f"minds['{name}']: must make a new agent each time it is called, because the run may go back to its start")
+        raise SimulationError(f"agents['{name}']: must make a new agent each time it is called, because the run may go back to its start")
     return agent

@@ -48,7 +48,7 @@ class Simulation:
 
     Args:
         scene: The description of the world; or a compiled world, at its start, with its own seed.
-        minds: By a body's name, the factory of its agent: an agent's class, or a function without arguments. It is called again
+        agents: By a body's name, the factory of its agent: an agent's class, or a function without arguments. It is called again
             when the run goes back to an earlier time. A body that is not named has no agent.
         bodiless: By name, the factory of an agent without a body.
         period: Length of a tick [s]; a whole multiple of the physics step. Source of 10 ms: the original ACT-R 3D.
@@ -64,7 +64,7 @@ class Simulation:
     def __init__(
         self,
         scene: Scene | World,
-        minds: Mapping[str, Factory] | None = None,
+        agents: Mapping[str, Factory] | None = None,
         *,
         bodiless: Mapping[str, Factory] | None = None,
         period: float = 0.01,
@@ -73,7 +73,7 @@ class Simulation:
     ) -> None:
         self._limits = limits = RunLimits.current()
         self.seed: int | str = seed_of(seed) if seed is not None else fresh_seed() if limits is None else limits.next_seed()
-        self._embodied = named_factories(minds, "Simulation.minds")
+        self._embodied = named_factories(agents, "Simulation.agents")
         self._bodiless = named_factories(bodiless, "Simulation.bodiless")
         self.world = world_of(scene, crc32(str(self.seed).encode()))
         check_names(self._embodied, self._bodiless, self.world.bodies)
@@ -119,7 +119,7 @@ class Simulation:
         return seconds(self.timeline.furthest * self._period)
 
     @property
-    def minds(self) -> dict[str, Any]:
+    def agents(self) -> dict[str, Any]:
         """The agents by name, read only: changes from outside are not repeated when the run goes back.
 
         Raises:

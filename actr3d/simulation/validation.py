@@ -121,16 +121,16 @@ def named_factories(given: Any, what: str) -> dict[str, Any]:
     return named
 
 
-def check_names(minds: Collection[str], bodiless: Collection[str], bodies: Collection[str]) -> None:
+def check_names(agents: Collection[str], bodiless: Collection[str], bodies: Collection[str]) -> None:
     """Checks that agents have the bodies that they should have.
 
     Raises:
         SimulationError: If a named body does not exist, or a bodiless agent has the name of a body.
     """
-    for name in minds:
+    for name in agents:
         if name not in bodies:
             hint = did_you_mean(name, bodies) or f"; there are: {', '.join(bodies) or 'none'}"
-            raise SimulationError(f"minds: no body '{name}' in the scene{hint} (an agent without a body goes into `bodiless`)")
+            raise SimulationError(f"agents: no body '{name}' in the scene{hint} (an agent without a body goes into `bodiless`)")
     for name in bodiless:
         if name in bodies:
             raise SimulationError(f"bodiless: '{name}' is the name of a body")

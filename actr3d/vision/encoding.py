@@ -15,7 +15,7 @@ PREPARATION = 0.135
 PROGRAMMING = 0.05
 """From then until the eye begins to move [s]. Source: the same."""
 SACCADE, PER_DEGREE = 0.02, 0.002
-"""Duration of an eye movement: 20 ms and 2 ms for each degree [s] [s/degree]. Source: the same (human-data)."""
+"""Duration of an eye movement: 20 ms and 2 ms for each degree [s] [s/degree]. Source: the same (docs/human-data.md)."""
 
 LONGEST = 1e6
 """Upper bound of encoding [s]: for large angles the equation gives years, and then overflows."""
@@ -36,10 +36,10 @@ class Emma(Configuration):
     """
 
     factor: Annotated[float, Gt(0)] = 0.006
-    """K [s]. Source: human-data."""
+    """K [s]. Source: docs/human-data.md."""
 
     exponent: Annotated[float, Gt(0)] = 0.4
-    """k [1/degree]. Source: human-data."""
+    """k [1/degree]. Source: docs/human-data.md."""
 
     frequency: Annotated[float, Gt(0), Lt(1)] = 0.5
     """f, frequency of such objects. Source: chosen, the value of ACT-R's EMMA for objects of unknown frequency."""

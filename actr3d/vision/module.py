@@ -69,7 +69,7 @@ class Vision(WithParameters, Searching):
         ConfigurationError: If a camera parameter is invalid.
         VisionError: If a salience is invalid.
 
-    Source: 50 ms for a request and 20 ms for a search for obstacles, the original ACT-R 3D (human-data); the `sos` rule, SOS Vision
+    Source: 50 ms for a request and 20 ms for a search for obstacles, the original ACT-R 3D (docs/human-data.md); the `sos` rule, SOS Vision
     (West & Emond 2002). The `hold` of 0.1 s was chosen: the longest time until a production of 50 ms in progress has
     fired, and then one that reads the chunk.
     """

@@ -114,10 +114,10 @@ def read_request(
     twice = next((slot for slot in words if slot in given), None)
     if twice is not None:
         raise VisionError(f"{what}: '{twice}' is given twice, in '{pattern}' and as {twice}={given[twice]!r}")
-    return _Reader(detectors[name], bound, what).read({**words, **given})
+    return _RequestReader(detectors[name], bound, what).read({**words, **given})
 
 
-class _Reader:
+class _RequestReader:
     """Reads the slots of one request."""
 
     def __init__(self, detector: Detector, bound: Mapping[str, Any] | None, what: str) -> None:

@@ -122,7 +122,7 @@ class Aperture(Configuration):
     """The free width between the segments [m]; 0 is a closed wall."""
 
     position: tuple[float, float] = (7.0, 0.0)
-    """The middle of the gap on the floor, (x, y) [m]. Source of the default: 7 m of approach, as in the original model (human-data)."""
+    """The middle of the gap on the floor, (x, y) [m]. Source of the default: 7 m of approach, as in the original (docs/human-data.md)."""
 
     heading: float = 0.0
     """The direction in which one walks through it [rad], 0 along x."""

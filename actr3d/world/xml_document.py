@@ -58,7 +58,7 @@ def written(root: Element) -> tuple[str, list[str]]:
     return "\n".join(lines), origins
 
 
-class _Reader:
+class _XmlReader:
     """Builds elements from expat's events."""
 
     def __init__(self, name: str) -> None:
@@ -101,7 +101,7 @@ class _Reader:
 
 
 def _parsed(content: bytes, name: str) -> Element:
-    reader = _Reader(name)
+    reader = _XmlReader(name)
     reader.read(content)
     assert reader.root is not None  # expat has found a document
     return reader.root

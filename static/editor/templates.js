@@ -1,6 +1,6 @@
 // The templates of new models: short and runnable.
 
-const MIND = `"""Says in a line what this model is about."""
+const AGENT = `"""Says in a line what this model is about."""
 
 from actr3d.actr import *
 
@@ -76,17 +76,17 @@ class Walker(ACTR):
 def build(parameters: Parameters) -> Simulation:
     """Puts a walker in front of a doorway."""
 
-    def mind():
+    def agent():
         walker = Walker()
         walker.speed = parameters.speed
         return walker
 
     scene = Scene(parts=(Floor(), Aperture(width=parameters.width), Mannequin(name="walker")))
-    return Simulation(scene, {"walker": mind})
+    return Simulation(scene, {"walker": agent})
 `;
 
 /** The templates to choose from: {value, text, source}. */
 export const TEMPLATES = [
-  { value: "mind", text: "A mind alone", source: MIND },
-  { value: "body", text: "A mind with a body in a world", source: BODY },
+  { value: "agent", text: "An agent alone", source: AGENT },
+  { value: "body", text: "An agent with a body in a world", source: BODY },
 ];

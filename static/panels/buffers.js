@@ -93,13 +93,13 @@ function Buffers() {
   const paths = Object.keys(parts);
   const busy = paths.filter((path) => parts[path].state?.busy === true);
   const requests = useRequests(busy);
-  if (paths.length === 0) return html`<p class="empty">${nothing("This model has no mind to look into.")}</p>`;
+  if (paths.length === 0) return html`<p class="empty">${nothing("This model has no agent to look into.")}</p>`;
   const agents = agentsOf(parts);
   const groups = [...agents, null]
     .map((agent) => [agent, paths.filter((path) => agentOf(path, agents) === agent)])
     .filter(([, own]) => own.length > 0);
   const run = `${session.value?.id} ${session.value?.run}`;
-  return html`<div class="mind" key=${run}>
+  return html`<div class="agent-parts" key=${run}>
     <${AtStart} />
     ${state.value.result ? html`<${Result} result=${state.value.result} />` : null}
     ${groups.map(([agent, own]) => html`<${Agent} key=${agent} agent=${agent} paths=${own} parts=${parts} requests=${requests} several=${groups.length > 1} />`)}

@@ -10,7 +10,7 @@ const WHILE_RUNNING = 100;
 const NOTHING = { answer: null, error: null, waiting: false, of: null };
 
 /**
- * Sends a question of `protocol.py` now and whenever the run is at another moment; one question at a time.
+ * Sends a question of `page_commands` now and whenever the run is at another moment; one question at a time.
  *
  * @param question The question; null for none.
  * @param live Whether it is also sent while the run is active.

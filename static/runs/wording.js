@@ -4,7 +4,7 @@ import { valueText } from "../parts/chunk.js";
 
 const ENDED = {
   stop: "the model called stop()",
-  done: "no mind had anything left to do",
+  done: "no agent had anything left to do",
   end: "the program was over",
   exit: "the program ended itself",
   left: "left before its end",

@@ -40,7 +40,7 @@ def drawing(seed: int) -> Simulation:
 
 
 def drawn(simulation: Simulation) -> list[float]:
-    return simulation.minds["mind"].drawn
+    return simulation.agents["mind"].drawn
 
 
 def alone(seed: int) -> list[float]:
@@ -90,7 +90,7 @@ def test_a_simulation_leaves_the_programs_own_numbers_as_they_were() -> None:
     simulation.step(3)
     found.append(draw())
     simulation.seek(0.01)
-    assert simulation.minds
+    assert simulation.agents
     found.append(draw())
     assert found == expected
 

@@ -54,7 +54,7 @@ class Client:
     async def say(self, kind: str, **more: Any) -> None:
         """Says something; what comes of it is not waited for."""
         self._number += 1
-        await self._socket.send(json.dumps({"id": self._number, "say": {"type": kind, **more}}))
+        await self._socket.send(json.dumps({"id": self._number, "command": {"type": kind, **more}}))
 
     async def until(self, condition: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
         """Reads until something is true of the newest state; returns that."""

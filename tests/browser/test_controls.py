@@ -69,7 +69,7 @@ def test_a_breakpoint_that_an_edit_has_lost_is_kept_and_said_to_be(pages: Callab
     page = pages("edited.py")
     shows(page, "#status", "at its start")
     session = workbench.get("/api/sessions").json()["sessions"][0]["id"]
-    said = workbench.post(f"/api/sessions/{session}/say", {"say": {"type": "breakpoints", "productions": ["turn"]}})
+    said = workbench.post(f"/api/sessions/{session}/command", {"command": {"type": "breakpoints", "productions": ["turn"]}})
     assert said.json()["error"] is None
     (workbench.folder / "edited.py").write_text(source.replace("def turn(", "def turn_now("), encoding="utf-8")
     page.click("#restart")
@@ -147,7 +147,7 @@ def test_an_eye_with_nothing_in_view_says_so_and_nothing_is_about_to_fire_in_a_r
     open_tab(page, "Eye")
     expect(page.locator(".eye .retina-nothing")).to_have_text("Nothing is in view of this eye now.")
     open_tab(page, "Buffers")
-    expect(page.locator(".mind [data-path='walker'] .doing")).to_have_text(re.compile("stop_behind was chosen as the run ended"))
+    expect(page.locator(".agent-parts [data-path='walker'] .doing")).to_have_text(re.compile("stop_behind was chosen as the run ended"))
     open_tab(page, "Productions")
     expect(page.locator("#why-text")).to_contain_text("stop_behind: matches, and was chosen as the run ended")
 

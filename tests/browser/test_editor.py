@@ -267,7 +267,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize(
-    ("choice", "seen"), [("A mind alone", "the program is over"), ("A mind with a body in a world", r"the model called stop\(\)")]
+    ("choice", "seen"), [("An agent alone", "the program is over"), ("An agent with a body in a world", r"the model called stop\(\)")]
 )
 def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str) -> None:
     shows(page, "#status", "at its start")

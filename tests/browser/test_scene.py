@@ -60,7 +60,7 @@ def wait(condition: Callable[[], Any]) -> None:
 
 
 def say(workbench: Served, session: str, **said: Any) -> None:
-    assert workbench.post(f"/api/sessions/{session}/say", {"say": said}).status_code == 200
+    assert workbench.post(f"/api/sessions/{session}/command", {"command": said}).status_code == 200
 
 
 def shown(workbench: Served, session: str, overlay: str) -> bool:

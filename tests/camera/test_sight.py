@@ -151,13 +151,13 @@ def seeing() -> Simulation:
 def test_a_mind_sees_through_its_port_also_again_after_going_back() -> None:
     simulation = seeing()
     simulation.step(150)
-    first, seen = digest(simulation), list(simulation.minds["walker"].widest)
+    first, seen = digest(simulation), list(simulation.agents["walker"].widest)
     assert len(seen) > 10
     assert min(seen) > 0
     simulation.seek(0.7)
     simulation.step(80)
     assert digest(simulation) == first
-    assert simulation.minds["walker"].widest == seen
+    assert simulation.agents["walker"].widest == seen
 
 
 def test_a_recording_keeps_what_a_view_was_in_short(tmp_path: Path) -> None:

@@ -71,7 +71,7 @@ def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, 
 @pytest.mark.parametrize(("group", "least", "most"), [("small", 0.055, 0.075), ("large", 0.06, 0.09)])
 @pytest.mark.parametrize("aperture", [0.4, 0.45])
 def test_hips_that_turn_leave_the_margin_where_it_is_narrow(model: Any, group: str, least: float, most: float, aperture: float) -> None:
-    """0.30 of the shoulders' width, as before wider doorways (human-data); hips that face ahead would leave 5 cm and less at 40 cm."""
+    """0.30 of the shoulders' width, as at wider doorways (Human data); hips that face ahead would leave 5 cm and less at 40 cm."""
     results = [passed(model, seed, group=group, aperture=aperture) for seed in range(1, 5)]
     margin = sum((result.clearance_left_m or 0) + (result.clearance_right_m or 0) for result in results) / 8
     assert least < margin < most
@@ -135,7 +135,7 @@ def test_what_it_knows_of_its_width_it_has_learned(model: Any) -> None:
     """Before it judges, declarative memory holds at least ten postures to each side, narrower the further it was turned."""
     simulation = built(model, aperture=0.5, noise=0.0)
     simulation.run(WALKING)
-    memory = simulation.minds["walker"].DM
+    memory = simulation.agents["walker"].DM
     postures = [chunk for chunk in memory.dm if "stance_yaw" in chunk]
     left = sorted({(chunk["stance_yaw"], chunk["width"]) for chunk in postures if chunk["stance_yaw"] > 5})
     right = sorted({(-chunk["stance_yaw"], chunk["width"]) for chunk in postures if chunk["stance_yaw"] < -5})
@@ -261,7 +261,7 @@ def test_the_replication_turns_before_any_doorway(model: Any, aperture: float) -
 
 @pytest.mark.slow
 def test_the_replication_begins_where_the_original_did(model: Any) -> None:
-    """Source: 1.17 m (small) and 1.44 m (large) before the wall, on average over apertures (human-data)."""
+    """Source: 1.17 m (small) and 1.44 m (large) before the wall, on average over apertures (docs/human-data.md)."""
     for group, distance in (("small", 1.17), ("large", 1.44)):
         begun = [passed(model, seed, variant="replication", aperture=0.6, group=group).onset_distance_m or 0 for seed in range(1, 5)]
         assert sum(begun) / len(begun) == pytest.approx(distance, abs=0.12)
@@ -291,7 +291,7 @@ def scene_with(model: Any, names: tuple[str, str, str], variant: str, width: flo
     body = model.body_of(parameters)
     person = Mannequin(**{field: getattr(body, field) for field in ("height", "shoulder_width", "trunk", "depth", "sideways")}, name=walker)
     scene = Scene(parts=(Floor(name=floor), Aperture(name=aperture, width=width), person))
-    simulation = Simulation(scene, {walker: lambda: model.mind_of(parameters)}, seed=1, trace="all")
+    simulation = Simulation(scene, {walker: lambda: model.agent_of(parameters)}, seed=1, trace="all")
     simulation.measure(Passage(walker, aperture))
     return simulation
 
@@ -421,7 +421,7 @@ def test_who_is_to_walk_at_another_speed_does_on_the_way(model: Any, variant: st
     before = base.place[0]
     simulation.run(0.5)
     assert (base.place[0] - before) / 0.5 == pytest.approx(then or 1.29, abs=0.05)
-    assert simulation.minds["walker"].speed == (then or 1.29)
+    assert simulation.agents["walker"].speed == (then or 1.29)
     assert simulation.run(20).ended_by == "stop"
     result = simulation.result()
     assert (result.outcome, result.contacts) == ("passed", 0)

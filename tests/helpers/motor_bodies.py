@@ -25,8 +25,8 @@ def mover(**parameters: Any) -> Callable[[], Any]:
 
 def motor_of(simulation: Simulation, name: str = "walker") -> Any:
     """Returns the motor module of an agent."""
-    minds: Any = simulation.timeline.lockstep.agents
-    return minds.environment[name].motor
+    agents: Any = simulation.timeline.lockstep.agents
+    return agents.environment[name].motor
 
 
 def moving(*parts: Any, body: Any = None, trace: str = "none", seed: int = 1, **parameters: Any) -> tuple[Simulation, Any]:
@@ -48,6 +48,6 @@ def until(simulation: Simulation, condition: Callable[[], bool], most: int = 100
 
 def during(simulation: Simulation, act: Callable[[], None]) -> None:
     """Goes on by a tick, in the midst of which a mind does something."""
-    minds: Any = simulation.timeline.lockstep.agents
-    minds.environment.sch.call_after(0.005, act)
+    agents: Any = simulation.timeline.lockstep.agents
+    agents.environment.sch.call_after(0.005, act)
     simulation.step()

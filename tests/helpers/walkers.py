@@ -1,4 +1,4 @@
-"""Walkers with minds, for the tests of lockstep."""
+"""Walkers with agents, for the tests of lockstep."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def scene_of(*names: str, timestep: float = 0.002) -> Scene:
 
 
 def driving(trace: str = "none", seed: int = 1) -> Simulation:
-    """Returns a simulation of two mannequins with minds."""
+    """Returns a simulation of two mannequins with agents."""
     return Simulation(scene_of("walker", "other"), {"walker": Driver, "other": Driver}, seed=seed, trace=trace)
 
 

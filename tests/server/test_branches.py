@@ -49,7 +49,7 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     before = talk.say("curves", names=["walker x"])
     talk.say("seek", time=0.1)
     with pytest.raises(RefusedError):
-        talk.say("say", word="wlak", values=[1.0])
+        talk.say("command", word="wlak", values=[1.0])
     assert found(talk) == []  # nothing was changed
     assert talk.say("curves", names=["walker x"]) == before
     talk.say("aperture", width=0.3)

@@ -114,7 +114,7 @@ def test_what_lies_ahead_is_told_until_the_run_goes_another_way(desk: Desk, tmp_
     talk.say("step", ticks=5)
     talk.until("paused", tick=15)
     assert talk.say("curves") == before
-    talk.say("say", word="walk", values=[-1.0], drop=True)
+    talk.say("command", word="walk", values=[-1.0], drop=True)
     told = talk.say("curves")
     assert told["times"][-1] == 0.15
     talk.say("step", ticks=25)

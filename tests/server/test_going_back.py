@@ -76,14 +76,14 @@ def build() -> Simulation:
 def asked(shown: Shown) -> Any:
     """Returns the part of a run that questions use."""
     simulation = shown.simulation
-    tops = [Top(agent) for agent in simulation.minds.values()]
+    tops = [Top(agent) for agent in simulation.agents.values()]
     return SimpleNamespace(trace=simulation.trace, tops=lambda: tops, shown=shown, curves=shown.curves)
 
 
 def questions(shown: Shown) -> list[Any]:
     """Returns every question that a page can ask of a moment; a new kind of question is to be added here."""
-    minds = shown.simulation.minds.values()
-    memories = [path_of(part) for mind in minds for part in subtree(mind) if isinstance(part, Memory)]
+    agents = shown.simulation.agents.values()
+    memories = [path_of(part) for mind in agents for part in subtree(mind) if isinstance(part, Memory)]
     bodies = [*shown.simulation.world.bodies]
     wanted: list[Any] = [Explain(), *(Explain(at=share * shown.simulation.time) for share in (0.3, 0.9)), Events(most=20_000)]
     wanted += [MemoryRows(memory=memory) for memory in memories]
@@ -97,7 +97,7 @@ def told(shown: Shown) -> dict[str, Any]:
     """Returns all that is shown of the present, as JSON by what it is."""
     physics, apertures = shown.scene()
     parts: dict[str, Any] = {}
-    for mind in shown.simulation.minds.values():
+    for mind in shown.simulation.agents.values():
         parts |= snapshot_of(mind)
     drawn = {kind: _plain(value) for kind, value in shown.drawn(KINDS).items()}
     now: dict[str, Any] = {"physics": physics.hex(), "apertures": apertures, "parts": parts, "result": shown.result()}
@@ -172,7 +172,7 @@ def seek(shown: Shown, known: dict[int, dict[str, Any]], chance: random.Random) 
 
 def command_of(simulation: Simulation) -> tuple[str | None, str, tuple[Any, ...]]:
     if not simulation.world.bodies:
-        return None, "parameter", (f"{next(iter(simulation.minds))}.production_time", 0.06)
+        return None, "parameter", (f"{next(iter(simulation.agents))}.production_time", 0.06)
     return next(iter(simulation.world.bodies)), "teleport", (-0.3, 0.2, 0.1)
 
 

@@ -143,11 +143,11 @@ def until(server: Served, name: str, status: str) -> dict[str, Any]:
 
 def test_a_session_by_rest_alone(server: Served) -> None:
     name = opened(server)
-    assert server.post(f"/api/sessions/{name}/say", {"say": {"type": "run"}}).json() == {"result": None, "error": None}
+    assert server.post(f"/api/sessions/{name}/command", {"command": {"type": "run"}}).json() == {"result": None, "error": None}
     assert until(server, name, "ended")["state"]["time"] == 6.8
-    refused = server.post(f"/api/sessions/{name}/say", {"say": {"type": "run"}})
+    refused = server.post(f"/api/sessions/{name}/command", {"command": {"type": "run"}})
     assert (refused.status_code, "over" in refused.json()["error"]) == (409, True)
-    told = server.post(f"/api/sessions/{name}/say", {"say": {"type": "events", "kinds": ["fire"]}}).json()["result"]
+    told = server.post(f"/api/sessions/{name}/command", {"command": {"type": "events", "kinds": ["fire"]}}).json()["result"]
     assert told["events"][0][3]["production"] == "look"
     recording = server.get(f"/api/sessions/{name}").json()["session"]["recording"]
     assert server.post(f"/api/sessions/{name}/close").status_code == 200
@@ -294,11 +294,11 @@ def test_two_pages_see_the_same_and_say_who_controls(server: Served) -> None:
     async def talk() -> None:
         one, other = await attached(server, name), await attached(server, name)
         await heard(one, lambda message: len(message.get("session", {}).get("watching", ())) == 2)
-        await one.send(json.dumps({"id": 4, "say": {"type": "step", "ticks": 30}}))
+        await one.send(json.dumps({"id": 4, "command": {"type": "step", "ticks": 30}}))
         for page in (one, other):
             told = await heard(page, lambda message: tick_of(message) == 30)
             assert told["state"]["status"] == "paused"
-        await other.send(json.dumps({"id": 5, "say": {"type": "explain", "production": "turn"}}))
+        await other.send(json.dumps({"id": 5, "command": {"type": "explain", "production": "turn"}}))
         told = await heard(other, lambda message: "replies" in message)
         assert told["replies"][0]["id"] == 5
         assert told["replies"][0]["result"][0]["productions"][0]["name"] == "turn"
@@ -326,7 +326,7 @@ def test_nonsense_on_the_websocket_is_told_and_hurts_nobody(server: Served) -> N
 
     async def talk() -> None:
         socket = await attached(server, name)
-        for text in ("", "{", "[]", "\0", '{"id": 1}', '{"id": 1, "say": {"type": "fly"}}', '{"id": -1, "say": {"type": "run"}}'):
+        for text in ("", "{", "[]", "\0", '{"id": 1}', '{"id": 1, "command": {"type": "fly"}}', '{"id": -1, "command": {"type": "run"}}'):
             await socket.send(text)
             told = await heard(socket, lambda message: "replies" in message)
             assert told["replies"][0]["error"]
@@ -351,7 +351,7 @@ def test_a_frozen_browser_holds_up_nobody(server: Served) -> None:
 
     async def talk() -> None:
         frozen = await attached(server, name, queue=1)  # it reads nothing from now on
-        await frozen.send(json.dumps({"id": 1, "say": {"type": "run"}}))
+        await frozen.send(json.dumps({"id": 1, "command": {"type": "run"}}))
         other = await attached(server, name)
         await heard(other, lambda message: "state" in message and message["state"]["status"] == "ended")
         await other.close()

@@ -145,7 +145,7 @@ def test_the_path_is_known_to_who_comes_late_and_after_going_back(desk: Desk, tm
     back = np.array(drawn(talk, 100, ("path",))["path"]["walker"])
     assert len(back) < len(way)
     assert back[-1, 0] == pytest.approx(0.5 * 0.95, abs=0.03)
-    talk.say("say", word="walk", values=[-0.5], drop=True)
+    talk.say("command", word="walk", values=[-0.5], drop=True)
     talk.say("step", ticks=100)
     talk.until("paused", tick=200)
     other = np.array(drawn(talk, 200, ("path",))["path"]["walker"])

@@ -19,7 +19,7 @@ USUAL = {"name": "width", "memory": "memory", "value": 1, "word": "teleport", "t
 def usual(kind: type[PageCommand]) -> dict[str, Any]:
     """Returns valid fields of a command: those that are required."""
     fields = {name: USUAL[name] for name, field in kind.model_fields.items() if field.is_required()}
-    return {**fields, "name": "contacts"} if kind.__name__ == "Overlay" else fields
+    return {**fields, "name": "contacts"} if kind.__name__ == "ShowOverlay" else fields
 
 
 @pytest.mark.parametrize("name", COMMANDS)

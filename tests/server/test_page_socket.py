@@ -31,24 +31,24 @@ def session(server: Served) -> str:
 
 WRONG: list[Any] = [
     b"\x00\xff",
-    b'{"id": 1, "say": {"type": "run"}}',
+    b'{"id": 1, "command": {"type": "run"}}',
     "null",
     "1e400",
     "[" * 50_000,
-    '{"id": "1", "say": []}',
-    json.dumps({"id": 1, "say": {"type": "step", "ticks": 10**30}}),
-    json.dumps({"id": 1, "say": {"type": "step", "ticks": 1.5}}),
-    json.dumps({"id": 1, "say": {"type": "seek", "time": "soon"}}),
-    '{"id": 1, "say": {"type": "seek", "time": NaN}}',
-    json.dumps({"id": 1, "say": {"type": "breakpoints", "productions": ["x"] * 201}}),
-    json.dumps({"id": 1, "say": {"type": "explain", "at": -1}}),
-    json.dumps({"id": 1, "say": {"type": "say", "word": "x", "named": {"a": {"b": 1}}}}),
-    json.dumps({"id": 2**60, "say": {"type": "pause"}}),
+    '{"id": "1", "command": []}',
+    json.dumps({"id": 1, "command": {"type": "step", "ticks": 10**30}}),
+    json.dumps({"id": 1, "command": {"type": "step", "ticks": 1.5}}),
+    json.dumps({"id": 1, "command": {"type": "seek", "time": "soon"}}),
+    '{"id": 1, "command": {"type": "seek", "time": NaN}}',
+    json.dumps({"id": 1, "command": {"type": "breakpoints", "productions": ["x"] * 201}}),
+    json.dumps({"id": 1, "command": {"type": "explain", "at": -1}}),
+    json.dumps({"id": 1, "command": {"type": "command", "word": "x", "named": {"a": {"b": 1}}}}),
+    json.dumps({"id": 2**60, "command": {"type": "pause"}}),
     json.dumps({"type": "attach"}),
     json.dumps({"type": "attach", "session": 5}),
     json.dumps({"type": "attach", "session": "s1", "run": -1}),
     json.dumps({"type": "attach", "session": "s1", "more": 1}),
-    '{"id": 1, "say": {"type": "\\ud800"}}',
+    '{"id": 1, "command": {"type": "\\ud800"}}',
 ]
 
 
@@ -61,7 +61,7 @@ def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) 
         await socket.send(text)
         told = await heard(socket, lambda message: "replies" in message or message["type"] == "refused")
         assert told.get("error") or told["replies"][0]["error"]
-        await socket.send(json.dumps({"id": 7, "say": {"type": "events", "most": 1}}))  # and it goes on
+        await socket.send(json.dumps({"id": 7, "command": {"type": "events", "most": 1}}))  # and it goes on
         assert (await heard(socket, lambda message: "replies" in message))["replies"][-1]["error"] is None
         await socket.close()
 
@@ -89,7 +89,7 @@ def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(s
         socket = await attached(server, session)
         waiting = set(frames)
         for number, said in frames.items():
-            await socket.send(json.dumps({"id": number, "say": said}))
+            await socket.send(json.dumps({"id": number, "command": said}))
             if number % 20 == 19 or number == len(frames) - 1:  # no more may wait at once than so many
                 while any(earlier in waiting for earlier in range(number + 1)):
                     told = await heard(socket, lambda message: "replies" in message)
@@ -98,7 +98,7 @@ def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(s
 
     asyncio.run(talk())
     assert server.get(f"/api/sessions/{session}").json()["session"]["alive"]
-    assert server.post(f"/api/sessions/{session}/say", {"say": {"type": "speed", "factor": None}}).status_code == 200
+    assert server.post(f"/api/sessions/{session}/command", {"command": {"type": "speed", "factor": None}}).status_code == 200
 
 
 @pytest.mark.slow
@@ -108,7 +108,7 @@ def test_who_asks_without_end_and_reads_nothing_is_sent_away(server: Served, ses
         address = f"ws://127.0.0.1:{server.port}/ws"
         async with websockets.connect(address, additional_headers=bearer, max_size=None, max_queue=1, close_timeout=1) as socket:
             await socket.send(json.dumps({"type": "attach", "session": session}))
-            question = json.dumps({"id": 1, "say": {"type": "events", "most": 20_000}})
+            question = json.dumps({"id": 1, "command": {"type": "events", "most": 20_000}})
 
             async def ask_on() -> None:
                 while True:
@@ -144,7 +144,7 @@ def test_showing_one_session_after_the_other_leaves_nothing_behind(server: Serve
         socket = await attached(server, session)
         for _ in range(200):
             await socket.send(json.dumps({"type": "attach", "session": session}))
-        await socket.send(json.dumps({"id": 1, "say": {"type": "events", "most": 1}}))
+        await socket.send(json.dumps({"id": 1, "command": {"type": "events", "most": 1}}))
         await heard(socket, lambda message: "replies" in message)
         assert len(server.get(f"/api/sessions/{session}").json()["session"]["watching"]) == 1
         await socket.close()

@@ -81,7 +81,7 @@ def test_a_run_that_goes_another_way_before_it_failed_has_not_failed(desk: Desk,
     talk = desk.begin(tmp_path, FAILING, record=True, run=True, wait="failed")
     talk.say("seek", time=0.01)
     talk.until("paused", time=0.01)
-    talk.say("say", body="walker", word="walk", values=[1.0])
+    talk.say("command", body="walker", word="walk", values=[1.0])
     desk.do(talk.session.stop())
     assert desk.listed(tmp_path)[1][0].failed is None
 

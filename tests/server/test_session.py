@@ -199,10 +199,10 @@ def test_a_live_parameter_acts_at_once_and_others_do_not(desk: Desk, tmp_path: P
 
 def test_any_word_can_be_said(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
-    talk.say("say", word="teleport", values=[1.0, 0.5], body="walker")
+    talk.say("command", word="teleport", values=[1.0, 0.5], body="walker")
     assert talk.say("body")["pose"]["y"] == 0.5
     with pytest.raises(RefusedError, match="'fly'"):
-        talk.say("say", word="fly", body="walker")
+        talk.say("command", word="fly", body="walker")
 
 
 def test_parameters_make_another_run(desk: Desk, tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def whole(server: Served) -> Path:
     """A recording of 0.5 s of the doorway, from which all others are copied."""
     session = server.post("/api/sessions", {"model": "doorway.py", "seed": 1}).json()["id"]
-    server.post(f"/api/sessions/{session}/say", {"say": {"type": "step", "ticks": 50}})
+    server.post(f"/api/sessions/{session}/command", {"command": {"type": "step", "ticks": 50}})
     while (server.get(f"/api/sessions/{session}").json()["state"] or {"tick": 0})["tick"] < 50:
         time.sleep(0.05)
     name = server.get(f"/api/sessions/{session}").json()["session"]["recording"]

@@ -1,4 +1,4 @@
-"""Planning units in minds with bodies: with seek, recordings and replay, and the numbers of ACT-R 7."""
+"""Planning units in agents with bodies: with seek, recordings and replay, and the numbers of ACT-R 7."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lockstep: minds and bodies go through the same time, exactly, whatever the wall clock and onlookers do."""
+"""Lockstep: agents and bodies go through the same time, exactly, whatever the wall clock and onlookers do."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Early(Model):
         yield 0.01
         self.body.get("pose").value
 """,
-    "minds.py",
+    "agents.py",
 )
 BodyPort = MINDS.BodyPort
 
@@ -122,7 +122,7 @@ def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 def test_a_tick_thinks_and_a_tock_moves_and_answers() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
     simulation.run(1.0)
-    mind: Any = simulation.minds["walker"]
+    mind: Any = simulation.agents["walker"]
     asked, busy, answered, arrived, felt, nothing = mind.times
     assert (asked, busy) == (("asked", 0.05), ("busy", True))
     assert answered[:2] == ("answered", 0.05)  # asked at the very end of a tick, answered when the next begins
@@ -146,7 +146,7 @@ REQUESTS = [("get", "pose"), ("set", "waypoint"), ("get", "pose"), ("get", "pose
 
 def test_events_at_the_very_end_of_a_tick_belong_to_it() -> None:
     simulation = Simulation(Scene(), bodiless={"edge": MINDS.Edge})
-    edge: Any = simulation.minds["edge"]
+    edge: Any = simulation.agents["edge"]
     simulation.tick()
     assert edge.done == ("exactly at the end",)
     simulation.tock()
@@ -159,7 +159,7 @@ def test_both_clocks_agree_exactly(period: float, timestep: float) -> None:
     simulation = Simulation(scene_of("walker", timestep=timestep), {"walker": Driver}, period=period, seed=3)
     for _ in range(500):
         simulation.step()
-        assert simulation.minds["walker"].sch.now_us == simulation.world.time == round(simulation.ticks * period * 1e6)
+        assert simulation.agents["walker"].sch.now_us == simulation.world.time == round(simulation.ticks * period * 1e6)
     assert simulation.time == near(500 * period)
 
 
@@ -261,7 +261,7 @@ def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
 
 def test_a_body_without_a_mind_and_a_mind_without_a_body(asked: Counter[str]) -> None:
     simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
-    environment: Any = simulation.minds["watcher"].parent
+    environment: Any = simulation.agents["watcher"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
     simulation.run(0.5)
@@ -273,7 +273,7 @@ def test_a_body_without_a_mind_and_a_mind_without_a_body(asked: Counter[str]) ->
 
 def test_simultaneous_events_of_several_minds_have_one_order() -> None:
     simulation = Simulation(Scene(), bodiless={"b": MINDS.First, "a": MINDS.First, "c": MINDS.First})
-    environment: Any = simulation.minds["a"].parent
+    environment: Any = simulation.agents["a"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
     simulation.run(0.03)
@@ -283,7 +283,7 @@ def test_simultaneous_events_of_several_minds_have_one_order() -> None:
 def test_a_mind_that_says_stop_ends_the_run_with_its_tick() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
     report = simulation.run(1)
-    mind: Any = simulation.minds["walker"]
+    mind: Any = simulation.agents["walker"]
     assert (report.ended_by, report.ticks, simulation.time, mind.ticks) == ("stop", 3, 0.03, "to the end of its tick")
     assert mind.now() == simulation.time
     assert simulation.run(0.02).ended_by == "seconds"
@@ -293,7 +293,7 @@ def test_a_run_without_limits_ends_when_no_mind_has_anything_left_to_do() -> Non
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
     report = simulation.run()
     assert report.ended_by == "done"
-    assert simulation.minds["walker"].times[-1][0] == "nothing"
+    assert simulation.agents["walker"].times[-1][0] == "nothing"
     assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
 
 
@@ -325,7 +325,7 @@ def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
     simulation.command("parameter", "other.body.error", True)
     assert simulation.world.aperture_width() == near(0.4)
     simulation.run(0.5)
-    assert simulation.minds["walker"].looks > 100
+    assert simulation.agents["walker"].looks > 100
     assert simulation.trace is not None
     told = simulation.trace.select("command")
     assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
@@ -360,7 +360,7 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
         r"Simulation\.seed: must be a whole number or a text .*got 1\.5",
     ),
     (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number or a text of printable characters"),
-    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.minds: must name what makes each agent, as in"),
+    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.agents: must name what makes each agent, as in"),
     (
         lambda s: Simulation(Scene(), bodiless={"": Driver}),
         r"Simulation\.bodiless: an agent's name must be a text that does",
@@ -420,7 +420,7 @@ def test_an_unknown_word_names_the_modellers_line() -> None:
     with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
         simulation.run(0.1)
     line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
-    assert caught.value.__notes__ == [f"  asked for by 'walker.body' in minds.py:{line}"]
+    assert caught.value.__notes__ == [f"  asked for by 'walker.body' in agents.py:{line}"]
     with pytest.raises(SimulationError, match=r"the run has failed at 0\.02 s and cannot go on"):
         simulation.step()
     simulation.seek(0.01)
@@ -430,7 +430,7 @@ def test_an_unknown_word_names_the_modellers_line() -> None:
 def test_one_agent_cannot_be_two_minds() -> None:
     agent: Any = MINDS.Idle()
     simulation = Simulation(Scene(), bodiless={"a": lambda: agent, "b": lambda: agent})
-    with pytest.raises(SimulationError, match=r"minds\['b'\]: must make a new agent each time"):
+    with pytest.raises(SimulationError, match=r"agents\['b'\]: must make a new agent each time"):
         simulation.step()
 
 
@@ -491,7 +491,7 @@ class Agent(Model):
     for seed in (1, 1, 2):
         simulation = Simulation(Scene(), bodiless={"agent": agent}, seed=seed)
         simulation.run(0.2)
-        numbers.append(simulation.minds["agent"].drawn)
+        numbers.append(simulation.agents["agent"].drawn)
     assert numbers[0] == numbers[1] != numbers[2]
 
 
@@ -499,7 +499,7 @@ def test_nothing_is_asked_of_a_body_that_nobody_wants(asked: Counter[str]) -> No
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
     simulation.run(0.1)
     assert not asked
-    assert isinstance(simulation.minds["walker"], (ACTR, Model))
+    assert isinstance(simulation.agents["walker"], (ACTR, Model))
 
 
 @pytest.mark.slow
@@ -514,5 +514,5 @@ def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> N
         simulation.run(20)
         sizes.append(tracemalloc.get_traced_memory()[0])
     tracemalloc.stop()
-    assert simulation.world.time == simulation.minds["walker"].sch.now_us == 62_000_000
+    assert simulation.world.time == simulation.agents["walker"].sch.now_us == 62_000_000
     assert sizes[2] - sizes[1] < 200_000  # a state of the two bodies' noise alone is 40,000 bytes

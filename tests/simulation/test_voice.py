@@ -1,4 +1,4 @@
-"""What minds print: told as events however the run is recorded, and printed once however often it is lived through."""
+"""What agents print: told as events however the run is recorded, and printed once however often it is lived through."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def test_another_thread_may_print_while_minds_think(capsys: pytest.CaptureFixtur
 def test_a_mind_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> None:
     before, aside = sys.stdout, io.StringIO()
     simulation = talking()
-    simulation.minds["talker"].aside = aside
+    simulation.agents["talker"].aside = aside
     for _ in range(20):
         simulation.step()
     assert aside.getvalue().count("aside") > 6

@@ -153,7 +153,7 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
         Scene(parts=(Floor(), Wall(name="wall", start=(6, -4), end=(6, 4)), Mannequin(name="walker"))), {"walker": kind}
     )
     simulation.run(10)
-    time, distance, motion = simulation.minds["walker"].seen
+    time, distance, motion = simulation.agents["walker"].seen
     assert 1.8 < time <= 2.0
     assert time == near(distance / 1.5, abs=0.02)
     assert motion == near(1.5, abs=0.05)

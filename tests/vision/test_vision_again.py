@@ -42,20 +42,20 @@ def seen_of(width: float, later: float, options: str, seed: int = 1) -> Simulati
 
 def test_what_is_no_longer_as_was_asked_for_is_not_brought_by_the_sos_rule() -> None:
     simulation = seen_of(0.9, 0.3, ", rule='sos'")
-    mind = simulation.minds["walker"]
+    mind = simulation.agents["walker"]
     assert (mind.visual.chunk, mind.vision.error) == (None, True)
     ((time, data),) = list(events(simulation.trace, "sight"))
     assert (time, data["failed"]) == (0.25, True)
     assert "what was chosen had gone" in str(mind.explain())
-    stale = seen_of(0.9, 0.3, "").minds["walker"]
+    stale = seen_of(0.9, 0.3, "").agents["walker"]
     assert (stale.visual.chunk["width"], stale.vision.error) == (0.9, False)
 
 
 def test_what_is_still_there_comes_as_it_is_at_the_end() -> None:
     simulation = seen_of(0.9, 0.7, ", rule='sos'")
-    assert simulation.minds["walker"].visual.chunk["width"] == 0.7
+    assert simulation.agents["walker"].visual.chunk["width"] == 0.7
     assert [time for time, _ in events(simulation.trace, "answer")] == [0.05, 0.25]
-    assert seen_of(0.9, 0.7, "").minds["walker"].visual.chunk["width"] == 0.9
+    assert seen_of(0.9, 0.7, "").agents["walker"].visual.chunk["width"] == 0.9
 
 
 def test_both_looks_of_a_search_are_misjudged_alike() -> None:
@@ -64,7 +64,7 @@ def test_both_looks_of_a_search_are_misjudged_alike() -> None:
     for simulation in found:
         noticed = [data["noticed"] for _, data in events(simulation.trace, "search")]
         assert len(noticed[0]) == 0 or noticed[0][0][0]["width"] == noticed[-1][0][0]["width"]
-    assert any(simulation.minds["walker"].visual.chunk is not None for simulation in found)
+    assert any(simulation.agents["walker"].visual.chunk is not None for simulation in found)
 
 
 @pytest.mark.parametrize("options", [", rule='sos'", ", rule='sos', delay_sd=0.05, edge_noise=0.003"])
@@ -75,7 +75,7 @@ def test_it_lives_through_the_same_again(options: str) -> None:
     second.seek(0.02)
     second.run(0.28)
     second.seek(0.3)
-    assert second.minds["walker"].visual.chunk == first.minds["walker"].visual.chunk
+    assert second.agents["walker"].visual.chunk == first.agents["walker"].visual.chunk
 
 
 # -- what onlookers are told
@@ -83,7 +83,7 @@ def test_it_lives_through_the_same_again(options: str) -> None:
 
 def test_onlookers_are_told_what_was_seen_where() -> None:
     simulation = seen_of(0.9, 0.9, "")
-    mind, body = simulation.minds["walker"], simulation.world.bodies["walker"]
+    mind, body = simulation.agents["walker"], simulation.world.bodies["walker"]
     before: Any = digest(simulation)
     (one,) = sightings(mind, body)
     assert (one.module, one.bottom_up, one.time, one.chosen, one.camera.rows) == ("walker.vision", False, 0.05, True, 30)
@@ -107,7 +107,7 @@ def test_what_was_seen_stays_where_it_was_though_the_eye_has_gone_on_looking() -
     simulation.run(1.0)
 
     def places() -> dict[bool, Any]:
-        return {one.bottom_up: one.corners[0] for one in sightings(simulation.minds["walker"], body)}
+        return {one.bottom_up: one.corners[0] for one in sightings(simulation.agents["walker"], body)}
 
     before = places()
     assert before[False][:2] == near((7.0, 0.45), abs=0.1)
@@ -122,4 +122,4 @@ def test_what_was_seen_stays_where_it_was_though_the_eye_has_gone_on_looking() -
 def test_who_has_not_looked_has_seen_nothing() -> None:
     scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker")))
     simulation = Simulation(scene, {"walker": agent(KIND.replace(" OPTIONS", ""))}, seed=1)
-    assert sightings(simulation.minds["walker"], simulation.world.bodies["walker"]) == []
+    assert sightings(simulation.agents["walker"], simulation.world.bodies["walker"]) == []

@@ -42,7 +42,7 @@ def walker() -> Any:
     scene = Scene(parts=(Floor(), *walls, Mannequin(name="walker")))
     simulation = Simulation(scene, {"walker": agent(KIND)}, seed=1, trace="all")
     simulation.run(0.4)
-    return simulation.minds["walker"]
+    return simulation.agents["walker"]
 
 
 def test_it_says_what_was_noticed_refused_and_chosen(walker: Any) -> None:

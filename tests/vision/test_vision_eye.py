@@ -86,7 +86,7 @@ def test_a_gaze_stays_within_the_eyes_limits_and_goes_at_a_speed() -> None:
 def seen(options: str, seconds: float = 1.0, seed: int = 1) -> tuple[Simulation, Any]:
     simulation = Simulation(SCENE, {"walker": agent(KIND.replace(" OPTIONS", options))}, seed=seed, trace="all")
     simulation.run(seconds)
-    return simulation, simulation.minds["walker"]
+    return simulation, simulation.agents["walker"]
 
 
 def arrival(options: str) -> float:

@@ -73,13 +73,13 @@ def test_an_agent_with_vision_is_refused_the_raw_view(parts: str, extra: str, vi
 def test_an_agent_may_open_its_view_and_the_trace_says_that_it_steps_outside() -> None:
     simulation = run(OPEN)
     assert requests(simulation) == [{"call": "request", "word": "view", "named": {"rows": 2}, "outside_vision": True}]
-    assert simulation.minds["walker"].goal.chunk[0] == "saw"
+    assert simulation.agents["walker"].goal.chunk[0] == "saw"
 
 
 def test_so_does_an_agent_without_vision() -> None:
     simulation = run("")
     assert [request["outside_vision"] for request in requests(simulation)] == [True]
-    assert simulation.minds["walker"].goal.chunk[0] == "saw"
+    assert simulation.agents["walker"].goal.chunk[0] == "saw"
 
 
 def test_vision_itself_and_other_words_are_not_marked() -> None:
@@ -106,14 +106,14 @@ class Looking(ACTR):
 def test_the_vision_of_one_agent_closes_no_view_of_another() -> None:
     blind = "class Blind(ACTR):\n    visual = Buffer()\n    vision = Vision(visual)\n"
     simulation = run("", extra=blind, walker="Seeing", other="Blind")
-    assert simulation.minds["walker"].goal.chunk[0] == "saw"
+    assert simulation.agents["walker"].goal.chunk[0] == "saw"
 
 
 def test_the_option_may_change_on_the_way() -> None:
     opening = (
         "vision = Vision(visual)\n    def open_up(goal='look', vision='private_view:True', utility=9):\n        vision.private_view = False"
     )
-    assert run(opening).minds["walker"].goal.chunk[0] == "saw"
+    assert run(opening).agents["walker"].goal.chunk[0] == "saw"
 
 
 def test_the_option_is_true_or_false() -> None:

@@ -47,8 +47,8 @@ def two_openings() -> World:
 def chosen(options: str = "", seeds: int = SEEDS) -> Counter[float | None]:
     """Returns how often which width was chosen; None where nothing was found."""
     kind = agent(KIND.replace("OPTIONS", options))
-    minds = (Mindful(two_openings(), kind, seed).tick(6).mind for seed in range(seeds))
-    return Counter(None if mind.visual.chunk is None else mind.visual.chunk["width"] for mind in minds)
+    agents = (Mindful(two_openings(), kind, seed).tick(6).mind for seed in range(seeds))
+    return Counter(None if mind.visual.chunk is None else mind.visual.chunk["width"] for mind in agents)
 
 
 def saliences() -> dict[float, float]:

@@ -46,7 +46,7 @@ class Features(Overlay):
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
         """Returns the features that each agent's last searches have found, see `drawn_features`."""
-        agents, bodies = observed.simulation.minds, observed.simulation.world.bodies
+        agents, bodies = observed.simulation.agents, observed.simulation.world.bodies
         return {name: drawn_features(agents[name], body) if name in agents else [] for name, body in bodies.items()}
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:

@@ -49,10 +49,10 @@ class Set(Change):
 
 
 @page_command
-class Say(Change):
+class SimulationCommand(Change):
     """Sends any command to the world, the agents or a body, as `Simulation.command` does."""
 
-    type: Literal["say"] = "say"
+    type: Literal["command"] = "command"
     word: Name
     values: tuple[PlainValue, ...] = Field(default=(), max_length=100)
     named: dict[Name, PlainValue] = Field(default_factory=dict, max_length=100)

@@ -50,7 +50,7 @@ def _overlay(name: str) -> str:
 
 
 @page_command
-class Overlay(PageCommand):
+class ShowOverlay(PageCommand):
     """Shows or hides an overlay of the 3D view, for all who watch the session."""
 
     type: Literal["overlay"] = "overlay"

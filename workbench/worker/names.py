@@ -12,7 +12,7 @@ from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.errors import Actr3dError, did_you_mean
-from workbench.loader import Listing
+from workbench.loader import ModelListing
 from workbench.worker.messages import Notice, notice
 from workbench.worker.top_models import Top
 
@@ -137,7 +137,7 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
     )
 
 
-def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: Listing, source: str, folder: Path) -> Names:
+def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: ModelListing, source: str, folder: Path) -> Names:
     """Returns the names of the things in a program, as far as it has run.
 
     Args:

@@ -25,7 +25,7 @@ from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
-from workbench.loader import Listing
+from workbench.loader import ModelListing
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.helper_messages import helpers_of
@@ -57,7 +57,7 @@ class ProgramRun:
         listing: What the model's text says of itself.
     """
 
-    def __init__(self, controller: RunController, listing: Listing) -> None:
+    def __init__(self, controller: RunController, listing: ModelListing) -> None:
         start = controller.channel.start
         self._controller = controller
         self._listing = listing

@@ -18,7 +18,7 @@ from actr3d.vision import visions
 from actr3d.world import Aperture, Floor, World
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors.touch import present
-from workbench.curves import Curves, stretch
+from workbench.curves import CurveReader, stretch
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.state_history import Past
 from workbench.worker.stop_conditions import Touches
@@ -122,12 +122,12 @@ class Shown:
         return self._curves.sampled(moments, names)
 
     @cached_property
-    def _curves(self) -> Curves:
+    def _curves(self) -> CurveReader:
         """Computes curves from the past, on a copy of the scene; created at the first request."""
-        return Curves(loaded(self.mj_model), self.surroundings)
+        return CurveReader(loaded(self.mj_model), self.surroundings)
 
     def eyesight(self, name: str) -> CameraParameters:
         """Returns how an agent sees with its body's eye: as its vision module does, or else as in the body's first view."""
-        mind, body = self.simulation.minds.get(name), self.simulation.world.bodies[name]
-        own = None if mind is None else next((vision.eyesight for vision in visions(mind)), None)
+        agent, body = self.simulation.agents.get(name), self.simulation.world.bodies[name]
+        own = None if agent is None else next((vision.eyesight for vision in visions(agent)), None)
         return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())

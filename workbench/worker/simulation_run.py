@@ -1,4 +1,4 @@
-"""A run of what a model file builds: minds and bodies in a world, which can go back and another way."""
+"""A run of what a model file builds: agents and bodies in a world, which can go back and another way."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.branches import new_branch, superfluous_branches
-from workbench.loader import Listing
+from workbench.loader import ModelListing
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
 from workbench.worker.foreknown import Foreknown
 from workbench.worker.helper_messages import helpers_of
@@ -41,7 +41,7 @@ BLOCK = 0.008
 """How long the run continues before it checks for commands of users [s], approximately."""
 MOST_TICKS = 64
 """The maximum number of ticks before it checks."""
-ENDINGS = {"stop": "the model called stop()", "done": "no mind has anything left to do"}
+ENDINGS = {"stop": "the model called stop()", "done": "no agent has anything left to do"}
 
 
 class SimulationRun:
@@ -52,7 +52,7 @@ class SimulationRun:
         listing: What the model's text says of itself.
     """
 
-    def __init__(self, controller: RunController, listing: Listing) -> None:
+    def __init__(self, controller: RunController, listing: ModelListing) -> None:
         self._controller = controller
         self._listing = listing
         self._start = controller.channel.start
@@ -104,7 +104,7 @@ class SimulationRun:
         if start.record is not None:
             facts = built_facts(start.path, start.source, parameters, limits.program_seed, limits.until, helpers.loaded)
             self._recording = simulation.record(start.record, **facts)
-            helpers.heard = partial(self._recording.fact, "helpers")  # a mind may import one later
+            helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._foreknown = foreknown = Foreknown(Path(start.recorded), self._shown.kept.states.add)
             simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], foreknown.ticks)
@@ -312,7 +312,7 @@ class SimulationRun:
 
     def tops(self) -> list[Top]:
         """Returns the agents."""
-        return [Top(mind) for mind in self._simulation.minds.values()]
+        return [Top(agent) for agent in self._simulation.agents.values()]
 
     def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
         """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
@@ -331,10 +331,10 @@ class SimulationRun:
         return self._shown.result()
 
     def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns what all parts of all minds are like."""
+        """Returns what all parts of all agents are like."""
         parts: dict[str, dict[str, Any]] = {}
-        for mind in self._simulation.minds.values():
-            parts |= snapshot_of(mind)
+        for agent in self._simulation.agents.values():
+            parts |= snapshot_of(agent)
         return parts
 
     def names(self) -> Names:

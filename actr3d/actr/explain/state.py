@@ -1,4 +1,8 @@
-"""The interface through which explanations read the state of an agent, current or past: facts, and how they are known."""
+"""The interface through which explanations read the state of an agent, current or past: facts, and how they are known.
+
+The tests of conditions are the same for both (`trial`). The facts have two sources: the model for now, because a run need not be traced
+to be explained, and objects outside the model are read as they are; the trace for the past, which no longer exists elsewhere.
+"""
 
 from __future__ import annotations
 

@@ -81,9 +81,9 @@ class Embodiment:
         self.body = body
         self.outbox = outbox
 
-    def join(self, mind: Model) -> None:
+    def join(self, agent: Model) -> None:
         """Gives an agent, and all ports below it, this body."""
-        mind.__dict__["_embodiment"] = self
+        agent.__dict__["_embodiment"] = self
 
 
 class Port(Model):
@@ -121,7 +121,7 @@ class Port(Model):
             )
         embodiment = self._find_embodiment()
         if embodiment is None:
-            raise SimulationError(f"port '{self._path}' has no body; a Simulation gives an agent one: minds={{body: agent}}")
+            raise SimulationError(f"port '{self._path}' has no body; a Simulation gives an agent one: agents={{body: agent}}")
         return embodiment
 
     def _find_embodiment(self) -> Embodiment | None:

@@ -44,7 +44,7 @@ PIECE = np.dtype(
         ("side", "i8"),  # a line, or the near or far side of something round
         ("object", "i8"),
         ("geom", "i8"),
-        ("surface", "i8"),  # the number of the patch or face it is cut from, see Scene.surfaces, or -1
+        ("surface", "i8"),  # the number of the patch or face it is cut from, see EyeScene.surfaces, or -1
         ("a", "f8"),  # conic: a w^2 - 2 (b0 + b1 u) w + (c0 + c1 u + c2 u^2) = 0
         ("b0", "f8"),  # line: w = c0 + c1 (u - b0)
         ("b1", "f8"),

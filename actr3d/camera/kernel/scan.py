@@ -16,13 +16,13 @@ from actr3d.camera.kernel.lower_envelope import Row, trace_row
 from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
-from actr3d.camera.kernel.scene import Geoms, Scene, Topology, set_scene
+from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent
 
 MOST_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""
 
-Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, Scene, Row, Array, Array], int]
+Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene, Row, Array, Array], int]
 
 
 @cache
@@ -43,7 +43,7 @@ def _scan(
     optics: Array,
     geoms: Geoms,
     topology: Topology,
-    scene: Scene,
+    scene: EyeScene,
     row: Row,
     labels: Array,
     extents: Records,
@@ -59,7 +59,7 @@ def _look(
     optics: Record,
     geoms: Geoms,
     topology: Topology,
-    scene: Scene,
+    scene: EyeScene,
     row: Row,
     labels: Array,
     extents: Records,
@@ -85,7 +85,7 @@ def _look(
 
 
 @compiled
-def _add_pieces(v: float, optics: Record, topology: Topology, scene: Scene, present: int, row: Row) -> tuple[int, int]:
+def _add_pieces(v: float, optics: Record, topology: Topology, scene: EyeScene, present: int, row: Row) -> tuple[int, int]:
     """Writes the pieces of all surfaces on a row; returns the number of pieces, and the number of surfaces without any."""
     count, aside = zero(), zero()
     for i in range(present):
@@ -107,7 +107,7 @@ def _add_pieces(v: float, optics: Record, topology: Topology, scene: Scene, pres
 
 
 @compiled
-def _order_surfaces(row: Row, pieces: int, scene: Scene, aside: int) -> None:
+def _order_surfaces(row: Row, pieces: int, scene: EyeScene, aside: int) -> None:
     """Sorts the surfaces by their first pieces: on the next row, nearly everything is then already in order."""
     count = zero()
     for i in range(pieces):

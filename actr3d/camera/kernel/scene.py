@@ -52,7 +52,7 @@ class Topology(NamedTuple):
     """The geom of each face, `(m,)`."""
 
 
-class Scene(NamedTuple):
+class EyeScene(NamedTuple):
     """Work arrays for what is in view at one moment."""
 
     places: Array
@@ -76,11 +76,11 @@ class Scene(NamedTuple):
     """Active surfaces that have no piece on the row."""
 
 
-def room_for_scene(topology: Topology, rows: int) -> Scene:
+def room_for_scene(topology: Topology, rows: int) -> EyeScene:
     """Returns work arrays large enough for all geoms of a model."""
     geoms, corners, faces = len(topology.kind), int(topology.corners[-1]), int(topology.faces[-1])
     patches = 3 * geoms + 1  # a cylinder or capsule has three
-    return Scene(
+    return EyeScene(
         places=np.zeros((geoms + 1, 3)),
         reaches=np.full(geoms + 1, np.inf),
         turn=np.zeros((3, 3)),
@@ -94,7 +94,7 @@ def room_for_scene(topology: Topology, rows: int) -> Scene:
 
 
 @compiled
-def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: Scene) -> int:
+def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Topology, optics: Record, scene: EyeScene) -> int:
     """Finds what may be in view; returns 0, or `-1 - geom` if the pose of a geom is not finite.
 
     Args:
@@ -147,7 +147,7 @@ def _reach(geom: int, geoms: Geoms, topology: Topology) -> float:
 
 
 @compiled
-def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, count: int) -> int:
+def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics: Record, scene: EyeScene, count: int) -> int:
     """Appends the patches of a geom that is round or a plane; returns the new number of patches."""
     kind, place, before = topology.kind[geom], scene.places[geom], count
     both = kind != PLANE and math.sqrt(_square(place)) - reach <= optics.corner
@@ -189,7 +189,7 @@ def _square(vector: Array) -> float:
 
 
 @compiled
-def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record, scene: Scene, occluders: int) -> int:
+def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record, scene: EyeScene, occluders: int) -> int:
     """Transforms the corners of a geom, and adds its faces at the rows they begin on; returns the new number of occluders."""
     kind, source, size = topology.kind[geom], topology.source[geom], geoms.size[geom]
     place, turn = scene.places[geom], scene.turn

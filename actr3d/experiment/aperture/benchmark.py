@@ -15,7 +15,7 @@ from actr3d.experiment.aperture.constraints import Constraint, Findings, turning
 from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
 
 TRIALS = 30
-"""The default number of trials per cell. Source: as many as each of the original's agents (human-data)."""
+"""The default number of trials per cell. Source: as many as each of the original's agents (docs/human-data.md)."""
 AIM, BAR = 2.0, 4.0
 """The targeted and the maximum root mean square difference from the original's means [degrees]."""
 JUDGED = tuple(n / 100 for n in range(100, 133, 2))

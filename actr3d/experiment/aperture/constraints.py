@@ -1,4 +1,4 @@
-"""The constraints on a model of people who pass apertures: those without a hand-held bar, by their numbers in human-data.
+"""The constraints on a model of people who pass apertures: those without a hand-held bar, by their numbers in docs/human-data.md.
 
 Agents, not trials, are the unit of analysis: means of agents are compared.
 """
@@ -20,14 +20,14 @@ from scipy.special import stdtr
 from actr3d.experiment.aperture.trials import CONDITIONS, GROUPS, Outcome, Trial
 
 TURNED = 5.0
-"""An agent has turned if its angle is above this [degrees]: people sway by a few degrees (human-data). No source: our choice."""
+"""An agent has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md). No source: our choice."""
 CRITICAL = (1.25, 1.35)
 """The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of
-human-data."""
+docs/human-data.md."""
 POINT = 1.30
 """Below this ratio people turn. Source: Warren & Whang (1987)."""
 MARGIN = (0.06, 0.08)
-"""The margin on each side [m]. Source: Higuchi's review (human-data)."""
+"""The margin on each side [m]. Source: Higuchi's review (docs/human-data.md)."""
 PASSABLE = (1.11, 1.21)
 """The bounds of the ratio from which people judge that they can pass without turning. Source: Warren & Whang (1987), about 1.16;
 the bounds are our choice."""
@@ -44,7 +44,7 @@ class Constraint:
     """One constraint, and whether the model meets it."""
 
     number: int
-    """Its number in human-data."""
+    """Its number in docs/human-data.md."""
     says: str
     met: bool
     found: str

@@ -32,7 +32,7 @@ class PassageResult:
     wall_angle_deg: float | None
     """The same when the axis reached the wall; None if it did not."""
     logged_angle_deg: float | None
-    """The sum of the joint angles of torso and clavicle at that moment [degrees], which the original model logged (human-data); plus
+    """The sum of the joint angles of torso and clavicle at that moment [degrees], logged by the original model (docs/human-data.md); plus
     that of the stance, if the body has one."""
     onset_distance_m: float | None
     """Distance from the wall at which the shoulders began to turn; None if they did not."""

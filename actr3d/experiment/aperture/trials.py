@@ -28,7 +28,7 @@ ALIKE = 0.007
 degrees at 45 cm and 1.2 at 50 (its own trials); agents that differ by 2 cm would turn by either 18 or 46 degrees there."""
 CONDITIONS = ("normal", "fast")
 APERTURES = tuple(n / 100 for n in range(40, 75, 5))
-"""[m]. Source: as in the original model's trials (human-data)."""
+"""[m]. Source: as in the original model's trials (docs/human-data.md)."""
 AGENTS = 5
 """The number of agents in each group. Source: Warren & Whang (1987)."""
 LONGEST = 30.0
@@ -135,7 +135,7 @@ def experiment(variant: str, trials: int, apertures: Iterable[float] = APERTURES
 def original_means() -> dict[tuple[str, str, float], float]:
     """Returns the original ACT-R 3D's mean angles [degrees] by group, condition and aperture [m].
 
-    Source: its own trials, 150 per cell (human-data).
+    Source: its own trials, 150 per cell (docs/human-data.md).
     """
     with (Path(__file__).parent / "original_means.csv").open(encoding="utf-8") as file:
         rows: list[Any] = list(csv.DictReader(file))

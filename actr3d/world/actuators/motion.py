@@ -18,10 +18,10 @@ from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
 
 MODERATE = 2.0
-"""Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (human-data)."""
+"""Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
 
 SACCADE, SACCADE_PER_RAD = 0.02, 0.002 * math.degrees(1)
-"""Duration of a saccade: 20 ms, and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; human-data)."""
+"""Duration of a saccade: 20 ms, and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; docs/human-data.md)."""
 
 _if_walking = actuator.if_body(lambda body: body.anatomy.push is not None)
 _if_jointed = actuator.if_body(lambda body: any(joint.driven for joint in body.joints.values()))

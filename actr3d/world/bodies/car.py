@@ -35,7 +35,7 @@ class Car(Configuration):
     wheelbase / tan(road wheel angle). Throttle and brake push along; the drag grows with the speed.
     Its position and heading are those of the rear axle's middle.
 
-    Source of mass and axles: the vehicle of the driver model in human-data (mass 1175, a 0.946, b 1.719).
+    Source of mass and axles: the vehicle of the driver model in docs/human-data.md (mass 1175, a 0.946, b 1.719).
     """
 
     name: Name = "car"

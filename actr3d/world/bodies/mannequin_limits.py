@@ -25,7 +25,7 @@ LIMITS: dict[str, tuple[Range, ...]] = {
 All axes are right-handed about the carrying segment's x (roll), y (pitch) and z (yaw): a positive yaw turns to the left, a positive
 pitch bows, a positive roll leans to the right; an arm is lifted forward by a negative pitch, the left one sideways by a positive roll.
 Source: ranges of motion of the American Academy of Orthopaedic Surgeons (hips, thoracolumbar and cervical spine, shoulder);
-clavicle elevation and depression from the same, its yaw of 20 degrees and the torso's of 90 from the original ACT-R 3D (human-data);
+clavicle elevation and depression from the same, its yaw of 20 degrees and the torso's of 90 from the original (docs/human-data.md);
 eye: Guitton & Volle (1987), about 55 degrees to each side. The clavicle's pitch and the eye's roll were chosen
 for this library; so was the stance, the legs relative to the walking direction: people can walk sideways.
 """
