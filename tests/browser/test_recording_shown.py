@@ -69,6 +69,25 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
 
 
+def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, workbench: Served) -> None:
+    name = "of-a-walker-" + "x" * 108
+    assert workbench.post(f"/api/recordings/{recorded(workbench, 'doorway.py')}/rename", {"to": name}).status_code == 200
+    model = workbench.folder / f"{'long_name_' * 6}.py"
+    model.write_text((workbench.folder / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
+    for model_shown in ("counting.py", model.name):  # as the way back; then both are open, in a list
+        page = pages(model_shown)
+        shows(page, "#status", "at its start")
+        page.goto(f"{workbench.url}/?recording={name}")
+        banner = page.locator(".recording-banner")
+        expect(banner).to_contain_text("s are known")
+        for width in (1280, 1024):
+            page.set_viewport_size({"width": width, "height": 800})
+            assert page.evaluate("document.documentElement.scrollWidth") == width
+            expect(banner.locator("button, select")).to_have_count(1)
+            page.wait_for_function("document.querySelector('.recording-banner :is(button, select)').getBoundingClientRect().right <= innerWidth")
+        page.close()
+
+
 @pytest.mark.slow
 @pytest.mark.scene
 def test_one_press_of_back_leads_from_the_recording_of_a_body_to_what_was_before(pages: Pages, workbench: Served) -> None:
