@@ -2,6 +2,7 @@
 
 import { html } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
+import { isOver } from "../run_status.js";
 import { session, state } from "../store.js";
 
 /** Whether the user has ever changed the speed of a run. */
@@ -16,6 +17,6 @@ export function bindFaster(work) {
 
 export function Hint() {
   const hasBody = Object.keys(session.value?.world?.bodies ?? {}).length > 0;
-  if (speedIsKnown.value || !hasBody || state.value?.wanted !== 1) return null;
+  if (speedIsKnown.value || !hasBody || isOver.value || state.value?.wanted !== 1) return null;
   return html`<button class="pace-hint" title="A model with a body goes at real time at first. + and -, or the choice of speeds above, change that" onClick=${() => faster()}>Real time: press + to go faster</button>`;
 }

@@ -84,6 +84,33 @@ def test_a_first_visit_shows_what_the_model_says_of_itself_and_one_click_tries_i
     expect(page.locator(".code .cm-content[aria-label*='doorway.py']")).to_be_visible()
 
 
+SHORT = """from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        self.stop()
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker})
+"""
+
+
+def test_the_hint_to_go_faster_is_not_for_a_run_that_is_over(pages: Pages, workbench: Served) -> None:
+    (workbench.folder / "short.py").write_text(SHORT, encoding="utf-8")
+    page = pages("short.py", paced=True)
+    hint = page.get_by_role("button", name="Real time: press + to go faster")
+    shows(page, "#status", "at its start")
+    expect(hint).to_be_visible()
+    page.click("#run")
+    shows(page, "#status", "ended")
+    expect(hint).to_have_count(0)
+
+
 def test_without_a_world_the_panels_have_all_the_room(pages: Pages) -> None:
     page = pages("counting.py", paced=True)
     shows(page, "#status", "at its start")

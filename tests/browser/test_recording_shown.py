@@ -84,7 +84,9 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
             page.set_viewport_size({"width": width, "height": 800})
             assert page.evaluate("document.documentElement.scrollWidth") == width
             expect(banner.locator("button, select")).to_have_count(1)
-            page.wait_for_function("document.querySelector('.recording-banner :is(button, select)').getBoundingClientRect().right <= innerWidth")
+            page.wait_for_function(
+                "document.querySelector('.recording-banner :is(button, select)').getBoundingClientRect().right <= innerWidth"
+            )
         page.close()
 
 
