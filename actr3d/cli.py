@@ -194,7 +194,7 @@ def _parser() -> argparse.ArgumentParser:
         help="run a model file",
         description="Runs a Python ACT-R model file, unchanged, or what a model file builds. "
         "`run FILE --help` also lists the options of the file.",
-        epilog="Exit codes: 0 the model ran, whatever came of it; 1 it failed, or the output could not be written; 2 wrong options; "
+        epilog="Exit codes: 0 the model ran, whatever its result; 1 it failed, or the output could not be written; 2 wrong options; "
         "130 it was interrupted.",
         add_help=False,
         allow_abbrev=False,
@@ -202,7 +202,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
     general = [
         run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file"),
-        run.add_argument("--seed", type=int, metavar="N", help="what all random choices come from (a fresh one unless given)"),
+        run.add_argument("--seed", type=int, metavar="N", help="seed of all random choices (default: a new one)"),
         run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest"),
         run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)"),
         run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too"),

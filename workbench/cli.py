@@ -26,7 +26,10 @@ READ_TIME = 20.0
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="workbench", description="See models think, step them, go back, change them, run them again.")
+    parser = argparse.ArgumentParser(
+        prog="workbench",
+        description="Runs models in the browser: step, go back, see buffers and productions, edit and run again.",
+    )
     parser.add_argument("models", nargs="?", type=Path, metavar="MODELS_FOLDER", help="the models (default: ./models, or a folder at home)")
     parser.add_argument("--host", default="127.0.0.1", help="where to listen; anything but loopback lets others reach it")
     parser.add_argument("--port", type=int, default=0, help="the port (default 0: any free one)")

@@ -105,7 +105,7 @@ class ModelFolder:
         except (OSError, RuntimeError):  # links that form a loop
             inside = False
         if not inside:
-            raise FileError("that leads out of the models folder")
+            raise FileError("the path is outside the models folder")
         return where
 
     def read(self, path: str) -> ModelFile:
@@ -249,7 +249,7 @@ def _encoded(text: str, line_end: str) -> bytes:
         return text.replace("\n", line_end).encode(declared)
     except UnicodeEncodeError as error:
         if 0xD800 <= ord(error.object[error.start]) < 0xE000:
-            raise FileError("the text has half characters, which no file can hold") from None
+            raise FileError("the text has an unpaired surrogate character, which no file can hold") from None
         raise FileError(f"{error.object[error.start]!r} is not in the encoding that the text declares ({error.encoding})") from None
     except (SyntaxError, LookupError) as error:
         raise FileError(f"the text declares an encoding that cannot be used: {error}") from None

@@ -28,9 +28,9 @@ class PendingRequests:
             SimulationError: If there is no worker, or too many requests wait already.
         """
         if worker is None:
-            raise SimulationError("there is no run: begin one")
+            raise SimulationError("there is no run; start one")
         if len(self._waiting) >= MOST:
-            raise SimulationError("too much waits for its answer already; is the model busy?")
+            raise SimulationError("too many requests are waiting for a reply; is the model busy?")
         self._number += 1  # starts at 1: number 0 means that nobody waits for the reply
         reply: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
         self._waiting[self._number] = worker, reply

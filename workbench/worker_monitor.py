@@ -29,7 +29,7 @@ _MEANINGS = {
 
 
 class Receiver(Protocol):
-    """Receives what an attendant reports; a session does."""
+    """Receives what a monitor reports; a session does."""
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Handles a message from a worker."""
@@ -171,7 +171,7 @@ def _why(status: int, subject: str) -> str:
         subject: The name of the process in the message.
     """
     if status == LOST:
-        return "the process from which all models' processes come was ended, and all runs with it; begin again"
+        return "the process that starts all models has ended, and all runs with it; restart them"
     if status == WIRE_LOST:
         return "the model closed the connection of its process to the workbench: it may close only files that it has opened itself"
     if status == TOO_MUCH_MEMORY:

@@ -127,9 +127,9 @@ class RetrievalReason:
         asked = f"request '{self.request}' at {self.time:.3f} s, asked for '{self.asked}'"
         lines = [f"  {self.memory}: {asked}, {limit}: {self.outcome}{takes}"]
         if self.finsts:
-            lines.append(f"      retrieved lately: {'; '.join(self.finsts)}")
+            lines.append(f"      retrieved recently: {'; '.join(self.finsts)}")
         shown = self.candidates if len(self.candidates) <= MOST_SHOWN + 1 else self.candidates[:MOST_SHOWN]
-        lines += [f"      {chunk}: left out, for it was retrieved lately" for chunk in self.excluded]
+        lines += [f"      {chunk}: left out, because it was retrieved recently" for chunk in self.excluded]
         if not self.candidates:
             lines.append("      no chunk matches" + (" that is new" if self.excluded else ""))
         lines += map(str, shown)

@@ -45,7 +45,7 @@ class Motor(WithParameters, Port):
     Unknown names and invalid values raise errors.
 
     The module learns what the body consists of in the first tick; earlier commands begin 10 ms after the start. While
-    something moves, it feels the body at the end of each tick, and a run without an end continues; otherwise it takes no time.
+    something moves, it feels the body at the end of each tick, and a run without an end continues; at other times it does nothing.
 
     Angles are degrees in commands, attributes and posture chunks, radians in `body` and `joint()`. Numbers may be text.
 
@@ -62,8 +62,8 @@ class Motor(WithParameters, Port):
             for never. Source: chosen; about the ten samples to each side that the original took.
         angle_noise: The standard deviation of felt angles [degrees].
         size_noise: The standard deviation of felt width, depth and height [m].
-        patience: Time without progress after which a movement ends as «blocked» [s]; None for never. It is detected after at
-            most three times that. Source: chosen.
+        patience: Time without progress after which a movement ends as «blocked» [s]; None for never. Detection takes
+            at most three times as long. Source: chosen.
         preparation: Preparation time of a command [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
             that is new, 0.25 s for a whole hand movement (Byrne & Anderson, 1998).
         initiation: Time from the end of preparation to the start [s]. Source: 0 as in the original; 0.05 s in ACT-R.
@@ -316,13 +316,13 @@ class Motor(WithParameters, Port):
         named = limbs.movement(movement, side)
         if named.to is not None and (to is not None or pace < 0):
             raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed above 0")
-        ways: dict[str, float] = {}
+        targets: dict[str, float] = {}
         for joint, way in named.joints:
             limit = limbs.limit(joint, way * pace)
             end = copysign(INFINITE, way * pace) if limit is None else limit
-            ways[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit[joint]
+            targets[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit[joint]
         name = movement if named.side is None else f"{movement}_{named.side}"
-        self._turn_joints(name, ways, pace, to is None and named.to is None, place)
+        self._turn_joints(name, targets, pace, to is None and named.to is None, place)
 
     def _assume(self, posture: Chunk, pace: float, place: str) -> None:
         limbs = self._known()
@@ -432,7 +432,7 @@ class Motor(WithParameters, Port):
         if self._under_way.get(key) is not movement:
             return
         movement.begun = True
-        self._obey(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.place)
+        self._send(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.place)
         self.emit("move", **movement.trace_data())
         self._ask()
 
@@ -447,9 +447,9 @@ class Motor(WithParameters, Port):
         halted = [self._under_way.pop(key) for key in keys]
         for movement in halted:
             if movement.begun and isinstance(movement, JointMovement):
-                self._obey(movement.halt(), place)
+                self._send(movement.halt(), place)
         if any(movement.base and movement.begun for movement in halted):
-            self._obey(self._gait(), place)
+            self._send(self._gait(), place)
         self._end([(movement, end) for movement in halted])
         self._ended += [(movement, end) for movement in halted if movement.begun and not movement.base]
 
@@ -466,7 +466,7 @@ class Motor(WithParameters, Port):
         assert turn is None or isinstance(turn, Turn)
         return gait(walk, turn)
 
-    def _obey(self, orders: Iterable[Order], place: str) -> None:
+    def _send(self, orders: Iterable[Order], place: str) -> None:
         for word, values, named in orders:
             self._tell(word, *values, named=named, place=place)
 

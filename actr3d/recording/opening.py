@@ -29,7 +29,7 @@ def opened(path: Path) -> sqlite3.Connection:
     if not there:
         raise RecordingError(f"no recording '{path}'")
     if any(path.with_name(path.name + end).is_symlink() for end in COMPANIONS):
-        raise RecordingError(f"'{path}' is no recording: a link lies in the place of its journal")
+        raise RecordingError(f"'{path}' is not a recording: its journal is a symbolic link")
     _wait_for_journal(path)
     try:
         # If a killed program left its write-ahead log, SQLite must write to the file in order to read it.

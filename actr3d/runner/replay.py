@@ -52,8 +52,8 @@ def replay(
         trust: Whether code may be run of a recording that this installation did not make; see `Recorded.made_here`.
         any_version: Whether to try even though versions of Python, MuJoCo or others are not those of the recording.
         progress: Called repeatedly with the share that has been run: of the ticks, or of a program's events.
-        within: A folder for what is laid out as files meanwhile, which a program that ends the process leaves there; None for
-            where the system has temporary ones.
+        within: The folder for the files of the recorded modules while they run; a program that ends the process leaves them there.
+            None for the system's folder for temporary files.
 
     Raises:
         UntrustedError: If the recording was made elsewhere, and is not to be trusted.
@@ -107,7 +107,7 @@ def _sealed(recorded: Recorded, within: Path | None) -> AbstractContextManager[H
 
 
 def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress) -> Comparison:
-    """Runs a program beside its recording, until it ends, or does more than is recorded of a run that did not end by itself."""
+    """Replays a program until it ends. If the recorded run did not end by itself, the replay ends when it does more than was recorded."""
     facts = recorded.facts
     file, source = facts["file"], facts["sources"][facts["file"]]
     beside = Beside(recorded, open_end=not (recorded.over or _failed(recorded)))
@@ -241,7 +241,7 @@ def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
     if not (recorded.over or _failed(recorded)):
-        # What ends a run where the recorded one goes no further is another end than the recorded one, or than none.
+        # The recorded run did not end by itself, so an end of the replay is a difference.
         goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
         silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
     elif not from_code and said.get("by") not in ("stop", "done", None):
@@ -256,7 +256,7 @@ def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]
 
 
 def _recorded_end(recorded: Recorded) -> str | None:
-    """Says how a run ended that did not come to its end by itself, and when; None if it did."""
+    """Returns how and when a run was broken off; None if it ended by itself."""
     facts = recorded.facts
     if recorded.over:
         return None

@@ -19,7 +19,7 @@ Thing = TypeVar("Thing")
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """What came of running a recording again."""
+    """The result of a replay."""
 
     ticks: int
     """How many ticks were compared."""
@@ -44,7 +44,7 @@ class Comparison:
 
 
 class Differs(EndOfRun):
-    """Ends a run that has gone another way than the recorded one, or farther."""
+    """Ends a replay that differs from the recorded run, or goes further."""
 
 
 class Beside:
@@ -93,7 +93,7 @@ class Beside:
         self._compare(f"event {self.events} at {event.time:g} s", None if then is None else then.to_json(), event.to_json())
 
     event_alone = event
-    """Of a program that may record nothing but events."""
+    """For a program that may record only events."""
 
     def state(self, run: int, tick: int, data: bytes) -> None:
         """Compares the physics at the start of a run, or at the end of a tick.
@@ -170,14 +170,14 @@ class Beside:
         return f"tick {tick} ({seconds(tick * self._period):g} s)" + (f" of {where}" if run != 1 else "")
 
     def rest(self) -> dict[str, int]:
-        """Returns how many recorded things of each kind the new run has not come to; none of those it has."""
+        """Returns how many recorded items of each kind the replay has not reached; kinds that are complete are left out."""
         things = {"event": self._events, "state": self._states, "answer": self._answers, "command": self._commands}
         left = {kind: sum(1 for _ in more) for kind, more in things.items()}
         return {kind: count for kind, count in left.items() if count}
 
 
 def first_number(then: bytes, now: bytes) -> str:
-    """Says which number of a state is the first to differ."""
+    """Returns a text that names the first number of a state that differs."""
     if len(then) != len(now):
         return f"a state was {len(then)} bytes, and is {len(now)}: another scene"
     import numpy as np  # a program without a world does without it

@@ -20,11 +20,11 @@ def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> N
 
     Args:
         recorded: The recording.
-        trust: Whether it may be run though this installation did not make it.
-        any_version: Whether versions of Python, MuJoCo or others may be other ones than those of the recording.
+        trust: Whether it may be run even if this installation did not make it.
+        any_version: Whether the versions of Python, MuJoCo and others may differ from those of the recording.
 
     Raises:
-        UntrustedError: If the recording was made elsewhere, and is not to be trusted.
+        UntrustedError: If the recording was made elsewhere and `trust` is false.
         RecordingError: If the file is damaged, lacks something, or holds nothing to compare, or versions differ.
     """
     recorded.check()

@@ -86,7 +86,7 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
     given: tuple[Any, Any] = (word, "" if body is None else body)
     for text in given:
         if not isinstance(text, str):
-            raise SimulationError(f"a command is a word, and its body is named by one (got {text!r})")
+            raise SimulationError(f"command and body must be text (got {text!r})")
     if body is None and word not in WORLD_COMMANDS and word not in ON_AGENTS:
         if len(bodies) != 1:
             known = [*WORLD_COMMANDS, *ON_AGENTS]

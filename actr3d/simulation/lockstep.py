@@ -125,7 +125,7 @@ class Lockstep:
         self._phase = "ready"
         return answers
 
-    def remember(self, answers: tuple[Any, ...]) -> None:
+    def repeat_tick(self, answers: tuple[Any, ...]) -> None:
         """Repeats a known tick with its answers, without its physics.
 
         Raises:
@@ -153,7 +153,7 @@ class Lockstep:
             return
         if self._phase == "failed":
             raise SimulationError(f"{what}: the run has failed at {seconds(self.agents.time):g} s and cannot go on; seek an earlier time")
-        raise SimulationError("a tick waits for its tock" if phase == "ready" else "tock: there is a tick to be made first")
+        raise SimulationError("call tock() first" if phase == "ready" else "tock: call tick() first")
 
     # -- commands
 
@@ -161,7 +161,7 @@ class Lockstep:
         """Carries out a new command of a user.
 
         Raises:
-            SimulationError: If a tick waits for its tock, or there is no such command.
+            SimulationError: If call tock() first, or there is no such command.
             Exception: What a body raises.
         """
         self._expect("ready", f"command '{command.word}'")

@@ -28,7 +28,7 @@ class ProgramRun:
         self._recorder = recorder
         self._present = present
         self._rank = LEVELS.index(trace.level)
-        self._begun = 0
+        self._run_number = 0
 
     def take(self, event: TraceEvent) -> None:
         """Passes an event on, if the program's trace records its level; except output of agents, which the program's runner traces.
@@ -62,9 +62,9 @@ class ProgramRun:
 
     @property
     def _number(self) -> int:
-        if not self._begun:
-            self._begun = self._trace.begin(self)
-        return self._begun
+        if not self._run_number:
+            self._run_number = self._trace.begin(self)
+        return self._run_number
 
     def _pass_on(self, event: TraceEvent, trace: Trace) -> None:
         data = event.data if self._number == 1 else self._renamed(event.data)

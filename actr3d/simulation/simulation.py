@@ -379,7 +379,7 @@ class Simulation:
             Exception: What the measure raises, if the world lacks what it measures.
         """
         if self.timeline.begun or self._measure is not None:
-            raise SimulationError("a run has one measure, which looks at it from its start on")
+            raise SimulationError("measure() must be called once, before the run starts")
         measure.begin(self.world)
         self.world.watchers.append(measure.look)
         self._measure = measure

@@ -34,7 +34,7 @@ class History:
         self.commands: list[Command] = []
         self.ticks = 0
         """Length of the run in ticks, including ticks that are only known from a recording."""
-        self.lived = 0
+        self.simulated = 0
         """Last tick that ran here; up to it states are stored."""
         self.answered = 0
         """Last tick up to which every answer is stored."""
@@ -56,7 +56,7 @@ class History:
 
     def add_tick(self, tick: int, answers: tuple[Any, ...]) -> None:
         """Adds a tick, with the answers of the bodies at its end."""
-        self.lived = tick
+        self.simulated = tick
         self.ticks = max(self.ticks, tick)
         if self.answered == tick - 1 and self._kept + len(answers) <= MOST_ANSWERS:
             self.answered = tick
@@ -77,7 +77,7 @@ class History:
         """Forgets what was after a tick, and all commands but the first few."""
         del self.commands[commands:]
         self.ticks = tick
-        self.lived = min(self.lived, tick)
+        self.simulated = min(self.simulated, tick)
         self.answered = min(self.answered, tick)
         self._states = {known: state for known, state in self._states.items() if known <= tick}
         for known in [known for known in self._answers if known > tick]:
@@ -153,7 +153,7 @@ class Timeline:
         lockstep, history = self.lockstep, self._history
         answers = lockstep.tock()
         ticks = lockstep.ticks
-        if ticks > history.lived:
+        if ticks > history.simulated:
             history.add_tick(ticks, answers)
             if history.wants(ticks):
                 history.keep(ticks, self._world.state())
@@ -229,7 +229,7 @@ class Timeline:
         if kept > lockstep.ticks:
             while lockstep.ticks < kept:
                 lockstep.repeat_commands(history.commands, only_agents=True)
-                lockstep.remember(history.answers(lockstep.ticks + 1))
+                lockstep.repeat_tick(history.answers(lockstep.ticks + 1))
             self._world.restore(state)
         while lockstep.ticks < to:
             self.tick()

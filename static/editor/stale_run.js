@@ -19,7 +19,7 @@ export async function saveAndRun(document) {
 export const former = computed(() => {
   const facts = session.value;
   if (!facts || facts.recorded !== null) return null; // a recording is a run of the text of its time
-  if (facts.gone) return { text: "The file of this run is gone from the folder: the run can go on, but not begin again.", gone: true, path: facts.model };
+  if (facts.gone) return { text: "The file of this run is gone from the folder: the run can go on, but cannot be restarted.", gone: true, path: facts.model };
   if (facts.loading) return null;
   if (!facts.stale) return null;
   // The newest attempt failed if it reported an error and is not the run that is shown.

@@ -11,7 +11,7 @@ function outcomeText({ outcome, candidates, excluded, threshold, latency }) {
   if (outcome === "retrieved") return `retrieved${takes}`;
   if (outcome === "pending") return `on its way${takes ? `, which takes${takes.slice(3)}` : ""}`;
   if (candidates.length > 0) return `failed${takes}: no candidate reaches the threshold of ${valueText(threshold)}`;
-  return `failed${takes}: no chunk matches${excluded.length ? " that was not retrieved lately" : ""}`;
+  return `failed${takes}: no chunk matches${excluded.length ? " that was not retrieved recently" : ""}`;
 }
 
 function Candidates({ reason }) {
@@ -52,11 +52,11 @@ function Retrieval({ reason }) {
     <h3 class=${outcome === "failed" ? "failed" : ""}><span class="mono">${memory}</span>: ${outcomeText(reason)}</h3>
     <p>
       <span class="quiet">Asked for</span> <span class="mono">${asked}</span>${asked === request ? null : html` <span class="quiet mono">(${request})</span>`}
-      <span class="quiet"> at ${time.toFixed(3)} s, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved lately" : ""}</span>
+      <span class="quiet"> at ${time.toFixed(3)} s, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved recently" : ""}</span>
     </p>
     ${candidates.length ? html`<${Candidates} reason=${reason} />` : null}
-    <${Lately} title="Left out, for they were retrieved lately" chunks=${excluded} open=${excluded.length < 4} />
-    <${Lately} title="Retrieved lately" chunks=${finsts} />
+    <${Lately} title="Left out, because they were retrieved recently" chunks=${excluded} open=${excluded.length < 4} />
+    <${Lately} title="Retrieved recently" chunks=${finsts} />
   </section>`;
 }
 

@@ -221,7 +221,7 @@ def test_a_tree_that_has_run_by_itself_cannot_join() -> None:
     part = Model()
     part.run(1)
     world: Any = Model()
-    with pytest.raises(SchedulerError, match=r"'part' has run by itself until 1 s; put it into its environment before that"):
+    with pytest.raises(SchedulerError, match=r"'part' ran on its own until 1 s; add it to its environment before it runs"):
         world.part = part
 
 

@@ -171,7 +171,7 @@ def test_what_is_not_there_is_told() -> None:
         with pytest.raises(WorldError, match=message):
             simulation.measure(Passage(body, aperture))
     simulation.measure(Passage("walker"))
-    with pytest.raises(SimulationError, match="a run has one measure"):
+    with pytest.raises(SimulationError, match="must be called once"):
         simulation.measure(Passage("walker"))
 
 

@@ -70,7 +70,7 @@ def gone(path: Path) -> None:
     path.unlink()
 
 
-@pytest.mark.parametrize(("change", "problem"), [(link, "a link lies in the place of its journal"), (gone, "no recording")])
+@pytest.mark.parametrize(("change", "problem"), [(link, "its journal is a symbolic link"), (gone, "no recording")])
 def test_what_lies_beside_a_file_and_what_is_gone_is_told(path: Path, change: Callable[[Path], None], problem: str) -> None:
     kept = path.with_name("kept.sqlite")
     shutil.copy(path, kept)

@@ -137,7 +137,7 @@ def test_help_tells_of_the_models_options(file: Path, capsys: pytest.CaptureFixt
         "  --power             number, > 0, <= 100 [W]; default 60.0\n                      How bright it is at full power [W].\n"
         in told.out
     )
-    assert "Exit codes: 0 the model ran, whatever came of it; 1 it failed" in " ".join(told.out.split())
+    assert "Exit codes: 0 the model ran, whatever its result; 1 it failed" in " ".join(told.out.split())
     assert main(["run", "--help"]) == 0
     assert "--power" not in capsys.readouterr().out
 

@@ -137,7 +137,7 @@ def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
         folder.read("bytes.py")
     with pytest.raises(FileError, match="no more than"):
         folder.save("large.py", "x" * (LARGEST + 1), None)
-    with pytest.raises(FileError, match="half characters"):
+    with pytest.raises(FileError, match="unpaired surrogate character"):
         folder.save("half.py", "\ud800", None)
     (folder.root / "large.py").write_bytes(b"#" * (LARGEST + 1))
     with pytest.raises(FileError, match="larger"):

@@ -225,7 +225,7 @@ class RunController:
             Actr3dError: If the run is over.
         """
         if self.status in ("ended", "failed"):
-            raise Actr3dError("the run is over: go back to an earlier time, or begin again")
+            raise Actr3dError("the run is over: go back to an earlier time, or restart it")
         self.watch.begin(**wanted)
         trace = self.run.trace
         self._seen = 0 if trace is None else len(trace)

@@ -223,7 +223,7 @@ class SimulationRun:
         """
         parameter = self._listing.parameter(name)
         if parameter.live is None:
-            raise SimulationError(f"'{name}' cannot change while a run goes on; begin again with the new value")
+            raise SimulationError(f"'{name}' cannot change while a run goes on; restart it with the new value")
         parameter.check(value)
         return parameter.live
 
@@ -235,7 +235,7 @@ class SimulationRun:
             Exception: What the world, a body or an agent raises.
         """
         if self._controller.status == "ended":
-            raise SimulationError("the run is over: go back to an earlier time, or begin again")
+            raise SimulationError("the run is over: go back to an earlier time, or restart it")
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
         ahead = self.furthest > self.clock

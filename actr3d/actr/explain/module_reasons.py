@@ -28,11 +28,11 @@ def _retrieval_reason(memory: str, time: float, data: Mapping[str, Any], outcome
         if isnan(activation):
             verdict = "cannot be retrieved: its activation is not a number"
         elif i == chosen:
-            verdict = "won" if sum(row[3] == best for row in rows) == 1 else "won a draw by lot"
+            verdict = "won" if sum(row[3] == best for row in rows) == 1 else "chosen at random among equals"
         elif chosen is None:
             verdict = f"below the threshold by {threshold - activation:.4g}" if threshold is not None else "lost"
         elif activation == best:
-            verdict = "lost a draw by lot"
+            verdict = "equal, but another was chosen at random"
         else:
             verdict = f"lost by {best - activation:.4g}"
         modules = data["modules"] if len(data["modules"]) == len(parts) else ["get_activation"]

@@ -215,7 +215,7 @@ class Model(TreeNode):
     def _merge_run(self, other: Model) -> None:
         """Moves a tree that was converted on its own (a model that builds its parts in `__init__`) to this model's clock."""
         if other.sch.now_us != 0:
-            raise SchedulerError(f"'{other.name}' has run by itself until {other.sch.time:g} s; put it into its environment before that")
+            raise SchedulerError(f"'{other.name}' ran on its own until {other.sch.time:g} s; add it to its environment before it runs")
         sch, trace = self.sch, other.sch.trace
         sch.take_over(other.sch)
         for part in subtree(other):
