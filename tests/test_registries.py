@@ -11,10 +11,16 @@ from typing import Any
 import pytest
 from mujoco import MjSpec
 
+import actr3d.actr
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # it registers `view`
 import actr3d.world
-from actr3d.errors import SimulationError
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.modules import MODULES
+from actr3d.bench import find_benchmarks
+from actr3d.errors import SimulationError, WorldError
 from actr3d.simulation import Simulation
+from actr3d.simulation.measure import MEASURES
+from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
 from actr3d.world.body import ACTUATORS, SENSORS, actuator, sensor
@@ -92,7 +98,7 @@ def test_a_new_sensor_and_a_new_actuator_are_there_at_once_also_for_bodies_that_
 @pytest.mark.usefixtures("registered")
 def test_a_new_kind_of_body_lives_in_a_scene_without_any_other_change() -> None:
     @body_kind
-    class Ball:
+    class Marble:
         name = "ball"
 
         def add_to(self, mj_spec: MjSpec) -> None:
@@ -102,8 +108,8 @@ def test_a_new_kind_of_body_lives_in_a_scene_without_any_other_change() -> None:
         def anatomy(self) -> Anatomy:
             return Anatomy(root="ball", prefix="ball_", shoulders=0.2)
 
-    assert BODY_KINDS["Ball"] is Ball
-    body = World(Scene(parts=(Floor(), Ball()))).bodies["ball"]
+    assert BODY_KINDS["Marble"] is Marble
+    body = World(Scene(parts=(Floor(), Marble()))).bodies["ball"]
     assert body.anatomy.shoulders == 0.2
     assert body.get("pose").z == 1
 
@@ -130,3 +136,36 @@ def test_a_new_command_to_the_world_reaches_it_from_a_simulation() -> None:
     with pytest.raises(SimulationError, match=r"command 'lower': .*missing 1 required"):
         simulation.command(lower.__name__)
     assert heights == [(simulation.world, 0.5)]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_each_module_can_be_put_into_an_agent(name: str) -> None:
+    kind = MODULES[name]
+    assert issubclass(kind, Model)
+    assert inspect.getdoc(kind)
+    assert getattr(actr3d.actr, name, kind) is kind  # what models import by this name
+
+
+@pytest.mark.parametrize("name", MEASURES)
+def test_each_measure_reads_a_world_and_says_what_it_cannot_find(name: str) -> None:
+    kind = MEASURES[name]
+    assert inspect.getdoc(kind)
+    assert {"begin", "look", "result"} <= set(dir(kind))
+    arguments = ["nobody" for one in inspect.signature(kind).parameters.values() if one.default is one.empty]
+    with pytest.raises(WorldError, match="nobody"):
+        kind(*arguments).begin(World(Scene(parts=(Floor(), Car()))))
+
+
+@pytest.mark.parametrize("name", DETECTORS)
+def test_each_detector_describes_itself_and_finds_nothing_in_an_empty_view(name: str) -> None:
+    detector = DETECTORS[name]
+    assert inspect.getdoc(detector.detect)
+    body = World(Scene(parts=(Car(),))).bodies["car"]
+    assert tuple(detector(body.get("view"))) == ()
+
+
+@pytest.mark.parametrize("name", find_benchmarks())
+def test_each_benchmark_can_be_listed_and_started_by_the_command(name: str) -> None:
+    function = find_benchmarks()[name]
+    assert "json_output" in inspect.signature(function).parameters
+    assert ": " in (inspect.getmodule(function).__doc__ or "")  # type: ignore[union-attr]

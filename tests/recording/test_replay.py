@@ -411,7 +411,7 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("class P: pass\ndef build(a: P) -> Simulation: pass", ":3: .* takes P, which is no dataclass"),
         (
             "from enum import Enum\nclass P(Enum): pass\ndef build(a: P) -> Simulation: pass",
-            r":4: build\(a: P\): the parameter of build must be a dataclass",
+            r":4: build\(a: P\): its parameter must be a dataclass",
         ),
         (
             "def build(): return 3",
@@ -431,7 +431,7 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("@lambda _: None\ndef build() -> Simulation: pass", r":3: build is no function when the file has run \(it is None\)"),
         (
             "from dataclasses import dataclass\n@dataclass\nclass P: pass\ndef build(a: P | None) -> Simulation: pass",
-            r":5: build\(a: P \| None\): the parameter of build must be a dataclass",
+            r":5: build\(a: P \| None\): its parameter must be a dataclass",
         ),
         ("\ndef build() -> Simulation: return 3", r":3: build must return a Simulation \(returned 3\)"),
     ],

@@ -48,7 +48,7 @@ def build() -> Simulation:
     parts = (Floor(), Mannequin(name="walker"), Aperture(width=0.6, position=(3.0, 0.2), heading=0.3))
     return Simulation(Scene(parts=parts), {"walker": Walker}, seed=1)
 """
-ALL = ("frustum", "edges", "features", "path", "posture")
+ALL = tuple(name for name in OVERLAYS if name != "contacts")
 MIDDLE, ACROSS = np.array((3.0, 0.2)), np.array((-math.sin(0.3), math.cos(0.3)))
 
 
