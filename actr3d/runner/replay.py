@@ -18,7 +18,7 @@ from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.runner.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
-from actr3d.runner.replay_diff import Beside, Comparison, Differs
+from actr3d.runner.replay_diff import Comparator, Comparison, Differs
 from actr3d.runner.replayable import check_replayable
 from actr3d.runner.run import play_program, recorded_failure
 from actr3d.runner.traceback_report import failure
@@ -73,16 +73,16 @@ def replay(
             seed = facts.get("program_seed", facts["seed"])
             with RunLimits(seed=seed), shared_random(seed):
                 simulation = make()
-                return _replay_simulation(recorded, simulation, Beside(recorded), simulation.facts(), progress)
+                return _replay_simulation(recorded, simulation, Comparator(recorded), simulation.facts(), progress)
         seed = facts["program_seed"]
         with RunLimits(seed=seed, until=facts["until"]), shared_random(seed), _sealed(recorded, within) as helpers, BuiltOutput() as output:
             simulation, parameters = _built(recorded, helpers)
             output.lead_to(simulation)
-            beside = Beside(recorded)
-            helpers.heard = partial(beside.fact, "helpers")
+            comparator = Comparator(recorded)
+            helpers.heard = partial(comparator.fact, "helpers")
             file = facts["file"]
             own = built_facts(file, facts["sources"][file], parameters, seed, facts["until"], helpers.loaded)
-            return _replay_simulation(recorded, simulation, beside, simulation.facts(**own), progress)
+            return _replay_simulation(recorded, simulation, comparator, simulation.facts(**own), progress)
 
 
 def _built(recorded: Recorded, helpers: HelperTexts) -> tuple[Simulation, dict[str, Any]]:
@@ -110,16 +110,16 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     """Replays a program until it ends. If the recorded run did not end by itself, the replay ends when it does more than was recorded."""
     facts = recorded.facts
     file, source = facts["file"], facts["sources"][facts["file"]]
-    beside = Beside(recorded, open_end=not (recorded.over or _failed(recorded)))
-    beside.facts |= program_facts(file, source, facts["seed"], facts["until"])
+    comparator = Comparator(recorded, open_end=not (recorded.over or _failed(recorded)))
+    comparator.facts |= program_facts(file, source, facts["seed"], facts["until"])
     trace = Trace("all", keep=False)
     count = max(1, recorded.event_count)
-    trace.listen(lambda _: progress(min(1.0, beside.events / count)))
+    trace.listen(lambda _: progress(min(1.0, comparator.events / count)))
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
     trouble = ""
     try:
         with ProgramOutput(limits) as output:
-            left = play_program(file, source, limits, trace, beside, helpers, output)
+            left = play_program(file, source, limits, trace, comparator, helpers, output)
         trouble = "" if left is None else f" ({failure(left)})"
     except Differs:
         pass
@@ -127,24 +127,26 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
         raise
     except BaseException as error:  # noqa: BLE001 - the recorded run may have ended so, too
         trouble = f" ({failure(error)})"
-    return _compared(recorded, beside, f"the run ended{trouble}")
+    return _compared(recorded, comparator, f"the run ended{trouble}")
 
 
-def _replay_simulation(recorded: Recorded, simulation: Simulation, beside: Beside, facts: dict[str, Any], progress: Progress) -> Comparison:
-    """Runs a simulation beside its recording, as many ticks as are recorded; of one that a model file builds, not beyond its end.
+def _replay_simulation(
+    recorded: Recorded, simulation: Simulation, comparator: Comparator, facts: dict[str, Any], progress: Progress
+) -> Comparison:
+    """Replays a simulation for as many ticks as are recorded; one that a model file builds not beyond its end.
 
     Args:
         recorded: The recording.
         simulation: The simulation, at its start.
-        beside: Compares what it does.
+        comparator: Compares what it does.
         facts: The facts that its recording would begin with.
         progress: Called with the share of the ticks that are done.
     """
     from actr3d.simulation import Command
 
     log = simulation.event_log
-    beside.facts |= facts
-    log.record(cast("Any", beside))
+    comparator.facts |= facts
+    log.record(cast("Any", comparator))
     commands = [Command.from_data(command.tick, command.data) for command in recorded.commands()]
     simulation.plan(commands)
     ticks, ended, built = recorded.ticks, None, bool(recorded.facts.get("built"))
@@ -154,26 +156,26 @@ def _replay_simulation(recorded: Recorded, simulation: Simulation, beside: Besid
             progress(simulation.ticks / ticks)
         ended = _ended_by(simulation)
         try:
-            with recorded_failure(beside):
+            with recorded_failure(comparator):
                 _end(recorded, simulation, ended)
         except (Differs, KeyboardInterrupt):
             raise
         except BaseException:  # noqa: BLE001 - the fact 'failed' is compared
             ended = None
         if ended is not None:
-            beside.fact("ended", {"by": ended})
+            comparator.fact("ended", {"by": ended})
         if recorded.over or _failed(recorded) or recorded.facts.get("whole"):
             log.end_recording(whole=simulation.timeline.begun and not simulation.timeline.lockstep.broken)
         log.check()
         for command in commands[: simulation.timeline.lockstep.commands]:
-            beside.command(1, command.tick, command.to_data())
+            comparator.command(1, command.tick, command.to_data())
     except Differs:
         pass
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - what is recorded went on beyond that
-        beside.difference = f"the run failed after {seconds(simulation.ticks * recorded.facts['period_us']):g} s ({failure(error)})"
-    return _compared(recorded, beside, "the run ended")
+        comparator.difference = f"the run failed after {seconds(simulation.ticks * recorded.facts['period_us']):g} s ({failure(error)})"
+    return _compared(recorded, comparator, "the run ended")
 
 
 def _ended_by(simulation: Simulation) -> str | None:
@@ -200,31 +202,31 @@ def _failed(recorded: Recorded) -> bool:
     return recorded.facts.get("failed") is not None
 
 
-def _compared(recorded: Recorded, beside: Beside, trouble: str) -> Comparison:
+def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Comparison:
     """Returns the result of a comparison whose run is over; further recorded events differ, unless the recorded run was broken off.
 
     Args:
         recorded: The recording.
-        beside: What was compared.
+        comparator: What was compared.
         trouble: Says that the run has ended, where the recorded one went on.
     """
-    left, difference, unfinished = beside.rest(), beside.difference, 0
+    left, difference, unfinished = comparator.rest(), comparator.difference, 0
     if not (recorded.closed or _failed(recorded)):
         unfinished = left.pop("event", 0)
         left = {kind: count for kind, count in left.items() if kind == "state"}  # the rest may be of the tick that did not end
     if difference is None and left:
         more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
-        difference = f"{trouble} after {beside.events:,} events; the recording holds {more} more"
+        difference = f"{trouble} after {comparator.events:,} events; the recording holds {more} more"
     end = _recorded_end(recorded)
-    apart, notes = _unchecked(recorded, beside)
-    differs = first_difference(recorded.facts, beside.facts, apart)
+    apart, notes = _unchecked(recorded, comparator)
+    differs = first_difference(recorded.facts, comparator.facts, apart)
     if difference is None:
         difference = differs
-    elif difference.startswith("the physics") and recorded.facts.get("scene") != beside.facts.get("scene"):
+    elif difference.startswith("the physics") and recorded.facts.get("scene") != comparator.facts.get("scene"):
         difference += "; it compiles to another scene than then"
     return Comparison(
-        ticks=beside.ticks,
-        events=beside.events,
+        ticks=comparator.ticks,
+        events=comparator.events,
         difference=difference,
         to_its_end=end is None,
         notes=(*([] if end is None else [end]), *notes),
@@ -232,9 +234,9 @@ def _compared(recorded: Recorded, beside: Beside, trouble: str) -> Comparison:
     )
 
 
-def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]:
+def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], list[str]]:
     """Returns the facts that running a recording again cannot check, and says so of those that it has."""
-    then, now = recorded.facts, beside.facts
+    then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
     named, silent = set(UNCHECKED), set(CHECKED_BEFORE)
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
@@ -247,7 +249,7 @@ def _unchecked(recorded: Recorded, beside: Beside) -> tuple[set[str], list[str]]
     elif not from_code and said.get("by") not in ("stop", "done", None):
         named.add("ended")  # it was not run to its end by this library, but by a program that says so
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
-    early = beside.commands > 0 or not (recorded.over or _failed(recorded))
+    early = comparator.commands > 0 or not (recorded.over or _failed(recorded))
     if early and {name: helpers[name] for name in used if name in helpers} == used:
         # A run that went back and another way, or was broken off, may have loaded more than its recording needs.
         (named if len(used) < len(helpers) else silent).add("helpers")

@@ -47,7 +47,7 @@ class Differs(EndOfRun):
     """Ends a replay that differs from the recorded run, or goes further."""
 
 
-class Beside:
+class Comparator:
     """Compares a run with a recording, in place of the run's recorder: facts, events, states, answers and commands, each in order.
 
     Args:

@@ -141,7 +141,7 @@ def test_a_run_that_ends_before_its_recording_says_so(desk: Desk, tmp_path: Path
     assert len(whole(again)) == 3
     again.say("run")
     again.until("ended")
-    assert "it ends, and the recording goes on" in again.wait_for_notice("differs")["text"]
+    assert "it ends, but the recording continues" in again.wait_for_notice("differs")["text"]
     assert len(whole(again)) == 1
 
 

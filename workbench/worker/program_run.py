@@ -27,8 +27,8 @@ from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
-from workbench.worker.foreknown import Foreknown
 from workbench.worker.helper_messages import helpers_of
+from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, names_of_program
 from workbench.worker.recorded_once import RecordedOnce
@@ -117,9 +117,9 @@ class ProgramRun:
         """Shows the whole timeline of a recorded run that is run again."""
         recorded = self._controller.channel.start.recorded
         if recorded is not None:
-            foreknown = Foreknown(Path(recorded))
-            self._furthest = max(self._furthest, foreknown.time)
-            self._controller.know(foreknown)
+            known_run = KnownRun(Path(recorded))
+            self._furthest = max(self._furthest, known_run.time)
+            self._controller.know(known_run)
 
     def _introduce(self) -> None:
         """Informs the server that the run has begun; for a program that makes a simulation, once this simulation is at its start."""

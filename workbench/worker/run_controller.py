@@ -20,7 +20,7 @@ from actr3d.values import to_json
 from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import told_of
-from workbench.worker.foreknown import Foreknown, difference_notice
+from workbench.worker.known_run import KnownRun, difference_notice
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
@@ -61,7 +61,7 @@ class RunController:
         """Number of events that the server has been sent."""
         self._last: State | None = None
         """The state that was sent last."""
-        self._foreknown: Foreknown | None = None
+        self._known_run: KnownRun | None = None
         """The recorded run that this run repeats; None if there is none, or this run differs from it."""
         self._compared = 0
         """Number of events that have been compared with the recorded ones."""
@@ -83,18 +83,18 @@ class RunController:
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.channel.post(lost)
 
-    def know(self, foreknown: Foreknown) -> None:
+    def know(self, known_run: KnownRun) -> None:
         """Sends all events of a recorded run before this run, which repeats it, has reached them."""
         with self._sending:
-            self._foreknown = foreknown
-            self._sent = foreknown.count
-            self.channel.send_events(foreknown.first, foreknown.events)
-            foreknown.events = []
+            self._known_run = known_run
+            self._sent = known_run.count
+            self.channel.send_events(known_run.first, known_run.events)
+            known_run.events = []
 
     @property
     def relives(self) -> bool:
         """Whether the run repeats a recorded one and still agrees with it."""
-        return self._foreknown is not None
+        return self._known_run is not None
 
     @property
     def repeats(self) -> bool:
@@ -186,7 +186,7 @@ class RunController:
             changed: What happened to the later part of the run; None if there was none.
         """
         with self._sending:
-            self._foreknown = None
+            self._known_run = None
             if changed is not None:
                 self._reached = 0
                 if self.status == "paused":
@@ -332,21 +332,21 @@ class RunController:
         """Sends the server a state, and the events up to it that it does not have yet."""
         count = state.events
         on_its_thread = threading.current_thread() is threading.main_thread()  # otherwise the run may be in the middle of a tick
-        if self._foreknown is not None and trace is not None and on_its_thread:
-            state = self._compare(self._foreknown, state, trace)
+        if self._known_run is not None and trace is not None and on_its_thread:
+            state = self._compare(self._known_run, state, trace)
         news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
         self.channel.show(state, self._sent, [event_json(event) for event in news])
         self._sent, self._last = max(self._sent, count), state
 
-    def _compare(self, foreknown: Foreknown, state: State, trace: Trace) -> State:
+    def _compare(self, known_run: KnownRun, state: State, trace: Trace) -> State:
         """Compares new events with the recording; if they differ, returns the state without any time ahead."""
         events = trace.since(self._compared)[: max(0, state.events - self._compared)]
-        found = foreknown.difference(self._compared, events)
+        found = known_run.difference(self._compared, events)
         is_over = state.status in ("ended", "failed")
-        if found is None and not (is_over and state.events < foreknown.count):
+        if found is None and not (is_over and state.events < known_run.count):
             self._compared = max(self._compared, state.events)
             return state
-        self._foreknown = None
+        self._known_run = None
         self.run.forget_ahead()
         self._sent = state.events if found is None else found
         self.channel.cut(Cut(events=self._sent), self._sent)

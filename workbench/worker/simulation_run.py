@@ -28,8 +28,8 @@ from actr3d.values import to_json
 from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import ModelListing
 from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
-from workbench.worker.foreknown import Foreknown
 from workbench.worker.helper_messages import helpers_of
+from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Branched, Facts
 from workbench.worker.names import Names, names_of
 from workbench.worker.run_controller import RunController
@@ -61,7 +61,7 @@ class SimulationRun:
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
         self._failed = False
-        self._foreknown: Foreknown | None = None
+        self._known_run: KnownRun | None = None
         """The recorded run that is lived through again."""
         self._simulation: Simulation
         self._shown: Shown
@@ -85,8 +85,8 @@ class SimulationRun:
             try:
                 self._controller.channel.post(self._facts(limits, parameters))
                 self._controller.conduct(self)
-                if self._foreknown is not None:
-                    self._controller.know(self._foreknown)
+                if self._known_run is not None:
+                    self._controller.know(self._known_run)
                 self._controller.show()
                 self._controller.channel.flush()  # whatever the model does next, that it was built is known
                 while True:
@@ -106,11 +106,11 @@ class SimulationRun:
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
-            self._foreknown = foreknown = Foreknown(Path(start.recorded), self._shown.kept.states.add)
-            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], foreknown.ticks)
-            ended: dict[str, Any] | None = foreknown.facts.get("ended")
+            self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add)
+            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], known_run.ticks)
+            ended: dict[str, Any] | None = known_run.facts.get("ended")
             if ended is not None and ended.get("by") in ENDINGS:
-                self._end = foreknown.ticks, str(ended["by"])
+                self._end = known_run.ticks, str(ended["by"])
 
     def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
         return Facts(

@@ -17,7 +17,7 @@ MOST_EVENTS = 50_000
 """Maximum number of events that are shown before the run reaches them; the server keeps as many in memory."""
 
 
-class Foreknown:
+class KnownRun:
     """Reads a recording and compares events with it.
 
     Args:
@@ -85,9 +85,9 @@ def difference_notice(now: float, event: TraceEvent | None) -> Notice:
     """
     when = now if event is None else seconds(event.time_us)
     does = (
-        "it ends, and the recording goes on"
+        "it ends, but the recording continues"
         if event is None
-        else f"it has the event '{event.kind}' of '{event.source}', which the recording has not"
+        else f"it has the event '{event.kind}' of '{event.source}', which the recording does not have"
     )
     text = (
         f"from {when:g} s on this run differs from its recording, which was made with other versions or other files: {does}. "
