@@ -367,7 +367,7 @@ def test_each_text_keeps_its_history_and_tab_can_leave(page: Page, workbench: Se
     expect(page.locator(".cm-search")).to_have_count(0)
     ends(page, "# one")
     page.keyboard.press("Control+z")
-    ends(page, '{"walker": mind})\n')
+    ends(page, '{"walker": agent})\n')
     page.keyboard.press("Tab")
     ends(page, "\n    ")
     page.keyboard.press("Escape")
