@@ -153,7 +153,7 @@ class Recording:
         self._writer.cut(ticks, events, answers, commands)
         self.check()
 
-    def copy_to(self, path: Path | str) -> None:
+    def copy_to(self, path: Path | str, **facts: Any) -> None:
         """Writes everything recorded so far to a new file: a closed recording of a run that was left at this point.
 
         The run and this recording continue; nothing is shared with the copy. If the run was not over yet, the copy states
@@ -161,12 +161,13 @@ class Recording:
 
         Args:
             path: The new file; it must not exist.
+            facts: Facts of the copy alone.
 
         Raises:
             RecordingError: If the file exists already or cannot be written (it is then removed), or if this recording
-                could not be written before.
+                could not be written before, or a fact cannot be recorded.
         """
-        self._writer.copy_to(Path(path))
+        self._writer.copy_to(Path(path), [(name, _plain(name, value)) for name, value in facts.items()])
 
     def close(self) -> None:
         """Writes the remaining items, and closes the file.

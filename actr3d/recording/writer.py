@@ -78,7 +78,7 @@ class NoWriter:
     def cut(self, *_: int) -> None:
         """Does nothing."""
 
-    def copy_to(self, path: Path) -> None:
+    def copy_to(self, path: Path, _: Sequence[tuple[str, str]] = ()) -> None:
         """Raises an error: a copy of the process does not have the data to be written.
 
         Raises:
@@ -135,8 +135,12 @@ class Writer:
         self.flush()
         self._attempt(self._cut, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
 
-    def copy_to(self, path: Path) -> None:
+    def copy_to(self, path: Path, facts: Sequence[tuple[str, str]] = ()) -> None:
         """Writes all items received so far, and a closed copy of everything to a new file.
+
+        Args:
+            path: The new file.
+            facts: Facts of the copy alone.
 
         Raises:
             RecordingError: If that file exists, or either file cannot be written.
@@ -152,7 +156,7 @@ class Writer:
                 part.unlink(missing_ok=True)
                 self._file.execute("VACUUM INTO ?", (str(part.absolute()),))
                 with closing(sqlite3.connect(part.absolute())) as copy, copy:
-                    self._mark_as_left(copy)
+                    self._add_facts(copy, facts)
                 part.rename(path)
             except (sqlite3.Error, OSError, ValueError) as error:
                 _remove(part)
@@ -315,15 +319,14 @@ class Writer:
         self._checksums.begin(table, None if before is None else before[0])
         return last
 
-    def _mark_as_left(self, copy: sqlite3.Connection) -> None:
-        """Records in a copy that the run was left at the copy's end, unless the run was over there."""
-        facts = dict(copy.execute("SELECT name, value FROM facts WHERE name IN ('ended', 'failed')"))
-        if any(value != "null" for value in facts.values()):
-            return
-        ended = json.dumps({"by": LEFT})
-        copy.execute("INSERT OR REPLACE INTO facts VALUES ('ended', ?)", (ended,))
+    def _add_facts(self, copy: sqlite3.Connection, facts: Sequence[tuple[str, str]]) -> None:
+        """Adds facts to a copy, and that the run was left at the copy's end, unless the run was over there."""
+        over = copy.execute("SELECT 1 FROM facts WHERE name IN ('ended', 'failed') AND value != 'null'").fetchone()
+        added = [*facts, *([] if over else [("ended", json.dumps({"by": LEFT}))])]
         checksums = deepcopy(self._checksums)
-        checksums.fact("ended", ended)
+        for name, value in added:
+            copy.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
+            checksums.fact(name, value)
         self._seal(copy, checksums)
 
     def _finish(self) -> None:

@@ -49,9 +49,7 @@ class Blueprint:
             self._kind = get_type_hints(self._build).get(names[0])
             if not isinstance(self._kind, type) or not is_dataclass(self._kind):
                 found = str(getattr(self._kind, "__name__", self._kind)).replace(f"{self._module.__name__}.", "")
-                raise ModelFileError(
-                    f"{self._place}: build({names[0]}: {found}): its parameter must be a dataclass; write {RIGHT}"
-                )
+                raise ModelFileError(f"{self._place}: build({names[0]}: {found}): its parameter must be a dataclass; write {RIGHT}")
         self.fields: tuple[Parameter, ...] = () if self._kind is None else parameters_of(self._kind)
         """Its parameters."""
 

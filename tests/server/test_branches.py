@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 from pathlib import Path
 
 import pytest
@@ -114,10 +115,28 @@ def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
     talk.say("seek", time=0.1)
     where = folder(talk)
     aside = where.rename(where.with_name("aside"))  # no file can be made there
-    with pytest.raises(RefusedError, match=r"nothing was changed, for what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
+    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
         talk.say("aperture", width=0.3)
     aside.rename(where)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
+    talk.say("aperture", width=0.3)
+    assert len(found(talk)) == 1
+
+
+def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_still_be_seen(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PUSHED, record=True)
+    there(talk, 40)
+    talk.say("seek", time=0.1)
+    worker = talk.session._worker
+    assert worker is not None
+    limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow, as on a full disk
+    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
+        talk.say("aperture", width=0.3)
+    talk.say("until", time=0.4)
+    assert talk.until("paused", time=0.4)["furthest"] == 0.4
+    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, limits)
+    talk.say("seek", time=0.1)
     talk.say("aperture", width=0.3)
     assert len(found(talk)) == 1
 

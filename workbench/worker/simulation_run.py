@@ -278,14 +278,11 @@ class SimulationRun:
             raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
         path = new_branch(Path(self._start.record), at)
         try:
-            self._recording.fact("branched", at)  # a fact stays with the branch whatever it is called
-            self._recording.copy_to(path)
+            self._recording.copy_to(path, branched=at)  # a fact stays with the branch whatever it is called
         except Actr3dError as error:
             if drop:
                 return None
-            raise SimulationError(f"nothing was changed, for {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
-        finally:
-            self._recording.fact("branched", None)
+            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
         return path
 
     def _tell_failure(self, text: str | None) -> None:
