@@ -109,7 +109,7 @@ def test_a_model_that_ends_the_process_all_come_from_ends_all_runs_and_no_more(t
         other = desk.begin(tmp_path / "other", of("goal.set('done')"))
         talk = desk.begin(tmp_path, of("os.kill(os.getppid(), signal.SIGKILL); time.sleep(1000)"), run=True, wait=None)
         for told in (talk, other):
-            told.wait_for_notice("the process from which all models' processes come was ended")
+            told.wait_for_notice("the process that starts all models has ended")
             told.until("failed")
         runs_again(talk, tmp_path)
         runs_again(other, tmp_path / "other")
