@@ -110,7 +110,9 @@ class Storm:
     def _problem(self, answer: httpx.Response) -> str:
         """Says what is not as it should be; nothing where all is."""
         if not answer.is_success:
-            clear = answer.status_code in CLEAR and set(answer.json()) - {"result"} == {"error"} and str(self._server.folder) not in answer.text
+            clear = (
+                answer.status_code in CLEAR and set(answer.json()) - {"result"} == {"error"} and str(self._server.folder) not in answer.text
+            )
             return "" if clear else answer.text[:300]
         if int(answer.headers["content-length"]) != len(answer.content):
             return "it is not as long as it says"
