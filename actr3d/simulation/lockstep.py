@@ -63,7 +63,7 @@ class Lockstep:
         return self._phase != "ready"
 
     def fail(self) -> None:
-        """Prevents that the run continues from here, because the present is not what it should be."""
+        """Prevents the run from continuing from here, because the present is not what it should be."""
         self._phase = "failed"
 
     # -- one tick
@@ -161,7 +161,7 @@ class Lockstep:
         """Carries out a new command of a user.
 
         Raises:
-            SimulationError: If call tock() first, or there is no such command.
+            SimulationError: If the last tick has had no tock, or there is no such command.
             Exception: What a body raises.
         """
         self._expect("ready", f"command '{command.word}'")
