@@ -74,11 +74,16 @@ def summary_json(path: Path) -> bytes:
             found = _read(recorded, size)
     except UNREADABLE as error:
         reason = str(error) if isinstance(error, (RecordingError, OSError)) else f"it is damaged ({type(error).__name__}: {error})"
-        found = unreadable(path, reason.replace(f"the recording '{path}'", "it").replace(f"'{path}'", "it"))
+        found = unreadable(path, without_path(reason, path))
     summary = to_json(vars(found)).encode()
     if len(summary) > MOST_TEXT:
         return to_json(vars(unreadable(path, "the description of its run is too long to be listed"))).encode()
     return msgspec.json.encode(msgspec.json.decode(_sendable(summary.decode()), type=Summary))
+
+
+def without_path(text: str, path: Path) -> str:
+    """Returns a text about a recording that says «it» instead of naming its place on this machine."""
+    return text.replace(f"the recording '{path}'", "it").replace(f"'{path}'", "it")
 
 
 def _sendable(text: str) -> str:

@@ -223,7 +223,7 @@ class Writer:
     def _begin(self, facts: Sequence[tuple[str, str]]) -> None:
         for table in SCHEMA:
             self._file.execute(table)
-        self._insert_facts(facts)
+        _insert_facts(self._file, self._checksums, facts)
         self._seal(self._file, self._checksums)
 
     def _write(self) -> None:
@@ -255,7 +255,7 @@ class Writer:
             self._written["ticks"] += sum(1 for state in row if state.tick)
         for command in commands:
             self._insert("commands", 1, *command)
-        self._insert_facts(facts)
+        _insert_facts(self._file, self._checksums, facts)
         self._seal(self._file, self._checksums)
 
     def _insert(self, table: str, count: int, *values: int | str | bytes) -> None:
@@ -264,11 +264,6 @@ class Writer:
         checksum = self._checksums.row(table, first, *values)
         self._file.execute(f"INSERT INTO {table} VALUES (?{', ?' * len(COLUMNS[table])})", (first, *values, checksum))
         self._written[table] = first + count
-
-    def _insert_facts(self, facts: Sequence[tuple[str, str]]) -> None:
-        for name, value in facts:
-            self._file.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
-            self._checksums.fact(name, value)
 
     def _seal(self, file: sqlite3.Connection, checksums: Checksums) -> None:
         """Writes the checksum of everything, and the seal of this installation."""
@@ -324,9 +319,7 @@ class Writer:
         over = copy.execute("SELECT 1 FROM facts WHERE name IN ('ended', 'failed') AND value != 'null'").fetchone()
         added = [*facts, *([] if over else [("ended", json.dumps({"by": LEFT}))])]
         checksums = deepcopy(self._checksums)
-        for name, value in added:
-            copy.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
-            checksums.fact(name, value)
+        _insert_facts(copy, checksums, added)
         self._seal(copy, checksums)
 
     def _finish(self) -> None:
@@ -338,6 +331,13 @@ class Writer:
             # Another program is reading the file: it is complete anyway, and the last one to close it removes its companions.
             if error.sqlite_errorcode != sqlite3.SQLITE_BUSY:
                 raise
+
+
+def _insert_facts(file: sqlite3.Connection, checksums: Checksums, facts: Sequence[tuple[str, str]]) -> None:
+    """Writes facts, with their checksums."""
+    for name, value in facts:
+        file.execute("INSERT OR REPLACE INTO facts VALUES (?, ?)", (name, value))
+        checksums.fact(name, value)
 
 
 def _remove(path: Path) -> None:

@@ -60,15 +60,18 @@ class Observers:
 
     Args:
         random: The global random numbers of the agents, which observers must not use up.
-        world: The world, whose bodies observers must not move, and may read without a trace.
+        world: The world, whose bodies observers may read but not change.
     """
 
     def __init__(self, random: GlobalRandom, world: World) -> None:
         self._random = random
         self._physics = world.physics
         self._observers: list[Observer] = []
-        self.looking = False
+
+    @property
+    def looking(self) -> bool:
         """Whether an observer, a listener or a condition is being called now."""
+        return self._physics.observed
 
     def add(self, observer: Observer) -> None:
         """Adds an observer."""
@@ -90,10 +93,9 @@ class Observers:
     @contextmanager
     def only_looking(self) -> Generator[None]:
         """Prevents changes to the simulation inside the block, those of the agents' random numbers included."""
-        before, self.looking = self.looking, True
-        self._physics.observed = True
+        before, self._physics.observed = self._physics.observed, True
         try:
             with self._random.aside():
                 yield
         finally:
-            self.looking = self._physics.observed = before
+            self._physics.observed = before

@@ -171,15 +171,13 @@ class Body:
     @contextmanager
     def _unchanged(self) -> Generator[None]:
         """Restores after the block what later readings depend on."""
-        noise, touched, used = self.noise.state(), self.touched, list(self._used)
-        senses = {key: self._senses[key].state() for key in used}
+        noise, touched, senses = self.noise.state(), self.touched, self._state_of_senses()
         try:
             yield
         finally:
             self.noise.restore(noise)
-            self.touched, self._used = touched, used
-            for key, sense in self._senses.items():
-                sense.restore(senses.get(key))
+            self.touched = touched
+            self._restore_senses(senses)
 
     def moving(self) -> tuple[str, ...]:
         """Returns the joints that a command still moves, or tries to."""
@@ -220,14 +218,13 @@ class Body:
     def state(self) -> BodyState:
         """Returns what is not in the physics state: unfinished commands, noise, held objects, senses."""
         held = tuple((side, hand.held) for side, hand in self.hands.items() if hand.held is not None)
-        senses = tuple((key, self._senses[key].state()) for key in self._used)
         return BodyState(
             motion=self.motion.state(),
             hold=self.hold.state(),
             noise=self.noise.state(),
             held=held,
             touched=self.touched,
-            senses=senses,
+            senses=self._state_of_senses(),
         )
 
     def restore(self, state: BodyState) -> None:
@@ -236,15 +233,23 @@ class Body:
         self.hold.restore(state.hold)
         self.noise.restore(state.noise)
         self.touched = state.touched
-        remembered = dict(state.senses)
+        self._restore_senses(state.senses)
+        held = dict(state.held)
+        for side, hand in self.hands.items():
+            hand.restore(held.get(side))
+
+    def _state_of_senses(self) -> tuple[tuple[Any, Any], ...]:
+        """Returns the state of each sense that the agent has used, by its key."""
+        return tuple((key, self._senses[key].state()) for key in self._used)
+
+    def _restore_senses(self, states: tuple[tuple[Any, Any], ...]) -> None:
+        """Restores what `_state_of_senses` returned; all other senses count as unused."""
+        remembered = dict(states)
         for make, parameters in remembered:
             self.sense(make, parameters)
         self._used = list(remembered)
         for key, sense in self._senses.items():
             sense.restore(remembered.get(key))
-        held = dict(state.held)
-        for side, hand in self.hands.items():
-            hand.restore(held.get(side))
 
     # -- elements by name
 

@@ -56,7 +56,7 @@ class Physics:
         self.grasped: dict[int, int] = {}
         """By weld of a hand: the MuJoCo body that the hand holds."""
         self.observed = False
-        """Whether an observer looks at the world now, who must leave it unchanged."""
+        """Whether an observer is being called now, who must leave the world unchanged."""
         self.renderer: Any = None
         """Draws pictures; None before the first picture."""
 

@@ -22,6 +22,7 @@ from actr3d.runner.model_factory import build
 from actr3d.simulation import Simulation
 from actr3d.values import to_json
 from tests.helpers.sessions import Desk, RefusedError, Talk
+from tests.simulation.test_seek import COUNTED
 from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
 from workbench.page_commands.agents import Events, Explain, MemoryRows
@@ -195,30 +196,8 @@ def test_the_eye_sees_what_its_field_of_view_shows_from_the_start_on(desk: Desk,
     assert {time: at(talk, time, "seek") for time in (4.0, 0.0)} == {time: seen[time] for time in (4.0, 0.0)}
 
 
-COUNTED = """from actr3d.actr import *
-from actr3d.simulation import Simulation
-from actr3d.world import Floor, Mannequin, Scene
-
-count = 0
-
-class Counter(ACTR):
-    goal = Buffer()
-
-    def init():
-        goal.set("go 0")
-
-    def go(goal="go ?n"):
-        global count
-        count += 1
-        goal.set(f"go {count}")
-
-def build() -> Simulation:
-    return Simulation(Scene(parts=(Floor(), Mannequin(name="counter"))), {"counter": Counter})
-"""
-
-
 def test_a_run_that_cannot_be_repeated_because_of_a_global_variable_fails_and_says_why(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, COUNTED)
+    talk = desk.begin(tmp_path, COUNTED.replace("KEPT", "count"))
     talk.say("until", time=2)
     talk.until("paused", time=2)
     with pytest.raises(RefusedError, match="act differently than the first time"):

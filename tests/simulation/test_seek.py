@@ -53,6 +53,7 @@ seen = []
 
 class Counter(ACTR):
     goal = Buffer()
+
     def init():
         goal.set("go 0")
 
@@ -65,7 +66,7 @@ class Counter(ACTR):
 
 Counter.seen = []
 
-def build():
+def build() -> Simulation:
     return Simulation(Scene(parts=(Floor(), Mannequin(name="counter"))), {"counter": Counter}, seed=1, trace="all")
 """
 

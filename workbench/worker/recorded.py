@@ -12,7 +12,7 @@ from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from actr3d.values import to_json
 from workbench.forms import FORMS
-from workbench.recording_index import summary_json
+from workbench.recording_index import summary_json, without_path
 from workbench.worker.channel import Channel
 from workbench.worker.memory import relieve
 from workbench.worker.messages import Reply, Share, whole
@@ -43,7 +43,7 @@ def replay_again(channel: Channel) -> None:
             comparison = replay(recorded, trust=True, progress=progress, within=Path(channel.start.to))  # the server has checked the trust
         found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
-        found = {"agrees": None, "text": whole(str(error), MOST_TEXT).replace(f"the recording '{path}'", "it").replace(f"'{path}'", "it")}
+        found = {"agrees": None, "text": without_path(whole(str(error), MOST_TEXT), path)}
     channel.post(Reply(id=0, result=to_json(found).encode()))
 
 
