@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
-from actr3d.errors import SettingError, did_you_mean
+from actr3d.errors import DesignError, SettingError, did_you_mean
 from actr3d.output import all_written, standard_output
 from actr3d.parameter_schema import Parameter
 from actr3d.printing import ModelOutput, printing_to
@@ -228,6 +228,26 @@ def _parser() -> argparse.ArgumentParser:
     bench.add_argument("--trials", type=_count, metavar="N", help="number of trials per cell, for benchmarks that run trials")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
+    experiment = commands.add_parser(
+        "experiment",
+        help="run an experiment with a model",
+        description="Runs all trials of a design on all processors or a Dask cluster, and stores a row for each; without a name, lists the "
+        "library's designs. Killed at any moment and continued with --resume, it loses no finished trial.",
+        epilog="Exit codes: 0 all trials ran; 1 some failed, or the experiment cannot go on; 2 wrong options or an invalid design; "
+        "130 it was stopped.",
+    )
+    experiment.add_argument("name", metavar="NAME|FILE|FOLDER", nargs="?", help="a design, a file with one, or the folder of an experiment")
+    experiment.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
+    experiment.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
+    experiment.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
+    experiment.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
+    experiment.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    experiment.add_argument("--out", metavar="FOLDER", help="the new folder for the results (default: the name of the design)")
+    experiment.add_argument("--resume", action="store_true", help="continue the experiment that is in the folder")
+    experiment.add_argument("--any-version", action="store_true", help="continue although packages have other versions now")
+    experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
+    experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
+    experiment.set_defaults(function=_experiment)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
@@ -253,6 +273,34 @@ def _bench(options: argparse.Namespace) -> int:
         print(f"actr3d bench {options.name}: it has no {', '.join(unknown)}", file=sys.stderr)
         return 2
     return function(json_output=options.json, **settings)
+
+
+def _experiment(options: argparse.Namespace) -> int:
+    try:
+        from actr3d.experiment import command
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("actr3d"):
+            raise
+        print(f"actr3d experiment: needs the package '{error.name}'; install: pip install 'actr3d[experiment]'", file=sys.stderr)
+        return 2
+    out = command.console()
+    given = {name: getattr(options, name) for name in ("participants", "trials", "workers", "scheduler", "out", "resume", "any_version")}
+    try:
+        if options.name is None:
+            return command.list_designs(out)
+        if options.trial is not None or options.record is not None:
+            if options.trial is None or options.record is None:
+                raise SettingError("--trial ID and --record RECORDING are given together")
+            return command.run_again(options.name, options.trial, options.record, out)
+        values = read_settings(options.set, ())
+        if command.is_folder(options.name) and not (values or any(given.values())):
+            return command.show_state(options.name, out)
+        return command.run(options.name, out, values=values, **given)
+    except (SettingError, DesignError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
+        return _complain(error)
 
 
 def _soak(options: argparse.Namespace) -> int:

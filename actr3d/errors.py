@@ -78,6 +78,23 @@ class ModelFileError(Actr3dError):
     """A model file cannot be loaded: missing, not Python 3, or not readable as text."""
 
 
+class ExperimentError(Actr3dError):
+    """An experiment cannot be set up, run or continued as requested."""
+
+
+class DesignError(ExperimentError):
+    """A design of an experiment is not valid.
+
+    Args:
+        message: What is wrong.
+        name: The name in the design that is wrong, such as that of a factor; it leads to the line.
+    """
+
+    def __init__(self, message: str, name: str = "") -> None:
+        super().__init__(message)
+        self.name = name
+
+
 class ModelWarning(UserWarning):
     """Something in a model is most likely not what its author intended.
 

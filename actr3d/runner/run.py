@@ -73,34 +73,66 @@ def run_model(
         RecordingError: If the recording cannot be created or written.
         Exception: Any error that the model raises.
     """
-    path = Path(path)
-    source = read_source(path)
-    check_build(source, str(path))
+    return run_source(read_source(Path(path)), str(path), limits, settings=settings, record=record)
+
+
+def run_source(
+    source: str,
+    file: str,
+    limits: RunLimits,
+    *,
+    settings: Settings | Mapping[str, Any] | None = None,
+    record: Path | str | None = None,
+    helpers: HelperTexts | None = None,
+) -> Any:
+    """Runs the text of a model file, as `run_model` runs the file.
+
+    Args:
+        source: The text.
+        file: The name of the file; its helper modules are in the same folder.
+        limits: Its seed, end and trace.
+        settings: Values of the parameters of its `build`, or a function that returns them.
+        record: The new file for a recording of the run; None for no recording.
+        helpers: Provides the texts of the helper modules; None to load them from the folder.
+
+    Returns:
+        The result of the run, if the simulation measures one; None otherwise.
+
+    Raises:
+        ModelFileError: If the text is not Python 3, or its `build` is not valid.
+        SettingError: If parameters are given to a program, or are not valid for the model.
+        ParameterError: If a recording is requested with a trace of less than everything.
+        RecordingError: If the recording cannot be created or written.
+        Exception: Any error that the model raises.
+    """
+    helpers = HelperTexts() if helpers is None else helpers
+    check_build(source, file)
     if limits.seed is None and record is not None:
         limits.seed = fresh_seed()
     if has_build(source):
-        return _run_built(path, source, limits, settings or {}, record)
+        return _run_built(file, source, limits, settings or {}, record, helpers)
     if settings(()) if callable(settings) else settings:
-        raise SettingError(f"'{path}' has no build(parameters) -> Simulation, so there are no parameters to set")
+        raise SettingError(f"'{file}' has no build(parameters) -> Simulation, so there are no parameters to set")
     if record is None:
-        run_text(source, str(path), limits=limits, folder=path.parent)
+        run_text(source, file, limits=limits, folder=Path(file).parent, helpers=helpers)
     else:
-        _record_program(path, source, limits, record)
+        _record_program(file, source, limits, record, helpers)
     return None
 
 
-def _run_built(path: Path, source: str, limits: RunLimits, settings: Settings | Mapping[str, Any], record: Path | str | None) -> Any:
+def _run_built(
+    file: str, source: str, limits: RunLimits, settings: Settings | Mapping[str, Any], record: Path | str | None, helpers: HelperTexts
+) -> Any:
     from actr3d.runner.model_factory import Blueprint  # a program does not need the world, which this loads
 
     with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
-        helpers = HelperTexts()
-        blueprint = Blueprint(source, str(path), path.parent, helpers)
+        blueprint = Blueprint(source, file, Path(file).parent, helpers)
         simulation, parameters = blueprint.build(settings(blueprint.fields) if callable(settings) else settings)
         output.lead_to(simulation)
         if record is None:
             _run_to_end(simulation)
             return simulation.conclude()
-        facts = built_facts(str(path), source, parameters, limits.program_seed, limits.until, helpers.loaded)
+        facts = built_facts(file, source, parameters, limits.program_seed, limits.until, helpers.loaded)
         with simulation.record(record, **facts) as recording:
             helpers.heard = partial(recording.fact, "helpers")  # an agent may import one later
             with before_the_end(partial(_keep_all, recording, simulation.event_log.stdout)), recorded_failure(recording):
@@ -119,17 +151,17 @@ def _run_to_end(simulation: Simulation) -> Ending:
         return "limits"
 
 
-def _record_program(path: Path, source: str, limits: RunLimits, record: Path | str) -> None:
+def _record_program(file: str, source: str, limits: RunLimits, record: Path | str, helpers: HelperTexts) -> None:
     if limits.trace is None:
         limits.trace = Trace("all", keep=False)
     elif limits.trace.level != "all":
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
     with (
-        Recording(record, program_facts(str(path), source, limits.seed, limits.until)) as recording,
+        Recording(record, program_facts(file, source, limits.seed, limits.until)) as recording,
         ProgramOutput(limits) as output,
         before_the_end(partial(_keep_all, recording, output)),
     ):
-        left = play_program(str(path), source, limits, limits.trace, recording, HelperTexts(), output)
+        left = play_program(file, source, limits, limits.trace, recording, helpers, output)
         if left is not None:
             raise left
 

@@ -237,3 +237,16 @@ def test_a_class_without_functions_keeps_its_text_in_use() -> None:
     agent = load_text("class Bare:\n    colour = 'red'\n", "bare.py").Bare
     gc.collect()
     assert sys.modules[agent.__module__].Bare is agent
+
+
+def test_a_file_in_a_copy_of_the_repository_gets_the_library_itself(tmp_path: Path) -> None:
+    (tmp_path / "actr3d").mkdir()
+    for name in ("__init__", "clock"):
+        (tmp_path / "actr3d" / f"{name}.py").write_text("copy = True\n")
+    source = "import actr3d\nfrom actr3d import clock\nfrom actr3d.actr import ACTR\n"
+    loaded = load_text(source, str(tmp_path / "m.py"), folder=tmp_path)
+    ran = run_text(source, str(tmp_path / "m.py"), folder=tmp_path)
+    for module in (loaded, ran):
+        assert module.ACTR is ours.ACTR
+        assert not hasattr(module.actr3d, "copy")
+        assert not hasattr(module.clock, "copy")

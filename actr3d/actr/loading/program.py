@@ -27,6 +27,9 @@ from actr3d.actr.kernel.source_code import SOURCE, WRITTEN_FOR_PYTHON_ACTR, File
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.source_text import compile_source, read_source
 
+LIBRARY = "actr3d"
+"""This library: never a helper module, also for a file in a copy of its repository."""
+
 
 class Program:
     """The files of one program.
@@ -148,7 +151,7 @@ class Program:
 
     def _is_helper(self, root: str) -> bool:
         """Returns whether a name is that of a helper module in the program's own package."""
-        if self._package is None or (root in sys.modules and root in sys.stdlib_module_names):
+        if self._package is None or root == LIBRARY or (root in sys.modules and root in sys.stdlib_module_names):
             return False
         full = f"{self._package}.{root}"
         if full in sys.modules or self.helpers.has(root):
@@ -189,7 +192,7 @@ class _HelperFinder(importlib.abc.MetaPathFinder):
 
     def find_spec(self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
         program = _PACKAGES.get(fullname.partition(".")[0]) or (_RUNNING[-1] if _RUNNING else None)
-        if program is None or fullname in sys.builtin_module_names:
+        if program is None or fullname in sys.builtin_module_names or fullname.partition(".")[0] == LIBRARY:
             return None
         if program.folder is not None:
             name = program.short_name(fullname)

@@ -11,6 +11,7 @@ import tempfile
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib.machinery import ModuleSpec, PathFinder
+from importlib.metadata import Distribution, DistributionFinder, MetadataPathFinder
 from pathlib import Path
 from threading import RLock
 from types import ModuleType
@@ -80,6 +81,10 @@ class _SealedFinder(importlib.abc.MetaPathFinder):
             if spec is not None:
                 return spec
         return None
+
+    def find_distributions(self, context: DistributionFinder.Context | None = None) -> Iterable[Distribution]:
+        """Returns the metadata of installed packages, such as their versions."""
+        return MetadataPathFinder.find_distributions(context or DistributionFinder.Context())
 
 
 def installed_folders() -> list[str]:

@@ -28,29 +28,29 @@ class PassageResult:
     outcome: Literal["passed", "declined", "stopped"]
     """`passed`: all of the body did; `declined`: the run ended before the body set out; `stopped`: neither."""
     peak_angle_deg: float | None
-    """The greatest angle between the shoulder line and the wall while walking [degrees, 0 to 90]; None if it did not set out."""
+    """The greatest angle between the shoulder line and the wall while walking [degrees], from 0 to 90; None if it did not set out."""
     wall_angle_deg: float | None
-    """The same when the axis reached the wall; None if it did not."""
+    """The same when the axis reached the wall [degrees]; None if it did not."""
     logged_angle_deg: float | None
     """The sum of the joint angles of torso and clavicle at that moment [degrees], logged by the original model (docs/human-data.md); plus
     that of the stance, if the body has one."""
     onset_distance_m: float | None
-    """Distance from the wall at which the shoulders began to turn; None if they did not."""
+    """Distance from the wall at which the shoulders began to turn [m]; None if they did not."""
     onset_time_s: float | None
-    """The time at which they began to turn [s]."""
+    """The time at which they began to turn [s]; None if they did not."""
     contacts: int
     """Number of contacts of a part of the body with an object."""
     max_force_n: float
-    """Greatest force of a contact."""
+    """Greatest force of a contact [N]."""
     clearance_left_m: float | None
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
-    faces; None if none was."""
+    faces [m]; None if none was."""
     clearance_right_m: float | None
-    """The same on the right."""
+    """The same on the right [m]."""
     speed_m_s: float | None
-    """Mean walking speed, from setting out until it reached the wall, otherwise until the end."""
+    """Mean walking speed [m/s], from setting out until it reached the wall, otherwise until the end."""
     time_s: float
-    """Duration of the run."""
+    """Duration of the run [s]."""
 
     def __str__(self) -> str:
         lines = [f"{self.outcome} after {self.time_s:.2f} s"]

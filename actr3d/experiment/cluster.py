@@ -1,0 +1,280 @@
+"""Runs the trials of an experiment on a Dask cluster, and stores each as soon as it has finished.
+
+The tasks of the cluster are batches of trials. Each worker runs them in a process of its own (`TrialProcess`), so that a trial that
+hangs or crashes ends neither the worker nor the other trials. This process alone writes to the store.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+import time
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import version
+from itertools import islice
+from queue import Empty, SimpleQueue
+from typing import Any, NoReturn, cast
+
+import dask.config
+from distributed import Client, KilledWorker, LocalCluster, get_worker
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.specification import Experiment
+from actr3d.experiment.store import Finished, Store
+from actr3d.experiment.trial import Row
+from actr3d.experiment.trial_process import TrialProcess
+from actr3d.recording.schema import versions
+
+BATCH = 1.0
+"""The intended duration of a batch of trials [s]: long enough to make the cost of a task small."""
+MOST = 200
+"""The maximum number of trials of a batch."""
+AHEAD = 2
+"""The number of batches for each worker that are submitted at a time."""
+PATIENCE = 30.0
+"""The maximum time to wait for a scheduler, and for the first worker [s]."""
+PACKAGES = ("dask", "distributed")
+"""Packages whose versions the client and the workers must share; no row depends on them."""
+SETTINGS: dict[str, Any] = {
+    "distributed.scheduler.allowed-failures": 100,  # a worker that was ended says nothing about the trial that it ran
+    "distributed.scheduler.worker-saturation": AHEAD,
+    "distributed.worker.daemon": True,
+    "distributed.comm.timeouts.connect": PATIENCE,
+    "distributed.admin.log-length": 0,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Progress:
+    """How far an experiment is."""
+
+    done: int
+    total: int
+    failures: int
+    workers: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Batch:
+    """What a worker has done."""
+
+    rows: list[tuple[int, Row, float]]
+    """The number of each trial, the part of its row that `run_trial` returns, and its duration [s]."""
+    worker: str
+    about: dict[str, dict[str, str | None]] = field(default_factory=dict[str, dict[str, "str | None"]])
+    """Units and meanings of columns."""
+
+
+@contextmanager
+def local_cluster(workers: int) -> Generator[Client]:
+    """Starts a scheduler and workers on this computer, reachable only from it."""
+    local: Any = LocalCluster  # its types are incomplete
+    options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": None, "memory_limit": 0}
+    with (
+        dask.config.set(SETTINGS),
+        local(n_workers=workers, silence_logs=logging.CRITICAL, **options) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+@contextmanager
+def existing_cluster(address: str) -> Generator[Client]:
+    """Connects to a scheduler.
+
+    Args:
+        address: Its address, such as `tcp://node1:8786`, or a scheduler file.
+
+    Raises:
+        ExperimentError: If there is no scheduler.
+    """
+    with dask.config.set(SETTINGS):
+        try:
+            client = Client(scheduler_file=address, timeout=PATIENCE) if os.path.isfile(address) else Client(address, timeout=PATIENCE)  # noqa: PTH113
+        except (OSError, TimeoutError, ValueError, ImportError, RuntimeError) as error:
+            raise ExperimentError(f"--scheduler: no scheduler answers at '{address}' ({error or type(error).__name__})") from None
+        with client:
+            yield client
+
+
+def run_experiment(
+    experiment: Experiment,
+    store: Store,
+    client: Any,
+    *,
+    show: Callable[[Progress], object] = lambda _: None,
+    stop: threading.Event | None = None,
+) -> None:
+    """Runs all trials that have no row yet.
+
+    Args:
+        experiment: The experiment.
+        store: Its folder.
+        client: The `distributed.Client` of the cluster.
+        show: Called after each batch of trials.
+        stop: Ends the run after the batches that have finished, when it is set by another thread.
+
+    Raises:
+        ExperimentError: If the versions of a worker are not those of the specification, the experiment cannot be loaded there,
+            the cluster is lost, or the rows cannot be written.
+    """
+    total = len(experiment.design)
+    with store.only_writer():
+        left = store.missing(total)
+        run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures)
+        try:
+            run.all(left)
+        finally:
+            if client.status == "running":
+                with suppress(Exception):
+                    client.run(end_processes, experiment.specification.to_json(), on_error="ignore")
+
+
+class _Run:
+    """The state of a run that goes on."""
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        store: Store,
+        client: Any,
+        show: Callable[[Progress], object],
+        stop: threading.Event,
+        done: int,
+        failures: int,
+    ) -> None:
+        self._experiment, self._store, self._client, self._show, self._stop = experiment, store, client, show, stop
+        self._json = experiment.specification.to_json()
+        self._versions = ", ".join(f"{name} {text}" for name, text in experiment.specification.versions.items())
+        self._done, self._failures, self._seconds = done, failures, BATCH
+        self._waiting: dict[Any, list[int]] = {}
+        self._finished: SimpleQueue[Any] = SimpleQueue()
+
+    def all(self, numbers: Iterator[int]) -> None:
+        """Runs trials until there are none, or the run is stopped."""
+        self._report()
+        while not self._stop.is_set():
+            for batch in self._next_batches(numbers):
+                self._submit(batch)
+            if not self._waiting:
+                return
+            with suppress(Empty):
+                future = self._finished.get(timeout=0.2)
+                self._take(future, self._waiting.pop(future))
+            if self._client.status not in ("running", "connecting"):
+                self._lost()
+        self._client.cancel(list(self._waiting))
+
+    def _workers(self) -> int:
+        return len(self._client.scheduler_info(n_workers=-1)["workers"])
+
+    def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
+        """Yields batches until each worker has enough of them."""
+        room = max(1, self._workers()) * AHEAD - len(self._waiting)
+        size = max(1, min(MOST, round(BATCH / max(self._seconds, 1e-6))))
+        for _ in range(room):
+            batch = list(islice(numbers, size))
+            if not batch:
+                return
+            yield batch
+
+    def _submit(self, batch: list[int]) -> None:
+        limit = self._experiment.design.limit
+        try:
+            future = self._client.submit(run_batch, self._json, batch, limit, cluster_versions(), pure=False, priority=-batch[0])
+        except (RuntimeError, OSError):  # the client has just been closed
+            self._lost()
+        self._waiting[future] = batch
+        future.add_done_callback(self._finished.put)
+
+    def _take(self, future: Any, numbers: list[int]) -> None:
+        """Stores a batch that has finished; submits it again if its workers, or the scheduler, were ended meanwhile."""
+        try:
+            batch = cast("Batch", future.result(timeout=PATIENCE))
+        except KilledWorker:
+            self._submit(numbers)
+            return
+        except (CancelledError, TimeoutError, OSError):
+            if self._client.status != "running":
+                self._lost()
+            self._submit(numbers)
+            return
+        table = self._experiment.design.trial
+        rows = [
+            Finished(row={**table(number).columns, **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows
+        ]
+        self._done += self._store.add(rows, self._versions, self._experiment.about | batch.about)
+        self._failures += sum(one.row["error"] is not None for one in rows)
+        self._seconds = sum(one.wall_s for one in rows) / len(rows)
+        self._report()
+
+    def _report(self) -> None:
+        total = len(self._experiment.design)
+        self._show(Progress(done=self._done, total=total, failures=self._failures, workers=self._workers()))
+
+    def _lost(self) -> NoReturn:
+        total = len(self._experiment.design)
+        raise ExperimentError(f"the scheduler is gone; {self._done} of {total} trials are kept; continue with --resume")
+
+
+# -- on the workers
+
+
+@cache
+def cluster_versions() -> dict[str, str]:
+    """Returns the versions that a client and its workers must share."""
+    return {**versions(), **{package: version(package) for package in PACKAGES}}
+
+
+_PROCESSES: dict[tuple[str, int], TrialProcess] = {}
+_LOCK = threading.Lock()
+
+
+def run_batch(specification: str, numbers: Sequence[int], limit: float, expected: Mapping[str, str]) -> Batch:
+    """Runs trials on a worker.
+
+    Args:
+        specification: The experiment, as JSON.
+        numbers: The numbers of the trials.
+        limit: The maximum wall time of each [s].
+        expected: The versions of the client.
+
+    Raises:
+        ExperimentError: If the worker has other versions, or the experiment cannot be loaded.
+    """
+    address = _worker_name()
+    different = [
+        f"{name} {cluster_versions().get(name, 'none')} (the client has {text})"
+        for name, text in expected.items()
+        if cluster_versions().get(name) != text
+    ]
+    if different:
+        raise ExperimentError(f"worker {address}: has other versions: {', '.join(different)}; install the same on both")
+    key = specification, threading.get_ident()
+    with _LOCK:
+        process = _PROCESSES.setdefault(key, TrialProcess(specification))
+    rows: list[tuple[int, Row, float]] = []
+    for number in numbers:
+        begin = time.perf_counter()
+        row = process.run(number, limit)
+        rows.append((number, row, time.perf_counter() - begin))
+    return Batch(rows=rows, worker=address, about=process.about)
+
+
+def end_processes(specification: str) -> None:
+    """Ends the processes of a worker that run trials of an experiment."""
+    with _LOCK:
+        for key in [key for key in _PROCESSES if key[0] == specification]:
+            _PROCESSES.pop(key).end()
+
+
+def _worker_name() -> str:
+    try:
+        return str(get_worker().name)
+    except ValueError:  # not on a cluster
+        return str(os.getpid())

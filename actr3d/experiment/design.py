@@ -1,0 +1,387 @@
+"""Designs of experiments: factors, participants and trials, and the table of trials that follows from them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from random import Random
+from statistics import NormalDist
+from typing import Annotated, Any, Literal, Protocol, TypeVar, cast, runtime_checkable
+
+from annotated_types import Ge, Gt
+
+from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError, DesignError, did_you_mean
+from actr3d.parameter_schema import Parameter
+
+DIGITS = 6
+"""Number of decimals to which drawn values are rounded, so that they are the same on every machine."""
+FAR = 1e-9
+"""Probability in the tails of an unbounded distribution within which the bounds of a parameter are checked."""
+OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
+"""The columns of every table of trials, whatever the design."""
+
+
+@runtime_checkable
+class Distribution(Protocol):
+    """A distribution from which values of parameters are drawn."""
+
+    def quantile(self, p: float) -> float:
+        """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Normal(Configuration):
+    """A normal distribution, truncated if there are bounds: `Normal(mean=0.404, sd=0.02, low=0.3, high=0.7)`."""
+
+    mean: float
+    sd: Annotated[float, Ge(0)]
+    """The standard deviation before truncation."""
+    low: float | None = None
+    """The lower bound of values; None for none."""
+    high: float | None = None
+    """The upper bound of values; None for none."""
+
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ConfigurationError: If a value is not a number.
+            DesignError: If no value lies between the bounds.
+        """
+        super().__post_init__()
+        low, high = self._bounds()
+        if low > high or (self.sd == 0 and not low <= self.mean <= high):
+            raise DesignError(f"Normal: no value lies between low {low:g} and high {high:g} (mean {self.mean:g}, sd {self.sd:g})")
+
+    def quantile(self, p: float) -> float:
+        """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
+        if self.sd == 0:
+            return self.mean
+        low, high = self._bounds()
+        whole = NormalDist(self.mean, self.sd)
+        below, up_to = whole.cdf(low), whole.cdf(high)
+        inside = min(max(below + p * (up_to - below), 1e-12), 1 - 1e-12)
+        return min(max(whole.inv_cdf(inside), low), high)
+
+    def _bounds(self) -> tuple[float, float]:
+        return -math.inf if self.low is None else self.low, math.inf if self.high is None else self.high
+
+
+@dataclass(frozen=True, kw_only=True)
+class Uniform(Configuration):
+    """A uniform distribution: `Uniform(low=0, high=0.5)`."""
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ConfigurationError: If a value is not a number.
+            DesignError: If the upper bound is below the lower one.
+        """
+        super().__post_init__()
+        if self.low > self.high:
+            raise DesignError(f"Uniform.high: must be >= low {self.low:g} (got {self.high:g})")
+
+    def quantile(self, p: float) -> float:
+        """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
+        return self.low + p * (self.high - self.low)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Group(Configuration):
+    """A group of participants."""
+
+    participants: Annotated[int, Ge(1)] = 1
+    """Their number."""
+    parameters: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """Values of the model's parameters. From a `Normal` or `Uniform`, one value is drawn for each participant."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design(Configuration):
+    """An experiment with a model.
+
+    Each participant of each group does every combination of the factors' levels `trials` times; the model runs once for each trial.
+    """
+
+    model: str | None = None
+    """The model file: beside the file of the design, or one of the library's own models; None for the file of the design itself."""
+    factors: Mapping[str, Sequence[Any]] = field(default_factory=dict[str, Sequence[Any]])
+    """The levels of each parameter that varies within participants."""
+    groups: Mapping[str, Group] = field(default_factory=lambda: {"all": Group()})
+    """The groups of participants by name."""
+    settings: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """Values of other parameters of the model. From a `Normal` or `Uniform`, a value is drawn for each trial."""
+    trials: Annotated[int, Ge(1)] = 1
+    """The number of trials of each participant in each combination of levels."""
+    order: Literal["random", "fixed"] = "random"
+    """The order of a participant's trials: drawn for each participant, or as the levels are listed."""
+    derive: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None
+    """Computes more parameters of the model from the values of a trial, such as an aperture from a ratio and a shoulder width. A factor
+    that it reads need not be a parameter of the model."""
+    results: Callable[[Any], Mapping[str, Any]] | None = None
+    """Computes the measures of a trial by name: from the simulation at its end, or from the module of a program that has run. None: the
+    fields of the simulation's result, or the program's variables named by `measures`."""
+    measures: Sequence[str] = ()
+    """The names of the measures to keep; empty to keep all of them."""
+    until: Annotated[float, Gt(0)] = 60.0
+    """The maximum simulated time of a trial [s]."""
+    limit: Annotated[float, Gt(0)] = 60.0
+    """The maximum wall time of a trial [s]: a trial that takes longer is ended, and counts as failed."""
+    human: str | None = None
+    """The name of the human data that the report shows beside the model's; see `actr3d.experiment.human_data`."""
+    seed: int = 1
+    """The seed of all that is drawn, and of all trials."""
+
+    def __post_init__(self) -> None:
+        """Checks what can be checked without the model.
+
+        Raises:
+            ConfigurationError: If a field has the wrong type, or is out of bounds.
+            DesignError: If there is no trial, or a parameter is given twice.
+        """
+        super().__post_init__()
+        for name, levels in self.factors.items():
+            given: Any = levels
+            if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
+                raise DesignError(f"Design.factors['{name}']: must be a list of levels (got {given!r})", name)
+            if not given:
+                raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
+            if len({repr(level) for level in levels}) < len(levels):
+                raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
+        if not self.groups:
+            raise DesignError("Design.groups: must have at least one group (got {})", "groups")
+        for name, group in cast("Mapping[str, Any]", self.groups).items():
+            if not isinstance(group, Group):
+                raise DesignError(f"Design.groups['{name}']: must be a Group (got {group!r})", name)
+            for twice in self.factors.keys() & group.parameters.keys():
+                raise DesignError(f"Design.groups['{name}']: '{twice}' is a factor already", twice)
+        grouped = {name for group in self.groups.values() for name in group.parameters}
+        for twice in self.settings.keys() & {*self.factors, *grouped}:
+            raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
+        for name in {*self.factors, *self.settings, *grouped}:
+            if name in OWN_COLUMNS and name != "group":
+                raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
+
+    # -- the table of trials
+
+    @cached_property
+    def cells(self) -> tuple[Mapping[str, Any], ...]:
+        """All combinations of the factors' levels; the last factor varies fastest."""
+        return tuple(dict(zip(self.factors, levels, strict=True)) for levels in itertools.product(*self.factors.values()))
+
+    @cached_property
+    def participants(self) -> tuple[Participant, ...]:
+        """All participants, group by group."""
+        found: list[Participant] = []
+        for group_name, group in self.groups.items():
+            for number in range(1, group.participants + 1):
+                name = f"{group_name} {number}"
+                drawn = {key: _value(value, f"{self.seed} {name} {key}") for key, value in group.parameters.items()}
+                found.append(Participant(name=name, group=group_name, parameters=drawn))
+        return tuple(found)
+
+    @property
+    def trials_of_each(self) -> int:
+        """The number of trials of each participant."""
+        return len(self.cells) * self.trials
+
+    def __len__(self) -> int:
+        """Returns the number of trials."""
+        return self.trials_of_each * len(self.participants)
+
+    def trial(self, number: int) -> Trial:
+        """Returns a trial.
+
+        Args:
+            number: Its number, from 0: participant by participant, in the order in which they are done.
+
+        Raises:
+            DesignError: If there is no such trial, or `derive` fails.
+        """
+        if not 0 <= number < len(self):
+            raise DesignError(f"trial: must be a number from 0 to {len(self) - 1} (got {number})")
+        who, position = divmod(number, self.trials_of_each)
+        participant = self.participants[who]
+        repetition, cell = divmod(_order(self, participant.name)[position], len(self.cells))
+        levels = self.cells[cell]
+        # The seed names the levels and not the number of the cell: another level of a factor changes no other trial.
+        conditions = " ".join(f"{name}={value}" for name, value in levels.items())
+        seed = " ".join(filter(None, [str(self.seed), participant.name, conditions, str(repetition + 1)]))
+        drawn = {name: _value(value, f"{seed} {name}") for name, value in self.settings.items()}
+        values = self.derived({**drawn, **participant.parameters, **levels})
+        return Trial(number=number, participant=participant, position=position + 1, repetition=repetition + 1, values=values, seed=seed)
+
+    def derived(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Returns the values of a trial with those that `derive` computes from them.
+
+        Raises:
+            DesignError: If `derive` fails, or returns something else.
+        """
+        if self.derive is None:
+            return dict(values)
+        try:
+            more: Any = self.derive(values)
+        except Exception as error:
+            raise DesignError(f"Design.derive: failed with {type(error).__name__}: {error} (given {dict(values)!r})", "derive") from error
+        if not isinstance(more, Mapping):
+            raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
+        return {**values, **{str(name): value for name, value in cast("Mapping[Any, Any]", more).items()}}
+
+    def table(self) -> Iterator[Trial]:
+        """Yields all trials."""
+        return map(self.trial, range(len(self)))
+
+    # -- changes
+
+    def changed(self, *, participants: int | None = None, trials: int | None = None, values: Mapping[str, Any] | None = None) -> Design:
+        """Returns a copy with other numbers or values.
+
+        Args:
+            participants: The number of participants of each group; None to keep it.
+            trials: The number of trials of each combination of levels; None to keep it.
+            values: New levels of factors (a single value becomes the only level), or values of other parameters; also `seed`, `until`
+                and `limit` of the design.
+
+        Raises:
+            ConfigurationError: If a value has the wrong type, or is out of bounds.
+            DesignError: If no trial is left.
+        """
+        left = dict(values or {})
+        own = {name: left.pop(name) for name in ("seed", "until", "limit") if name in left}
+        factors = {name: _levels(left.pop(name)) if name in left else levels for name, levels in self.factors.items()}
+        grouped = {name for group in self.groups.values() for name in group.parameters}
+        groups = {
+            name: replace(
+                group,
+                participants=group.participants if participants is None else participants,
+                parameters={key: left.get(key, value) for key, value in group.parameters.items()},
+            )
+            for name, group in self.groups.items()
+        }
+        settings = {**self.settings, **{name: value for name, value in left.items() if name not in grouped}}
+        number = self.trials if trials is None else trials
+        return replace(self, factors=factors, groups=groups, settings=settings, trials=number, **own)
+
+    # -- checks against the model
+
+    def check(self, parameters: Sequence[Parameter]) -> None:
+        """Checks all values against the parameters of the model.
+
+        Raises:
+            DesignError: If a name is not a parameter of the model, or a value is not allowed.
+        """
+        known = {parameter.name: parameter for parameter in parameters}
+        given = {**self.settings, **self.factors, **{key: None for group in self.groups.values() for key in group.parameters}}
+        read: set[str] = set()
+        examples = [{name: _example(value, p) for name, value in self.settings.items()} for p in (FAR, 0.5, 1 - FAR)]
+        for participant, cell, example in itertools.product(self.participants, self.cells, examples):
+            values = _ReadNames({**example, **participant.parameters, **cell}, read)
+            for name, value in self.derived(values).items():
+                if name in known:
+                    try:
+                        known[name].check(value)
+                    except ConfigurationError as error:
+                        raise DesignError(f"Design, {participant.name}: {error}", name) from None
+                elif name not in given:
+                    raise DesignError(f"Design.derive: the model has no parameter '{name}'{did_you_mean(name, known)}", "derive")
+        for name in given:
+            if name not in known and name not in read:
+                raise DesignError(
+                    f"Design: the model has no parameter '{name}'{did_you_mean(name, known)}; it has: {', '.join(known) or 'none'}", name
+                )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Participant:
+    """A participant of an experiment."""
+
+    name: str
+    group: str
+    parameters: Mapping[str, Any]
+    """The values of the parameters of the group."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """A trial of a design."""
+
+    number: int
+    participant: Participant
+    position: int
+    """Its place among the trials of its participant, from 1."""
+    repetition: int
+    """Its place among the participant's trials of the same levels, from 1."""
+    values: Mapping[str, Any]
+    """All values that the design gives, by name."""
+    seed: str
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """Its columns in the table of trials that are known before it runs."""
+        of = {"trial": self.number, "participant": self.participant.name, "group": self.participant.group}
+        values = {name: value for name, value in self.values.items() if name not in of}
+        return {**of, "position": self.position, "repetition": self.repetition, **values, "seed": self.seed}
+
+
+D = TypeVar("D", bound=Callable[[], Design])
+
+
+def design(function: D) -> D:
+    """Marks a function without arguments that returns a `Design`; its name names the design, its docstring describes it."""
+    function.__dict__["is_design"] = True
+    return function
+
+
+def is_design(value: object) -> bool:
+    """Returns whether a value is a function marked by `design`."""
+    return getattr(value, "is_design", False) is True
+
+
+class _ReadNames(dict[str, Any]):
+    """Values that store the names of those that are read."""
+
+    def __init__(self, values: Mapping[str, Any], read: set[str]) -> None:
+        super().__init__(values)
+        self._read = read
+
+    def __getitem__(self, name: str) -> Any:
+        self._read.add(name)
+        return super().__getitem__(name)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        self._read.add(name)
+        return super().get(name, default)
+
+
+def _value(value: Any, seed: str) -> Any:
+    """Returns a value, or one that is drawn from it if it is a distribution."""
+    return round(value.quantile(Random(seed).random()), DIGITS) if isinstance(value, Distribution) else value
+
+
+def _example(value: Any, p: float) -> Any:
+    return round(value.quantile(p), DIGITS) if isinstance(value, Distribution) else value
+
+
+def _levels(value: Any) -> Sequence[Any]:
+    return cast("Sequence[Any]", value) if isinstance(value, (list, tuple)) else [value]
+
+
+@lru_cache(maxsize=4)
+def _random_order(seed: int, name: str, length: int) -> tuple[int, ...]:
+    order = list(range(length))
+    Random(f"{seed} {name} order").shuffle(order)
+    return tuple(order)
+
+
+def _order(of: Design, name: str) -> Sequence[int]:
+    """Returns the numbers of a participant's trials in the order in which they are done: all cells once, then again."""
+    return range(of.trials_of_each) if of.order == "fixed" else _random_order(of.seed, name, of.trials_of_each)

@@ -1,0 +1,339 @@
+"""Specifications of experiments: everything that determines the rows of an experiment, as one JSON document.
+
+A specification holds the texts of the design and of the model, so that workers need no files, and later changes to these files
+change nothing.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import pkgutil
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import actr3d
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.loading import load_text
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.actr.loading.sealed import sealed
+from actr3d.actr.loading.source_text import read_source
+from actr3d.actr.loading.sweep import parameters as variables_of
+from actr3d.configuration import Configuration
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, did_you_mean
+from actr3d.experiment import designs
+from actr3d.experiment.design import Design, is_design
+from actr3d.parameter_schema import Parameter
+from actr3d.printing import ModelOutput, printing_to
+from actr3d.recording.schema import versions
+from actr3d.runner.build_check import check_build, has_build
+from actr3d.runner.model_factory import Blueprint
+
+FORMAT = 1
+"""The version of the format of a specification."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source(Configuration):
+    """The text of a Python file, with those of its own helper modules."""
+
+    file: str
+    """Its name in tracebacks."""
+    text: str
+    helpers: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """See `HelperTexts.loaded`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Specification(Configuration):
+    """Everything that determines the rows of an experiment."""
+
+    name: str
+    """The name of the design."""
+    design: Source
+    model: Source
+    participants: int | None = None
+    """The number of participants of each group; None for that of the design."""
+    trials: int | None = None
+    """The number of trials of each combination of levels; None for that of the design."""
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """Values that replace those of the design; see `Design.changed`."""
+    versions: Mapping[str, str] = field(default_factory=dict[str, str])
+    """The versions of everything that the rows may depend on."""
+    format: int = FORMAT
+
+    def to_json(self) -> str:
+        """Returns the specification as JSON."""
+        return json.dumps(asdict(self), ensure_ascii=False, indent=1)
+
+    @contextmanager
+    def sealed(self) -> Generator[HelperTexts]:
+        """Restricts imports inside the block to the texts of the specification, the standard library and installed packages.
+
+        Yields:
+            The helper modules of design and model, for `Experiment` and `run_trial`.
+        """
+        with sealed(self.model.file, self.model.text, {**self.design.helpers, **self.model.helpers}) as helpers:
+            yield helpers
+
+    @classmethod
+    def from_json(cls, text: str, where: str) -> Specification:
+        """Returns the specification that a JSON document describes.
+
+        Args:
+            text: The document.
+            where: Its name, for errors.
+
+        Raises:
+            ExperimentError: If it is not a specification.
+        """
+        try:
+            given = json.loads(text)
+            if given["format"] != FORMAT:
+                raise ExperimentError(f"{where}: has format {given['format']!r}; this version reads format {FORMAT}")
+            sources = {name: Source.from_mapping(given.pop(name)) for name in ("design", "model")}
+            return cls.from_mapping({**given, **sources})
+        except (ValueError, TypeError, KeyError, AttributeError, ConfigurationError) as error:
+            raise ExperimentError(f"{where}: is not the description of an experiment ({error})") from None
+
+
+class Experiment:
+    """A design that was loaded, with its model.
+
+    Args:
+        specification: The texts.
+        helpers: Provides the helper modules of design and model (see `Specification.sealed`); None for those that the specification
+            holds, and those beside the files.
+        folders: The folders of design and model; None for those that their names give.
+
+    Raises:
+        DesignError: If the design is not valid, or does not fit the model; names the file and the line.
+        ModelFileError: If the model file is not valid.
+        Exception: Any error that the files themselves raise.
+    """
+
+    def __init__(
+        self, specification: Specification, helpers: HelperTexts | None = None, folders: tuple[Path | None, Path | None] = (None, None)
+    ) -> None:
+        self.specification = specification
+        source, model = specification.design, specification.model
+        self._helpers = [helpers or HelperTexts(one.helpers) for one in (source, model)]
+        own = [folder or Path(one.file).parent for folder, one in zip(folders, (source, model), strict=True)]
+        self._module = load_quietly(source, own[0], self._helpers[0])
+        self.design = design_in(self._module, specification.name, source)
+        with naming_the_line(source, specification.name, specification.values):
+            self.design = self.design.changed(
+                participants=specification.participants, trials=specification.trials, values=specification.values
+            )
+        check_build(model.text, model.file)
+        self.blueprint: Blueprint | None = None
+        """Builds the model's simulations; None for a program."""
+        if has_build(model.text):
+            with RunLimits(), printing_to(ModelOutput(lambda _: None)):
+                self.blueprint = Blueprint(model.text, model.file, own[1], self._helpers[1])
+        self.parameters: tuple[Parameter, ...] = (
+            self.blueprint.fields
+            if self.blueprint is not None
+            else tuple(Parameter(name=name, takes="value", line=node.lineno) for name, node in variables_of(model.text).items())
+        )
+        """The parameters of the model: the fields of its dataclass, or the variables that the first lines of a program set."""
+        self.about: dict[str, dict[str, str | None]] = {}
+        """Units and meanings of the columns, as far as they are known."""
+        self.describe(self.parameters)
+        with naming_the_line(source, specification.name, specification.values):
+            self.design.check(self.parameters)
+            if self.blueprint is None and self.design.results is None and not self.design.measures:
+                raise DesignError("Design.measures: must name the variables of the program that are its measures (got none)", "measures")
+
+    @property
+    def description(self) -> str:
+        """The docstring of the design."""
+        return (getattr(self._module, self.specification.name).__doc__ or "").strip()
+
+    @property
+    def helper_texts(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """The helper modules that design and model have loaded."""
+        of_design, of_model = (dict(helpers.loaded) for helpers in self._helpers)
+        return of_design, of_model
+
+    def describe(self, fields_of_result: Sequence[Parameter]) -> None:
+        """Adds units and meanings of measures, once they are known."""
+        self.about |= {field.name: {"unit": field.unit, "meaning": field.help} for field in fields_of_result}
+
+
+# -- finding designs
+
+
+def library_designs() -> dict[str, Path]:
+    """Returns the files of the library's own designs by the designs' names."""
+    found: dict[str, Path] = {}
+    for info in pkgutil.iter_modules(designs.__path__):
+        module = import_module(f"{designs.__name__}.{info.name}")
+        found |= dict.fromkeys(designs_of(module), Path(str(module.__file__)))
+    return found
+
+
+def library_models() -> Path:
+    """Returns the folder of the library's own models: beside the library in a copy of the repository, within it if installed."""
+    library = Path(actr3d.__file__).parent
+    return library / "models" if (library / "models").is_dir() else library.parent / "models"
+
+
+def designs_of(module: ModuleType) -> dict[str, Any]:
+    """Returns the designs that a module defines, by name."""
+    return {name: value for name, value in vars(module).items() if is_design(value) and value.__module__ == module.__name__}
+
+
+def specify(
+    name: str, *, participants: int | None = None, trials: int | None = None, values: Mapping[str, Any] | None = None
+) -> Experiment:
+    """Finds and checks a design.
+
+    Args:
+        name: One of the library's designs; a file that defines one; or `FILE:NAME` if it defines several.
+        participants: The number of participants of each group; None for that of the design.
+        trials: The number of trials of each combination of levels; None for that of the design.
+        values: Values that replace those of the design; see `Design.changed`.
+
+    Raises:
+        ExperimentError: If there is no such design.
+        DesignError: If the design is not valid, or does not fit the model; names the file and the line.
+        ModelFileError: If the model file, or the file of the design, is not valid.
+        Exception: Any error that the files themselves raise.
+    """
+    path, chosen = _file_of(name)
+    source = _source_of(path)
+    if not chosen:
+        marked = _marked(source)
+        if len(marked) != 1:
+            found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
+            raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
+        chosen = marked[0]
+    of_design = design_in(load_quietly(source, path.parent, HelperTexts()), chosen, source)
+    model = _model_of(of_design, path)
+    drafted = Specification(
+        name=chosen,
+        design=source,
+        model=_source_of(model),
+        participants=participants,
+        trials=trials,
+        values=values or {},
+        versions=versions(),
+    )
+    loaded = Experiment(drafted, folders=(path.parent, model.parent))
+    of_design, of_model = loaded.helper_texts
+    loaded.specification = replace(
+        drafted, design=replace(drafted.design, helpers=of_design), model=replace(drafted.model, helpers=of_model)
+    )
+    return loaded
+
+
+def _file_of(name: str) -> tuple[Path, str]:
+    """Returns the file of a design, and the name in it, if it is known."""
+    known = library_designs()
+    if name in known:
+        return known[name], name
+    file, colon, chosen = name.rpartition(":")
+    if colon and file and chosen.isidentifier() and Path(file).exists():
+        return Path(file), chosen
+    if not Path(name).exists() and not name.endswith(".py"):
+        raise ExperimentError(f"no design or file '{name}'{did_you_mean(name, known)}; the library has: {', '.join(sorted(known))}")
+    return Path(name), ""
+
+
+def _source_of(path: Path) -> Source:
+    """Returns the text of a file; the folder of one of the library's own files is not part of its name."""
+    own = path.parent in (library_models(), *map(Path, designs.__path__))
+    return Source(file=path.name if own else str(path), text=read_source(path))
+
+
+def _model_of(of: Design, path: Path) -> Path:
+    if of.model is None:
+        return path
+    beside = path.parent / of.model
+    shipped = library_models() / of.model
+    if not beside.exists() and not shipped.exists():
+        near = did_you_mean(of.model, [file.name for folder in (path.parent, library_models()) for file in folder.glob("*.py")])
+        raise ExperimentError(f"{path}: Design.model: there is no file '{of.model}' beside it or in {library_models()}{near}")
+    return beside if beside.exists() else shipped
+
+
+def load_quietly(source: Source, folder: Path | None, helpers: HelperTexts) -> ModuleType:
+    """Loads the file of a design; what it prints is dropped.
+
+    Raises:
+        ModelFileError: If it is not Python 3.
+        Exception: Any error that the file itself raises.
+    """
+    with RunLimits(seed=0), printing_to(ModelOutput(lambda _: None)):
+        return load_text(source.text, source.file, folder=folder, helpers=helpers)
+
+
+def design_in(module: ModuleType, name: str, source: Source) -> Design:
+    """Returns a design that a module defines.
+
+    Raises:
+        ExperimentError: If it defines no such design.
+        DesignError: If the design is not valid; names the file and the line.
+    """
+    known = designs_of(module)
+    if name not in known:
+        near = did_you_mean(name, known)
+        raise ExperimentError(f"{source.file}: has no design '{name}'{near}; it has: {', '.join(known) or 'none'}")
+    with naming_the_line(source, name, {}):
+        found = known[name]()
+        if not isinstance(found, Design):
+            raise DesignError(f"{name}() must return a Design (returned {found!r})")
+    return found
+
+
+@contextmanager
+def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) -> Generator[None]:
+    """Adds the place to the errors of a design that are raised inside the block.
+
+    Args:
+        source: The file of the design.
+        function: The name of the design.
+        replaced: The values that replace those of the file.
+
+    Raises:
+        DesignError: The same error after `file:line`, or after `--set` for a value that replaces one of the file.
+    """
+    try:
+        yield
+    except (ConfigurationError, DesignError) as error:
+        name = error.name if isinstance(error, DesignError) else str(error).partition(":")[0].rpartition(".")[2]
+        place = f"--set {name}" if name in replaced else f"{source.file}:{line_of(source.text, function, name)}"
+        raise DesignError(f"{place}: {error}", name) from None
+
+
+def line_of(text: str, function: str, name: str) -> int:
+    """Returns the line of a file at which a design's function mentions a name, or else at which the function begins."""
+    node = next((one for one in ast.parse(text).body if isinstance(one, ast.FunctionDef) and one.name == function), None)
+    if node is None:
+        return 1
+    for one in ast.walk(node):
+        if (isinstance(one, ast.Constant) and one.value == name) or (isinstance(one, ast.keyword) and one.arg == name):
+            return one.value.lineno if isinstance(one, ast.keyword) else one.lineno
+    return node.lineno
+
+
+def _marked(source: Source) -> list[str]:
+    """Returns the names of the functions of a file that are marked by `design`, without running it."""
+
+    def name_of(mark: ast.expr) -> str:
+        return mark.attr if isinstance(mark, ast.Attribute) else mark.id if isinstance(mark, ast.Name) else ""
+
+    try:
+        tree = ast.parse(source.text)
+    except SyntaxError:
+        load_quietly(source, None, HelperTexts())  # raises the error that names the line
+        raise
+    return [
+        node.name for node in tree.body if isinstance(node, ast.FunctionDef) and any(name_of(d) == "design" for d in node.decorator_list)
+    ]

@@ -1,0 +1,255 @@
+"""The folder of an experiment: its specification, and an SQLite file with one row for each finished trial."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import sqlite3
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.specification import Specification
+from actr3d.experiment.trial import Row
+
+SPECIFICATION, TRIALS, LOCK = "experiment.json", "trials.sqlite", "lock"
+"""The names of the files in the folder."""
+CHUNK = 5_000
+"""Rows that are read at a time."""
+LATTICE = ("null", "boolean", "integer", "real", "text")
+"""The types of columns; one that holds values of several types has the last of these that fits them all."""
+_SCHEMA = """
+CREATE TABLE IF NOT EXISTS trial (number INTEGER PRIMARY KEY, data TEXT NOT NULL, versions TEXT NOT NULL, wall_s REAL, worker TEXT);
+CREATE TABLE IF NOT EXISTS column (name TEXT PRIMARY KEY, place INTEGER, type TEXT NOT NULL, unit TEXT, meaning TEXT);
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A column of the table of trials."""
+
+    name: str
+    type: str
+    """`null` if it is empty, `boolean`, `integer`, `real` or `text`."""
+    unit: str | None = None
+    meaning: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finished:
+    """A finished trial."""
+
+    row: Row
+    wall_s: float
+    """Its duration [s]."""
+    worker: str
+    """The name of the worker that ran it."""
+
+
+LAST = (
+    Column(name="versions", type="text", meaning="The versions of the packages that ran the trial."),
+    Column(name="wall_s", type="real", unit="s", meaning="The duration of the trial in real time; not reproducible."),
+    Column(name="worker", type="text", meaning="The worker that ran the trial; not reproducible."),
+)
+"""The columns that follow those of a row. Source of the last two: the clock and the cluster."""
+
+
+class Store:
+    """The folder of an experiment, opened to read.
+
+    Args:
+        folder: The folder.
+
+    Raises:
+        ExperimentError: If the folder holds no experiment.
+    """
+
+    def __init__(self, folder: Path | str) -> None:
+        self.folder = Path(folder)
+        path = self.folder / SPECIFICATION
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ExperimentError(f"'{self.folder}' holds no experiment: cannot read {SPECIFICATION} ({_why(error)})") from None
+        self.specification = Specification.from_json(text, str(path))
+        try:
+            self._database = sqlite3.connect(self.folder / TRIALS, timeout=30, isolation_level=None, check_same_thread=False)
+            self._database.executescript(f"PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; {_SCHEMA}")
+        except sqlite3.Error as error:
+            raise ExperimentError(f"{self.folder / TRIALS}: cannot be opened ({error})") from None
+
+    @classmethod
+    def create(cls, folder: Path | str, specification: Specification) -> Store:
+        """Creates the folder of a new experiment.
+
+        Raises:
+            ExperimentError: If the folder is not empty, or cannot be made.
+        """
+        path = Path(folder)
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            if any(path.iterdir()):
+                what = "holds an experiment already; continue it with --resume" if (path / SPECIFICATION).exists() else "is not empty"
+                raise ExperimentError(f"--out: '{path}' {what}, or name a new folder")
+            part = path / f"{SPECIFICATION}.part"
+            part.write_text(specification.to_json(), encoding="utf-8")
+            part.replace(path / SPECIFICATION)
+        except OSError as error:
+            raise ExperimentError(f"--out: cannot make '{path}' ({_why(error)})") from None
+        return cls(path)
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._database.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    # -- writing
+
+    @contextmanager
+    def only_writer(self) -> Generator[None]:
+        """Makes this process the only one that adds rows, inside the block.
+
+        Raises:
+            ExperimentError: If another process runs this experiment.
+        """
+        with (self.folder / LOCK).open("a+", encoding="utf-8") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                file.seek(0)
+                raise ExperimentError(f"'{self.folder}': another process ({file.read().strip()}) runs this experiment") from None
+            file.truncate(0)
+            file.write(str(os.getpid()))
+            file.flush()
+            yield
+
+    def add(self, finished: Iterable[Finished], versions: str, about: dict[str, dict[str, str | None]] | None = None) -> int:
+        """Adds rows in one transaction; a trial that has a row keeps it. Returns the number of new rows.
+
+        Args:
+            finished: The trials.
+            versions: The versions of the packages that ran them.
+            about: Units and meanings of columns; see `columns_of`.
+
+        Raises:
+            ExperimentError: If the file cannot be written.
+        """
+        rows: list[tuple[int, str, str, float, str]] = []
+        columns: dict[str, tuple[int, str]] = {}
+        for one in finished:
+            for place, (name, value) in enumerate(one.row.items()):
+                before = columns.get(name, (place, "null"))
+                columns[name] = min(before[0], place), _joined(before[1], _type_of(value))
+            data = json.dumps(one.row, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+            rows.append((one.row["trial"], data, versions, one.wall_s, one.worker))
+        database = self._database
+        try:
+            database.execute("BEGIN IMMEDIATE")
+            try:
+                count = database.executemany("INSERT OR IGNORE INTO trial VALUES (?, ?, ?, ?, ?)", rows).rowcount
+                self._describe(columns, about or {})
+                database.execute("COMMIT")
+            except BaseException:
+                if database.in_transaction:
+                    database.execute("ROLLBACK")
+                raise
+        except sqlite3.Error as error:
+            raise ExperimentError(f"{self.folder / TRIALS}: cannot write ({error}); the rows before are kept") from None
+        return count
+
+    def _describe(self, columns: dict[str, tuple[int, str]], about: dict[str, dict[str, str | None]]) -> None:
+        """Stores new columns, and new types of columns; the result does not depend on the order of the rows."""
+        stored = self._database.execute("SELECT name, place, type, unit FROM column")
+        known = {name: (place, kind, unit) for name, place, kind, unit in stored}
+        for name, (place, kind) in columns.items():
+            was = known.get(name, (place, "null", None))
+            says = about.get(name, {})
+            unit = was[2] if was[2] is not None else says.get("unit")
+            entry = min(was[0], place), _joined(was[1], kind), unit
+            if name not in known or entry != was:
+                self._database.execute("INSERT OR REPLACE INTO column VALUES (?, ?, ?, ?, ?)", (name, *entry, says.get("meaning") or ""))
+
+    # -- reading
+
+    @property
+    def count(self) -> int:
+        """The number of finished trials."""
+        return self._database.execute("SELECT count(*) FROM trial").fetchone()[0]
+
+    @property
+    def failures(self) -> int:
+        """The number of finished trials that failed."""
+        return self._database.execute('SELECT count(*) FROM trial WHERE data LIKE \'%,"error":"%\'').fetchone()[0]
+
+    def missing(self, total: int) -> Iterator[int]:
+        """Yields the numbers of trials without a row, in order.
+
+        Args:
+            total: The number of trials of the design.
+        """
+        done = bytearray(total)
+        for (number,) in self._database.execute("SELECT number FROM trial"):
+            if number < total:
+                done[number] = 1
+        return (number for number in range(total) if not done[number])
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """The columns of the table of trials, in order."""
+        found = self._database.execute("SELECT name, type, unit, meaning FROM column ORDER BY name = 'end' OR name = 'error', place, name")
+        return (*(Column(name=n, type=t, unit=u, meaning=m or "") for n, t, u, m in found), *LAST)
+
+    def rows(self, after: int = -1) -> Iterator[Row]:
+        """Yields all rows by the numbers of their trials, also those that are added meanwhile.
+
+        Args:
+            after: Only trials with a greater number than this.
+        """
+        names = [column.name for column in self.columns[: -len(LAST)]]
+        while found := self._read("WHERE number > ? ORDER BY number LIMIT ?", (after, CHUNK)):
+            for _, data, versions, wall_s, worker in found:
+                row = json.loads(data)
+                yield {**{name: row.get(name) for name in names}, "versions": versions, "wall_s": wall_s, "worker": worker}
+            after = found[-1][0]
+
+    def row(self, number: int) -> Row | None:
+        """Returns the row of a trial; None if it has not finished."""
+        return next((row for row in self.rows(number - 1) if row["trial"] == number), None)
+
+    def _read(self, where: str, values: Sequence[Any]) -> list[Any]:
+        with closing(self._database.execute(f"SELECT number, data, versions, wall_s, worker FROM trial {where}", values)) as cursor:
+            return cursor.fetchall()
+
+
+def _type_of(value: Any) -> str:
+    match value:
+        case None:
+            return "null"
+        case bool():
+            return "boolean"
+        case int():
+            return "integer"
+        case float():
+            return "real"
+        case _:
+            return "text"
+
+
+def _joined(one: str, other: str) -> str:
+    """Returns the type of a column that holds values of two types."""
+    if "boolean" in (one, other) and not {one, other} <= {"null", "boolean"}:
+        return "text"
+    return max(one, other, key=LATTICE.index)
+
+
+def _why(error: Exception) -> str:
+    return error.strerror or str(error) if isinstance(error, OSError) else str(error)

@@ -1,0 +1,80 @@
+"""Exports the table of trials as CSV and Parquet, and a description of its columns."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from itertools import islice
+from pathlib import Path
+from typing import Any, cast
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.store import CHUNK, Column, Store
+
+CSV, PARQUET, COLUMNS = "trials.csv", "trials.parquet", "columns.csv"
+"""The names of the exported files in the folder of an experiment."""
+
+
+def export(store: Store) -> list[Path]:
+    """Writes all rows that are there to files beside the store, and returns these files.
+
+    Raises:
+        ExperimentError: If a file cannot be written.
+    """
+    columns = store.columns
+    try:
+        return [
+            _replaced(store.folder / COLUMNS, lambda path: _write_columns(path, columns)),
+            _replaced(store.folder / CSV, lambda path: _write_csv(path, columns, store.rows())),
+            _replaced(store.folder / PARQUET, lambda path: _write_parquet(path, columns, store.rows())),
+        ]
+    except OSError as error:
+        raise ExperimentError(f"'{store.folder}': cannot write the table of trials ({error.strerror or error})") from None
+
+
+def _replaced(path: Path, write: Callable[[Path], None]) -> Path:
+    """Writes a file under another name first, so that a reader finds either the old or the new one, whole."""
+    part = path.with_suffix(f"{path.suffix}.part")
+    try:
+        write(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
+
+
+def _write_columns(path: Path, columns: tuple[Column, ...]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["column", "type", "unit", "meaning"])
+        writer.writerows([column.name, column.type, column.unit or "", column.meaning] for column in columns)
+
+
+def _write_csv(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[str, Any]]) -> None:
+    names = [column.name for column in columns]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(names)
+        writer.writerows([row.get(name) for name in names] for row in rows)
+
+
+def _write_parquet(path: Path, columns: tuple[Column, ...], rows: Iterator[dict[str, Any]]) -> None:
+    arrow, parquet = cast("Any", import_module("pyarrow")), cast("Any", import_module("pyarrow.parquet"))  # they have no types
+    types = {"null": arrow.null(), "boolean": arrow.bool_(), "integer": arrow.int64(), "real": arrow.float64(), "text": arrow.string()}
+    fields = [
+        arrow.field(column.name, types[column.type], metadata={"unit": column.unit or "", "meaning": column.meaning}) for column in columns
+    ]
+    schema = arrow.schema(fields)
+    with parquet.ParquetWriter(path, schema) as writer:
+        while chunk := list(islice(rows, CHUNK)):
+            data = {column.name: [_as(column.type, row.get(column.name)) for row in chunk] for column in columns}
+            writer.write_table(arrow.table(data, schema=schema))
+
+
+def _as(kind: str, value: Any) -> Any:
+    """Returns a value as one of its column's type."""
+    if value is None or kind == "null":
+        return None
+    return float(value) if kind == "real" else value if kind != "text" or isinstance(value, str) else json.dumps(value)

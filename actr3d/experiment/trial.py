@@ -1,0 +1,130 @@
+"""Runs single trials of an experiment, each independently of all others, and returns their rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, cast
+
+from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
+from actr3d.actr.loading import run_text
+from actr3d.actr.loading.global_seed import shared_random
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.actr.loading.sweep import with_values
+from actr3d.errors import ExperimentError, did_you_mean
+from actr3d.experiment.design import OWN_COLUMNS, Trial
+from actr3d.experiment.specification import Experiment
+from actr3d.parameter_schema import parameters_of
+from actr3d.printing import ModelOutput, printing_to
+from actr3d.runner.model_factory import Blueprint
+from actr3d.runner.run import run_source
+from actr3d.runner.traceback_report import traceback_report
+
+PLAIN = (str, int, float, bool, type(None))
+"""The types of measures."""
+
+Row = dict[str, Any]
+"""A row of the table of trials, or a part of one: values by column."""
+
+
+def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row:
+    """Runs a trial and returns its measures, with `end` and `error`; a trial that fails has its traceback instead of measures.
+
+    The files are loaded again for each trial, so that no trial can change a variable that another one reads.
+
+    Args:
+        experiment: The experiment.
+        trial: The trial.
+        helpers: Provides the helper modules of the model; see `Specification.sealed`.
+    """
+    try:
+        with printing_to(ModelOutput(lambda _: None)):
+            end, measures = _run(experiment, trial, helpers)
+        return {**_checked(measures, experiment, trial), "end": end, "error": None}
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # noqa: BLE001 - every error of a model belongs in its row
+        return {"end": "error", "error": traceback_report(error).text.strip()}
+
+
+def record_trial(experiment: Experiment, trial: Trial, file: Path | str, helpers: HelperTexts) -> Any:
+    """Runs a trial again and records it; what the model prints goes to the standard output.
+
+    Args:
+        experiment: The experiment.
+        trial: The trial.
+        file: The new file of the recording.
+        helpers: Provides the helper modules of the model; see `Specification.sealed`.
+
+    Returns:
+        The result of the simulation; None for a program.
+
+    Raises:
+        RecordingError: If the recording cannot be written.
+        Exception: Any error that the model raises.
+    """
+    model, built = experiment.specification.model, experiment.blueprint is not None
+    text = model.text if built else with_values(model.text, parameters_for(experiment, trial))
+    settings = parameters_for(experiment, trial) if built else None
+    return run_source(text, model.file, _limits(experiment, trial), settings=settings, record=file, helpers=helpers)
+
+
+def parameters_for(experiment: Experiment, trial: Trial) -> dict[str, Any]:
+    """Returns the values of a trial that are parameters of the model."""
+    known = {parameter.name for parameter in experiment.parameters}
+    return {name: value for name, value in trial.values.items() if name in known}
+
+
+def _limits(experiment: Experiment, trial: Trial) -> RunLimits:
+    return RunLimits(seed=trial.seed, until=experiment.design.until)
+
+
+def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[str, Mapping[str, Any]]:
+    """Runs a trial; returns what ended it, and all its measures."""
+    design, model = experiment.design, experiment.specification.model
+    limits, values = _limits(experiment, trial), parameters_for(experiment, trial)
+    folder = Path(model.file).parent
+    if experiment.blueprint is None:
+        module = run_text(with_values(model.text, values), model.file, limits=limits, folder=folder, helpers=helpers)
+        end = "limits" if limits.ended else "end"
+        return end, design.results(module) if design.results is not None else vars(module)
+    with limits, shared_random(limits.program_seed):
+        end = "limits"
+        simulation, _ = Blueprint(model.text, model.file, folder, helpers).build(values)
+        with suppress(EndOfRun):
+            end = simulation.run().ended_by
+        if design.results is not None:
+            return end, design.results(simulation)
+        result = simulation.result()
+        if result is None:
+            return end, {}
+        experiment.describe(parameters_of(cast("type[Any]", type(result))))
+        return end, asdict(result)
+
+
+def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
+    """Returns the measures to keep, as plain values.
+
+    Raises:
+        ExperimentError: If one is missing, has another type, or has the name of another column.
+    """
+    if not isinstance(measures, Mapping):
+        raise ExperimentError(f"Design.results: must return measures by name (returned {measures!r})")
+    given = cast("Mapping[str, Any]", measures)
+    kept: Row = {}
+    for name in experiment.design.measures or given:
+        if name not in given:
+            raise ExperimentError(f"Design.measures: the trial has no measure '{name}'{did_you_mean(name, given)}")
+        if name in trial.columns or name in OWN_COLUMNS:
+            raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")
+        value = given[name]
+        item: Any = getattr(value, "item", None)
+        if type(value) not in PLAIN and callable(item) and getattr(value, "ndim", None) == 0:  # a number of numpy
+            value = item()
+        if type(value) not in PLAIN:
+            raise ExperimentError(f"measure '{name}': must be a number, text, True, False or None (got {value!r})")
+        kept[name] = None if isinstance(value, float) and not math.isfinite(value) else value
+    return kept

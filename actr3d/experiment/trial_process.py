@@ -1,0 +1,189 @@
+"""A process of its own for the trials of a worker, which can be ended when a trial hangs.
+
+`TrialProcess` starts `python -m actr3d.experiment.trial_process`. Both sides write lines of JSON: first the specification of the
+experiment, then the number of a trial; each is answered by one line.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import selectors
+import signal
+import subprocess
+import sys
+import threading
+import time
+from contextlib import suppress
+from typing import Any, BinaryIO
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.specification import Experiment, Specification
+from actr3d.experiment.trial import Row, run_trial
+from actr3d.runner.traceback_report import traceback_report
+
+START = 120.0
+"""The maximum time that a process may take to load an experiment [s]."""
+ATTEMPTS = 3
+"""How often a trial is tried whose process ends without an answer: another program may have ended it."""
+
+
+class TrialProcess:
+    """Runs trials in a process of its own.
+
+    Args:
+        specification: The experiment, as JSON.
+    """
+
+    def __init__(self, specification: str) -> None:
+        self._specification = specification
+        self._process: subprocess.Popen[bytes] | None = None
+        self._limit = START
+        self.about: dict[str, dict[str, str | None]] = {}
+        """Units and meanings of columns, as far as they are known."""
+
+    def run(self, number: int, limit: float) -> Row:
+        """Runs a trial, and returns what `run_trial` does; a trial that has to be ended, or ends its own process, has no measures.
+
+        Args:
+            number: The number of the trial.
+            limit: Its maximum wall time [s].
+
+        Raises:
+            ExperimentError: If the experiment cannot be loaded.
+        """
+        code = ""
+        for _ in range(ATTEMPTS):
+            if self._process is None:
+                self._start()
+            try:
+                answer = self._ask(json.dumps(number), limit)
+            except TimeoutError:
+                self.end()
+                return {"end": "time limit", "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
+            if answer is not None:
+                self.about |= answer["about"]
+                return answer["row"]
+            code = self._code()
+        return {"end": "crash", "error": f"the trial ended its own process {code}"}
+
+    def end(self) -> None:
+        """Ends the process, and those that it has started."""
+        process, self._process = self._process, None
+        if process is not None:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    with suppress(OSError):
+                        pipe.close()
+
+    def _start(self) -> None:
+        # The order of sets of texts is the same in every process.
+        environment = {**os.environ, "PYTHONHASHSEED": "0"}
+        command = [sys.executable, "-m", "actr3d.experiment.trial_process"]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True, bufsize=0
+        )
+        try:
+            answer = self._ask(json.dumps(self._specification), START)
+        except TimeoutError:
+            self.end()
+            raise ExperimentError(f"the experiment did not load within {START:g} s") from None
+        if answer is None:
+            raise ExperimentError(f"the process that loads the experiment ended {self._code()}")
+        if "failed" in answer:
+            self.end()
+            raise ExperimentError(answer["failed"])
+
+    def _ask(self, line: str, limit: float) -> Any:
+        """Sends a line and returns the answer; None if the process has ended.
+
+        Raises:
+            TimeoutError: If there is no answer in time.
+        """
+        assert self._process is not None
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        with suppress(BrokenPipeError):
+            self._process.stdin.write(line.encode() + b"\n")
+        parts, deadline = [b""], time.monotonic() + limit
+        with selectors.DefaultSelector() as waiting:
+            waiting.register(self._process.stdout, selectors.EVENT_READ)
+            while not parts[-1].endswith(b"\n"):
+                if not waiting.select(max(0.0, deadline - time.monotonic())):
+                    raise TimeoutError
+                parts.append(os.read(self._process.stdout.fileno(), 1 << 16))
+                if not parts[-1]:
+                    return None
+        return json.loads(b"".join(parts))
+
+    def _code(self) -> str:
+        """Returns how the process ended, and releases it."""
+        assert self._process is not None
+        try:
+            code = self._process.wait(5)
+        except subprocess.TimeoutExpired:  # it has closed its output and goes on
+            self.end()
+            return "by closing its output"
+        self.end()
+        return f"with exit code {code}" if code >= 0 else f"by the signal {signal.Signals(-code).name}"
+
+
+def main() -> None:
+    """Answers lines until the input ends."""
+    # What a model prints, also through file descriptors, must not mix with the answers.
+    answers = os.fdopen(os.dup(1), "wb", buffering=0)
+    questions = os.fdopen(os.dup(0), "rb")
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in (0, 1, 2):
+        os.dup2(nothing, number)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the client ends this process
+    with suppress(BrokenPipeError):
+        _answer(questions, answers)
+
+
+def _answer(questions: BinaryIO, answers: BinaryIO) -> None:
+    try:
+        specification = Specification.from_json(json.loads(questions.readline()), "experiment")
+        with specification.sealed() as helpers:
+            experiment = Experiment(specification, helpers)
+            answers.write(b"{}\n")
+            asked, described = _Questions(questions), 0
+            while True:
+                row = run_trial(experiment, experiment.design.trial(asked.next()), helpers)
+                news = experiment.about if len(experiment.about) > described else {}
+                described = len(experiment.about)
+                answers.write(json.dumps({"row": row, "about": news}, allow_nan=False).encode() + b"\n")
+    except BrokenPipeError:
+        raise
+    except Exception as error:  # noqa: BLE001 - the client reports it
+        answers.write(json.dumps({"failed": traceback_report(error).text.strip()}).encode() + b"\n")
+
+
+class _Questions:
+    """Reads the numbers of trials in a thread, and ends this process at once when the client is gone."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._there = threading.Condition()
+        self._numbers: list[int] = []
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def next(self) -> int:
+        """Waits for the next number and returns it."""
+        with self._there:
+            self._there.wait_for(lambda: self._numbers)
+            return self._numbers.pop(0)
+
+    def _read(self) -> None:
+        for line in self._file:
+            with self._there:
+                self._numbers.append(json.loads(line))
+                self._there.notify()
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
