@@ -10,7 +10,7 @@ LEVELS = ("none", "production", "buffer", "all")
 """The levels of a trace: nothing; selections and firings; also buffer changes; everything."""
 
 
-class Group(NamedTuple):
+class KindGroup(NamedTuple):
     """A group of kinds, by which pages filter events."""
 
     title: str
@@ -19,23 +19,23 @@ class Group(NamedTuple):
 
 
 GROUPS = {
-    "fire": Group("Firings", shown=True),
-    "output": Group("Prints", shown=True),
-    "reward": Group("Rewards", shown=True),
-    "compile": Group("Compiled productions", shown=True),
-    "command": Group("User's commands", shown=True),
-    "contact": Group("Contacts and results", shown=True),
-    "plan": Group("Plans (SGOMS)", shown=True),
-    "choice": Group("Choices"),
-    "buffer": Group("Buffers"),
-    "memory": Group("Memory"),
-    "request": Group("Requests and answers"),
-    "vision": Group("Vision"),
-    "motor": Group("Movements"),
-    "learning": Group("Learned utilities"),
-    "state": Group("Attributes"),
-    "run": Group("Beginnings and ends"),
-    "other": Group("Other events", shown=True),
+    "fire": KindGroup("Firings", shown=True),
+    "output": KindGroup("Prints", shown=True),
+    "reward": KindGroup("Rewards", shown=True),
+    "compile": KindGroup("Compiled productions", shown=True),
+    "command": KindGroup("User's commands", shown=True),
+    "contact": KindGroup("Contacts and results", shown=True),
+    "plan": KindGroup("Plans (SGOMS)", shown=True),
+    "choice": KindGroup("Choices"),
+    "buffer": KindGroup("Buffers"),
+    "memory": KindGroup("Memory"),
+    "request": KindGroup("Requests and answers"),
+    "vision": KindGroup("Vision"),
+    "motor": KindGroup("Movements"),
+    "learning": KindGroup("Learned utilities"),
+    "state": KindGroup("Attributes"),
+    "run": KindGroup("Beginnings and ends"),
+    "other": KindGroup("Other events", shown=True),
 }
 """The groups, in the order in which pages list them."""
 

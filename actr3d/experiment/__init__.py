@@ -1,1 +1,5 @@
-"""Experiments with models: measures, trials and comparisons with human data; one package for each field."""
+"""Experiments with models: designs, trials on a cluster, and their analysis beside human data."""
+
+from actr3d.experiment.design import Design, Group, Normal, Trial, Uniform, design
+
+__all__ = ["Design", "Group", "Normal", "Trial", "Uniform", "design"]

@@ -44,6 +44,8 @@ SETTINGS: dict[str, Any] = {
     "distributed.scheduler.allowed-failures": 100,  # a worker that was ended says nothing about the trial that it ran
     "distributed.scheduler.worker-saturation": AHEAD,
     "distributed.worker.daemon": True,
+    # Ctrl-C in a terminal reaches all processes; the client alone decides what it means.
+    "distributed.worker.preload": ["import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"],
     "distributed.comm.timeouts.connect": PATIENCE,
     "distributed.admin.log-length": 0,
 }
@@ -74,7 +76,7 @@ class Batch:
 def local_cluster(workers: int) -> Generator[Client]:
     """Starts a scheduler and workers on this computer, reachable only from it."""
     local: Any = LocalCluster  # its types are incomplete
-    options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": None, "memory_limit": 0}
+    options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0", "memory_limit": 0}
     with (
         dask.config.set(SETTINGS),
         local(n_workers=workers, silence_logs=logging.CRITICAL, **options) as cluster,

@@ -9,15 +9,17 @@ from __future__ import annotations
 import ast
 import json
 import pkgutil
+import sys
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import actr3d
+from actr3d.actr.compat.old_names import is_old_name
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
@@ -46,7 +48,7 @@ class Source(Configuration):
     """Its name in tracebacks."""
     text: str
     helpers: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """See `HelperTexts.loaded`."""
+    """The modules beside it that it imports, directly or through others; see `HelperTexts.loaded`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,9 +109,7 @@ class Experiment:
 
     Args:
         specification: The texts.
-        helpers: Provides the helper modules of design and model (see `Specification.sealed`); None for those that the specification
-            holds, and those beside the files.
-        folders: The folders of design and model; None for those that their names give.
+        helpers: Provides the helper modules of design and model; see `Specification.sealed`. None for those of the specification.
 
     Raises:
         DesignError: If the design is not valid, or does not fit the model; names the file and the line.
@@ -117,14 +117,10 @@ class Experiment:
         Exception: Any error that the files themselves raise.
     """
 
-    def __init__(
-        self, specification: Specification, helpers: HelperTexts | None = None, folders: tuple[Path | None, Path | None] = (None, None)
-    ) -> None:
+    def __init__(self, specification: Specification, helpers: HelperTexts | None = None) -> None:
         self.specification = specification
         source, model = specification.design, specification.model
-        self._helpers = [helpers or HelperTexts(one.helpers) for one in (source, model)]
-        own = [folder or Path(one.file).parent for folder, one in zip(folders, (source, model), strict=True)]
-        self._module = load_quietly(source, own[0], self._helpers[0])
+        self._module = load_quietly(source, helpers)
         self.design = design_in(self._module, specification.name, source)
         with naming_the_line(source, specification.name, specification.values):
             self.design = self.design.changed(
@@ -135,7 +131,7 @@ class Experiment:
         """Builds the model's simulations; None for a program."""
         if has_build(model.text):
             with RunLimits(), printing_to(ModelOutput(lambda _: None)):
-                self.blueprint = Blueprint(model.text, model.file, own[1], self._helpers[1])
+                self.blueprint = Blueprint(model.text, model.file, Path(model.file).parent, helpers or HelperTexts(model.helpers))
         self.parameters: tuple[Parameter, ...] = (
             self.blueprint.fields
             if self.blueprint is not None
@@ -154,12 +150,6 @@ class Experiment:
     def description(self) -> str:
         """The docstring of the design."""
         return (getattr(self._module, self.specification.name).__doc__ or "").strip()
-
-    @property
-    def helper_texts(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        """The helper modules that design and model have loaded."""
-        of_design, of_model = (dict(helpers.loaded) for helpers in self._helpers)
-        return of_design, of_model
 
     def describe(self, fields_of_result: Sequence[Parameter]) -> None:
         """Adds units and meanings of measures, once they are known."""
@@ -214,9 +204,9 @@ def specify(
             found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
             raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
         chosen = marked[0]
-    of_design = design_in(load_quietly(source, path.parent, HelperTexts()), chosen, source)
+    of_design = design_in(load_quietly(source), chosen, source)
     model = _model_of(of_design, path)
-    drafted = Specification(
+    specification = Specification(
         name=chosen,
         design=source,
         model=_source_of(model),
@@ -225,12 +215,7 @@ def specify(
         values=values or {},
         versions=versions(),
     )
-    loaded = Experiment(drafted, folders=(path.parent, model.parent))
-    of_design, of_model = loaded.helper_texts
-    loaded.specification = replace(
-        drafted, design=replace(drafted.design, helpers=of_design), model=replace(drafted.model, helpers=of_model)
-    )
-    return loaded
+    return Experiment(specification)
 
 
 def _file_of(name: str) -> tuple[Path, str]:
@@ -249,7 +234,44 @@ def _file_of(name: str) -> tuple[Path, str]:
 def _source_of(path: Path) -> Source:
     """Returns the text of a file; the folder of one of the library's own files is not part of its name."""
     own = path.parent in (library_models(), *map(Path, designs.__path__))
-    return Source(file=path.name if own else str(path), text=read_source(path))
+    text = read_source(path)
+    return Source(file=path.name if own else str(path), text=text, helpers={} if own else modules_beside(path.parent, text))
+
+
+def modules_beside(folder: Path, text: str) -> dict[str, tuple[str, str]]:
+    """Returns the modules of a folder that a text imports anywhere in it, directly or through others.
+
+    Args:
+        folder: The folder of the text.
+        text: The text, or "" for none.
+
+    Returns:
+        By name, the file relative to the folder and its text, as in `HelperTexts.loaded`. A package is returned whole.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    waiting = [text]
+    while waiting:
+        for root in _imported_roots(waiting.pop()):
+            if root in found or root == "actr3d" or is_old_name(root) or (root in sys.stdlib_module_names and root in sys.modules):
+                continue
+            for path in (folder / f"{root}.py", *sorted((folder / root).rglob("*.py"))):
+                if path.is_file():
+                    inside = path.relative_to(folder)
+                    name = ".".join(inside.with_suffix("").parts).removesuffix(".__init__")
+                    found[name] = inside.as_posix(), read_source(path)
+                    waiting.append(found[name][1])
+    return found
+
+
+def _imported_roots(text: str) -> set[str]:
+    """Returns the first names of all modules that a text imports; none if it is not Python 3."""
+    try:
+        nodes = list(ast.walk(ast.parse(text)))
+    except SyntaxError:
+        return set()
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module and not node.level]
+    return {name.partition(".")[0] for name in names}
 
 
 def _model_of(of: Design, path: Path) -> Path:
@@ -263,15 +285,19 @@ def _model_of(of: Design, path: Path) -> Path:
     return beside if beside.exists() else shipped
 
 
-def load_quietly(source: Source, folder: Path | None, helpers: HelperTexts) -> ModuleType:
+def load_quietly(source: Source, helpers: HelperTexts | None = None) -> ModuleType:
     """Loads the file of a design; what it prints is dropped.
+
+    Args:
+        source: The file.
+        helpers: Provides its helper modules; None for those of the file.
 
     Raises:
         ModelFileError: If it is not Python 3.
         Exception: Any error that the file itself raises.
     """
     with RunLimits(seed=0), printing_to(ModelOutput(lambda _: None)):
-        return load_text(source.text, source.file, folder=folder, helpers=helpers)
+        return load_text(source.text, source.file, folder=Path(source.file).parent, helpers=helpers or HelperTexts(source.helpers))
 
 
 def design_in(module: ModuleType, name: str, source: Source) -> Design:
@@ -332,7 +358,7 @@ def _marked(source: Source) -> list[str]:
     try:
         tree = ast.parse(source.text)
     except SyntaxError:
-        load_quietly(source, None, HelperTexts())  # raises the error that names the line
+        load_quietly(source)  # raises the error that names the line
         raise
     return [
         node.name for node in tree.body if isinstance(node, ast.FunctionDef) and any(name_of(d) == "design" for d in node.decorator_list)

@@ -1,0 +1,259 @@
+"""Designs: the table of trials that follows from factors, groups and a seed, and what is wrong with a design."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+from statistics import mean, stdev
+from typing import Any
+
+import pytest
+
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError
+from actr3d.experiment import Design, Group, Normal, Uniform
+from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
+from tests.helpers.experiments import write_experiment
+
+
+def design_of(**changes: Any) -> Design:
+    given: dict[str, Any] = {
+        "factors": {"a": [1, 2], "b": ["x", "y", "z"]},
+        "groups": {
+            "young": Group(participants=2, parameters={"size": Normal(mean=1, sd=0.1), "age": 20}),
+            "old": Group(participants=1, parameters={"size": Normal(mean=2, sd=0.1), "age": 70}),
+        },
+        "settings": {"noise": Uniform(low=0, high=0.5), "fixed": 3},
+        "trials": 4,
+    }
+    return Design(**{**given, **changes})
+
+
+def test_each_participant_does_each_cell_as_often_as_the_design_says() -> None:
+    design = design_of()
+    table = list(design.table())
+    assert len(design) == len(table) == 3 * 6 * 4
+    cells = Counter((trial.participant.name, trial.values["a"], trial.values["b"]) for trial in table)
+    assert set(cells.values()) == {4}
+    assert [trial.number for trial in table] == list(range(len(table)))
+    assert {trial.participant.name for trial in table} == {"young 1", "young 2", "old 1"}
+
+
+def test_values_of_groups_belong_to_participants_and_those_of_settings_to_trials() -> None:
+    table = list(design_of().table())
+    sizes: dict[str, set[float]] = {trial.participant.name: set() for trial in table}
+    for trial in table:
+        sizes[trial.participant.name].add(trial.values["size"])
+    assert all(len(values) == 1 for values in sizes.values())
+    assert len({size for values in sizes.values() for size in values}) == 3
+    assert len({trial.values["noise"] for trial in table}) == len(table)
+    assert {trial.values["fixed"] for trial in table} == {3}
+
+
+def test_the_table_is_the_same_on_every_machine() -> None:
+    trial = design_of().trial(17)
+    assert trial.columns == {
+        "trial": 17,
+        "participant": "young 1",
+        "group": "young",
+        "position": 18,
+        "repetition": trial.repetition,
+        "noise": trial.values["noise"],
+        "fixed": 3,
+        "size": 1.002993,
+        "age": 20,
+        "a": trial.values["a"],
+        "b": trial.values["b"],
+        "seed": trial.seed,
+    }
+    assert trial.seed == f"1 young 1 a={trial.values['a']} b={trial.values['b']} {trial.repetition}"
+    assert list(design_of().table()) == list(design_of().table())
+    assert [t.values for t in design_of().table()] != [t.values for t in design_of(seed=2).table()]
+
+
+def test_another_level_of_a_factor_changes_no_other_trial() -> None:
+    def by_seed(design: Design) -> dict[str, Any]:
+        return {trial.seed: dict(trial.values) for trial in design.table()}
+
+    fewer, more = by_seed(design_of()), by_seed(design_of(factors={"a": [1, 2, 3], "b": ["x", "y", "z"]}))
+    assert fewer.items() <= more.items()
+    assert len(more) == len(fewer) * 3 // 2
+
+
+def test_the_order_is_drawn_for_each_participant_or_fixed() -> None:
+    def order(design: Design, first: int) -> list[tuple[Any, int]]:
+        return [(trial.values["a"], trial.repetition) for trial in map(design.trial, range(first, first + 24))]
+
+    drawn = design_of()
+    assert order(drawn, 0) != order(drawn, 24)
+    assert sorted(order(drawn, 0)) == sorted(order(drawn, 24))
+    fixed = design_of(order="fixed")
+    assert order(fixed, 0) == order(fixed, 24) == [(a, r) for r in (1, 2, 3, 4) for a in (1, 1, 1, 2, 2, 2)]
+
+
+def test_drawn_values_have_the_distribution() -> None:
+    many = design_of(groups={"all": Group(participants=2000, parameters={"size": Normal(mean=1, sd=0.2, low=0.9)})}, factors={}, trials=1)
+    sizes = [person.parameters["size"] for person in many.participants]
+    assert min(sizes) >= 0.9
+    # The mean of a normal distribution truncated from below at half a standard deviation under its mean.
+    density, above = math.exp(-0.125) / math.sqrt(2 * math.pi), 0.691462
+    assert mean(sizes) == pytest.approx(1 + 0.2 * density / above, abs=0.01)
+    whole = Normal(mean=0, sd=1)
+    assert [round(whole.quantile(p), 3) for p in (0.025, 0.5, 0.975)] == [-1.96, 0, 1.96]
+    draws = [trial.values["noise"] for trial in design_of(trials=100).table()]
+    assert stdev(draws) == pytest.approx(0.5 / math.sqrt(12), rel=0.05)
+    assert Normal(mean=2, sd=0).quantile(0.3) == 2
+
+
+def test_values_are_derived_from_others() -> None:
+    def aperture(values: Mapping[str, Any]) -> dict[str, Any]:
+        return {"aperture": round(values["ratio"] * values["size"], 4)}
+
+    def wrong(values: Mapping[str, Any]) -> dict[str, Any]:
+        return {"x": values["wrong"]}
+
+    ratios = design_of(factors={"ratio": [1.0, 1.5]}, derive=aperture)
+    trial = ratios.trial(0)
+    assert trial.values["aperture"] == pytest.approx(trial.values["ratio"] * trial.values["size"], abs=1e-4)
+    with pytest.raises(DesignError, match=r"Design\.derive: failed with KeyError: 'wrong'"):
+        design_of(derive=wrong).trial(0)
+    with pytest.raises(DesignError, match=r"Design\.derive: must return values by name \(returned 3\)"):
+        design_of(derive=lambda _: 3).trial(0)  # type: ignore[arg-type, return-value]
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
+        ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
+        ({"factors": {"a": "abc"}}, r"Design\.factors\['a'\]: must be a list of levels \(got 'abc'\)"),
+        ({"factors": {"a": [1, 1]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\]\)"),
+        ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
+        ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
+        ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
+        ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
+        ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
+    ],
+)
+def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> None:
+    with pytest.raises(DesignError, match=says):
+        design_of(**changes)
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: Design(trials=0), r"Design\.trials: must be >= 1 \(got 0\)"),
+        (lambda: Design(order="any"), r"Design\.order: must be one of"),  # type: ignore[arg-type]
+        (lambda: Group(participants=0), r"Group\.participants: must be >= 1 \(got 0\)"),
+        (lambda: Normal(mean="x", sd=1), r"Normal\.mean: must be a number \(got 'x'\)"),  # type: ignore[arg-type]
+        (lambda: Normal(mean=1, sd=-1), r"Normal\.sd: must be >= 0 \(got -1.0\)"),
+    ],
+)
+def test_wrong_fields_are_refused(make: Any, says: str) -> None:
+    with pytest.raises(ConfigurationError, match=says):
+        make()
+
+
+def test_distributions_without_values_are_refused() -> None:
+    with pytest.raises(DesignError, match="no value lies between low 2 and high 1"):
+        Normal(mean=1, sd=1, low=2, high=1)
+    with pytest.raises(DesignError, match=r"Uniform\.high: must be >= low 2 \(got 1\)"):
+        Uniform(low=2, high=1)
+
+
+def test_a_trial_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(DesignError, match=r"trial: must be a number from 0 to 71 \(got 72\)"):
+        design_of().trial(72)
+
+
+def test_changes_replace_levels_numbers_and_values() -> None:
+    changed = design_of().changed(participants=3, trials=1, values={"a": [5, 6, 7], "b": "x", "size": 1.5, "fixed": 4, "seed": 9})
+    assert changed.factors == {"a": [5, 6, 7], "b": ["x"]}
+    assert [group.participants for group in changed.groups.values()] == [3, 3]
+    assert {trial.values["size"] for trial in changed.table()} == {1.5}
+    assert {trial.values["fixed"] for trial in changed.table()} == {4}
+    assert changed.seed == 9
+    assert len(changed) == 6 * 3
+
+
+# -- designs in files
+
+
+def test_the_designs_of_the_library_fit_their_models() -> None:
+    names = library_designs()
+    assert "warren_whang_1987" in names
+    for name in names:
+        experiment = specify(name)
+        assert len(experiment.description) > 40
+        assert len(experiment.design) > 1
+        again = Specification.from_json(experiment.specification.to_json(), "it")
+        assert again == experiment.specification
+        assert list(Experiment(again).design.changed(trials=1).table()) == list(experiment.design.changed(trials=1).table())
+
+
+def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"m": [1, 2]}')
+    with pytest.raises(DesignError, match=r"counting_design\.py:10: Design: the model has no parameter 'm'.*it has: n, mode"):
+        specify(str(path))
+    path = write_experiment(tmp_path, trials=0)
+    with pytest.raises(DesignError, match=r"counting_design\.py:12: Design\.trials: must be >= 1 \(got 0\)"):
+        specify(str(path))
+    path = write_experiment(tmp_path)
+    with pytest.raises(DesignError, match=r"^--set m: Design: the model has no parameter 'm'"):
+        specify(str(path), values={"m": 3})
+
+
+def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_runs() -> None:
+    with pytest.raises(DesignError, match=r"--set aperture: Design, small 1: aperture: must be <= 3 \(got 4\)"):
+        specify("warren_whang_1987", values={"aperture": [0.5, 4]})
+    with pytest.raises(DesignError, match=r"--set noise: Design, small 1: noise: must be >= 0 \(got -0\.0"):
+        specify("warren_whang_1987", values={"noise": Normal(mean=0.1, sd=0.02)})
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("x = 1\n", r"must define one design \(found 0\); mark a function with @design"),
+        (
+            "from actr3d.experiment import *\n@design\ndef a(): return Design()\n@design\ndef b(): return Design()\n",
+            r"must define one design \(found 2\); there are: a, b; name one as '.*d\.py:NAME'",
+        ),
+        ("from actr3d.experiment import *\n@design\ndef a(): return 3\n", r"d\.py:3: a\(\) must return a Design \(returned 3\)"),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n  return Design(model='counting.pi')\n",
+            r"Design\.model: there is no file 'counting\.pi' beside it or in .*did you mean 'counting\.py'",
+        ),
+        (
+            "from actr3d.experiment import *\n@design\ndef a():\n  return Design(model='counting.py')\n",
+            r"d\.py:3: Design\.measures: must name the variables of the program that are its measures",
+        ),
+    ],
+)
+def test_files_without_a_valid_design_are_refused(tmp_path: Path, text: str, says: str) -> None:
+    path = tmp_path / "d.py"
+    path.write_text(text)
+    with pytest.raises(ExperimentError, match=says):
+        specify(str(path))
+
+
+def test_an_unknown_name_is_refused() -> None:
+    with pytest.raises(ExperimentError, match=r"no design or file 'warren_whang'; did you mean 'warren_whang_1987'"):
+        specify("warren_whang")
+
+
+def test_a_file_with_several_designs_runs_the_named_one(tmp_path: Path) -> None:
+    first = "from actr3d.experiment import *\nn = 1\n@design\ndef a(): return Design(measures=['n'])\n"
+    text = f"{first}@design\ndef b(): return Design(measures=['n'], trials=3)\n"
+    path = tmp_path / "d.py"
+    path.write_text(text)
+    assert len(specify(f"{path}:b").design) == 3
+
+
+def test_a_specification_from_elsewhere_is_checked() -> None:
+    for text in ("", "[]", "{}", '{"format": 1}', '{"format": 1, "design": 3, "model": {}}'):
+        with pytest.raises(ExperimentError, match="it: is not the description of an experiment"):
+            Specification.from_json(text, "it")
+    with pytest.raises(ExperimentError, match="it: has format 7; this version reads format 1"):
+        Specification.from_json('{"format": 7}', "it")

@@ -1,0 +1,291 @@
+"""Experiments on a cluster: the same rows for any number of workers, whoever is ended meanwhile, at any moment."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.cli import main
+from actr3d.errors import ExperimentError
+from actr3d.experiment import cluster
+from actr3d.experiment.cluster import Progress, cluster_versions, existing_cluster, local_cluster, run_batch, run_experiment
+from actr3d.experiment.specification import specify
+from actr3d.experiment.store import Store
+from actr3d.experiment.table import export
+from tests.helpers.experiments import COUNTER, write_experiment
+
+COMMAND = [sys.executable, "-m", "actr3d", "experiment"]
+UNREPRODUCIBLE = ("wall_s", "worker")
+SLOW_MODEL = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.03)\nif mode == "fail"')
+"""A trial takes long enough that something can be ended meanwhile."""
+
+
+@pytest.fixture(scope="module")
+def client() -> Generator[Any]:
+    with local_cluster(2) as found:
+        yield found
+
+
+def table(folder: Path) -> str:
+    """Returns the table of an experiment without what is not reproducible."""
+    with Store(folder) as store:
+        export(store)
+    out = io.StringIO()
+    rows = list(csv.DictReader(io.StringIO((folder / "trials.csv").read_text(encoding="utf-8"))))
+    writer = csv.DictWriter(out, [name for name in rows[0] if name not in UNREPRODUCIBLE], extrasaction="ignore")
+    writer.writeheader()
+    writer.writerows(rows)
+    return out.getvalue()
+
+
+def run_here(client: Any, path: Path, folder: Path, **options: Any) -> str:
+    experiment = specify(str(path))
+    with Store.create(folder, experiment.specification) as store:
+        run_experiment(experiment, store, client, **options)
+    return table(folder)
+
+
+def reference(path: Path, folder: Path) -> str:
+    """Returns the table of an experiment that ran through on one worker."""
+    assert subprocess.run([*COMMAND, str(path), "--out", str(folder), "--workers", "1"], timeout=120, capture_output=True).returncode == 0
+    return table(folder)
+
+
+def test_rows_are_the_same_for_any_number_of_workers(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, participants=4, trials=10)
+    seen: list[Progress] = []
+    assert run_here(client, path, tmp_path / "two", show=seen.append) == reference(path, tmp_path / "one")
+    assert (seen[0].done, seen[-1].done, seen[-1].total, seen[-1].failures) == (0, 120, 120, 0)
+
+
+def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> None:
+    factors = '{"mode": ["count", "fail", "hang", "die"]}'
+    path = write_experiment(tmp_path, factors=factors, participants=1, trials=2, limit=2)
+    seen: list[Progress] = []
+    rows = csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out", show=seen.append)))
+    ends = sorted((row["mode"], row["end"]) for row in rows)
+    assert ends == sorted([("count", "end"), ("fail", "error"), ("hang", "time limit"), ("die", "crash")] * 2)
+    assert seen[-1].failures == 6
+
+
+def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=50, model=SLOW_MODEL)
+    experiment, stop = specify(str(path)), threading.Event()
+    counts: list[int] = []
+
+    def show(progress: Progress) -> None:
+        counts.append(progress.done)
+        if progress.done > 20:
+            stop.set()
+
+    with Store.create(tmp_path / "out", experiment.specification) as store:
+        run_experiment(experiment, store, client, show=show, stop=stop)
+        assert 20 < store.count < 300
+        before = {row["trial"]: row["wall_s"] for row in store.rows()}
+        run_experiment(experiment, store, client)
+        after = {row["trial"]: row["wall_s"] for row in store.rows()}
+    assert before.items() <= after.items(), "a trial that had finished ran again"
+    assert len(after) == 300
+
+
+def test_an_experiment_that_cannot_be_loaded_on_a_worker_says_why(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path)
+    path.write_text(path.read_text() + "\nimport os\nif os.environ.get('PYTHONHASHSEED') == '0':\n    raise RuntimeError('not here')\n")
+    with pytest.raises(ExperimentError, match="RuntimeError: not here"):
+        run_here(client, path, tmp_path / "out")
+
+
+def test_workers_with_other_versions_are_refused(tmp_path: Path) -> None:
+    text = specify(str(write_experiment(tmp_path))).specification.to_json()
+    with pytest.raises(
+        ExperimentError, match=r"worker \d+: has other versions: mujoco \S+ \(the client has 1\.2\.3\); install the same on both"
+    ):
+        run_batch(text, [0], 60, {**cluster_versions(), "mujoco": "1.2.3"})
+
+
+def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    with (
+        pytest.raises(ExperimentError, match=r"--scheduler: no scheduler answers at 'tcp://127\.0\.0\.1:9'"),
+        existing_cluster("tcp://127.0.0.1:9"),
+    ):
+        pass
+
+
+# -- processes that are ended
+
+
+@pytest.mark.parametrize("kills", [2, pytest.param(8, marks=pytest.mark.slow)])
+def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, kills: int) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=12 * kills, model=SLOW_MODEL)
+    expected = reference(path, tmp_path / "whole")
+    dice = random.Random(kills)
+    kept: dict[int, float] = {}
+    command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume"]
+    for _ in range(kills):
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            process.wait(dice.uniform(2, 6))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if (tmp_path / "out" / "experiment.json").exists():
+            with Store(tmp_path / "out") as store:
+                now = {row["trial"]: row["wall_s"] for row in store.rows()}
+            assert kept.items() <= now.items()
+            kept = now
+    done = subprocess.run(command, timeout=120, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert table(tmp_path / "out") == expected
+
+
+@pytest.mark.parametrize("kills", [3, pytest.param(20, marks=pytest.mark.slow)])
+def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, kills: int) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=20 * kills, model=SLOW_MODEL)
+    dice = random.Random(kills)
+    killed: list[int] = []
+    with local_cluster(2) as client:
+        over = threading.Event()
+
+        def kill() -> None:
+            while len(killed) < kills and not over.wait(dice.uniform(0.2, 1.5)):
+                workers = list(client.run(os.getpid, on_error="ignore").values())
+                if workers:
+                    killed.append(dice.choice(workers))
+                    os.kill(killed[-1], signal.SIGKILL)
+
+        killer = threading.Thread(target=kill)
+        killer.start()
+        try:
+            found = run_here(client, path, tmp_path / "out")
+        finally:
+            over.set()
+            killer.join()
+    assert killed
+    assert found == reference(path, tmp_path / "whole")
+
+
+@contextmanager
+def a_cluster(port: int) -> Generator[subprocess.Popen[bytes]]:
+    """Starts a scheduler and a worker as on any cluster, and ends them; yields the scheduler."""
+    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
+    address = ["--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    scheduler = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_scheduler", *address], **quiet)
+    options = ["--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "30"]
+    worker = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_worker", f"tcp://127.0.0.1:{port}", *options], **quiet)
+    try:
+        yield scheduler
+    finally:
+        for process in (worker, scheduler):
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+
+@pytest.mark.parametrize("kills", [1, pytest.param(6, marks=pytest.mark.slow)])
+def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, kills: int, unused_port: int) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=30, model=SLOW_MODEL)
+    dice = random.Random(kills)
+    command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume", "--scheduler", f"tcp://127.0.0.1:{unused_port}"]
+    for _ in range(kills):
+        with a_cluster(unused_port) as scheduler:
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            before = _rows(tmp_path / "out")
+            deadline = time.monotonic() + 60
+            while _rows(tmp_path / "out") == before and process.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.1)
+            time.sleep(dice.uniform(0, 1))
+            scheduler.kill()
+            _, said = process.communicate(timeout=120)
+            assert process.returncode == 1
+            assert "error: the scheduler is gone" in said
+            assert "continue with --resume" in said
+    with a_cluster(unused_port):
+        assert subprocess.run(command, timeout=120, capture_output=True).returncode == 0
+    assert table(tmp_path / "out") == reference(path, tmp_path / "whole")
+
+
+def _rows(folder: Path) -> int:
+    if not (folder / "experiment.json").exists():
+        return 0
+    with Store(folder) as store:
+        return store.count
+
+
+@pytest.fixture
+def unused_port() -> int:
+    import socket
+
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+def test_ctrl_c_ends_an_experiment_at_once_and_in_order(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=2000, model=SLOW_MODEL)
+    command = [*COMMAND, str(path), "--out", str(tmp_path / "out")]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    deadline = time.monotonic() + 60
+    while _rows(tmp_path / "out") == 0 and time.monotonic() < deadline:
+        time.sleep(0.1)
+    os.killpg(process.pid, signal.SIGINT)
+    out, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said == ""
+    assert f"stopped after {_rows(tmp_path / 'out'):,} of 12,000 trials; continue with: actr3d experiment" in out
+
+    def left() -> list[str]:
+        return subprocess.run(["pgrep", "-s", str(process.pid)], capture_output=True, text=True).stdout.split()
+
+    while left() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert left() == []
+
+
+# -- the command
+
+
+def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_experiment(tmp_path)
+    out = str(tmp_path / "out")
+    Store.create(out, specify(str(path)).specification).close()
+    for arguments, code, says in (
+        ([str(path), "--out", out], 1, "holds an experiment already; continue it with --resume"),
+        ([str(path), "--out", out, "--resume", "--trials", "3"], 1, "is another experiment: trials differ; choose another --out"),
+        ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
+        ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
+        (["nothing"], 1, "no design or file 'nothing'"),
+        ([str(path), "--set", "m=3"], 2, "--set m: Design: the model has no parameter 'm'"),
+        ([str(path), "--set", "m"], 2, "a parameter is set by name=value (got 'm')"),
+    ):
+        assert main(["experiment", *arguments]) == code
+        assert says in capsys.readouterr().err
+    assert main(["experiment", out]) == 0
+    assert "counting: 0 of 24 trials have finished\n" in capsys.readouterr().out
+
+
+def test_other_versions_are_refused_unless_allowed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_experiment(tmp_path, participants=1, trials=1)
+    folder = tmp_path / "out"
+    Store.create(folder, specify(str(path)).specification).close()
+    text = (folder / "experiment.json").read_text()
+    (folder / "experiment.json").write_text(text.replace(f'"mujoco": "{cluster_versions()["mujoco"]}"', '"mujoco": "1.2.3"'))
+    assert main(["experiment", str(folder), "--resume"]) == 1
+    assert "the trials so far were run with mujoco 1.2.3 (now" in capsys.readouterr().err
+
+
+def test_the_designs_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["experiment"]) == 0
+    assert "warren_whang_1987 9,600 trials Walking through doorways" in " ".join(capsys.readouterr().out.split())

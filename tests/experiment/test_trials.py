@@ -1,0 +1,306 @@
+"""Trials in a process of their own, and the rows that they leave, whatever a model does."""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.cli import main
+from actr3d.errors import ExperimentError
+from actr3d.experiment.specification import specify
+from actr3d.experiment.store import Finished, Store
+from actr3d.experiment.table import export
+from actr3d.experiment.trial_process import TrialProcess
+from tests.helpers.experiments import COUNTER, write_experiment
+
+
+def rows_of(path: Path, **values: Any) -> list[dict[str, Any]]:
+    """Runs all trials of a design in one process, without a cluster."""
+    experiment = specify(str(path), values=values)
+    process = TrialProcess(experiment.specification.to_json())
+    try:
+        trials = experiment.design.table()
+        return [{**trial.columns, **process.run(trial.number, experiment.design.limit)} for trial in trials]
+    finally:
+        process.end()
+
+
+def test_a_row_has_the_measures_of_its_trial(tmp_path: Path) -> None:
+    rows = rows_of(write_experiment(tmp_path))
+    assert len(rows) == 24
+    for row in rows:
+        assert row["rt"] == pytest.approx(0.05 * (row["n"] + 1))
+        assert (row["end"], row["error"]) == ("end", None)
+    assert len({row["luck"] for row in rows}) == 24, "each trial has its own seed"
+
+
+def test_rows_do_not_depend_on_earlier_trials(tmp_path: Path) -> None:
+    model = COUNTER.replace("class Counter", "seen = []\n\n\nclass Counter").replace(
+        "rt = model", "seen.append(n)\nrt = len(seen) + 0 * model"
+    )
+    path = write_experiment(tmp_path, model=model)
+    assert {row["rt"] for row in rows_of(path)} == {1}
+
+
+def test_a_failing_trial_is_a_row_with_its_traceback(tmp_path: Path) -> None:
+    rows = rows_of(write_experiment(tmp_path, factors='{"mode": ["count", "fail"], "n": [2]}', participants=1, trials=1))
+    (good,) = (row for row in rows if row["mode"] == "count")
+    (bad,) = (row for row in rows if row["mode"] == "fail")
+    assert good["error"] is None
+    assert bad["end"] == "error"
+    assert "rt" not in bad
+    assert bad["error"].endswith("RuntimeError: cannot count to 2")
+    assert 'counter.py", line 23' in bad["error"]
+    assert "site-packages" not in bad["error"]
+
+
+def test_a_trial_that_hangs_is_ended_at_its_limit_and_the_rest_goes_on(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["hang", "count"]}', participants=1, trials=2, limit=1)
+    rows = rows_of(path)
+    assert [row["end"] for row in rows if row["mode"] == "hang"] == ["time limit"] * 2
+    assert [row["end"] for row in rows if row["mode"] == "count"] == ["end"] * 2
+    assert "longer than its limit of 1 s" in next(row["error"] for row in rows if row["mode"] == "hang")
+
+
+def test_a_trial_that_ends_its_own_process_is_a_row(tmp_path: Path) -> None:
+    rows = rows_of(write_experiment(tmp_path, factors='{"mode": ["die", "count"]}', participants=1, trials=1))
+    (dead,) = (row for row in rows if row["mode"] == "die")
+    assert (dead["end"], dead["error"]) == ("crash", "the trial ended its own process by the signal SIGSEGV")
+    assert [row["end"] for row in rows if row["mode"] == "count"] == ["end"]
+
+
+def test_what_a_model_prints_does_not_mix_with_the_rows(tmp_path: Path) -> None:
+    rows = rows_of(write_experiment(tmp_path, factors='{"mode": ["shout"], "n": [1]}', participants=1))
+    assert [row["end"] for row in rows] == ["end"] * 4
+
+
+def test_a_process_that_somebody_ends_is_started_again(tmp_path: Path) -> None:
+    experiment = specify(str(write_experiment(tmp_path)))
+    process = TrialProcess(experiment.specification.to_json())
+    try:
+        first = process.run(0, 60)
+        child = subprocess.run(["pgrep", "-P", str(os.getpid()), "-f", "trial_process"], capture_output=True, text=True).stdout.split()
+        assert len(child) == 1
+        os.kill(int(child[0]), signal.SIGKILL)
+        assert process.run(0, 60) == first
+    finally:
+        process.end()
+
+
+def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["hang"]}', limit=600)
+    code = (
+        "import sys, threading\n"
+        "from actr3d.experiment.specification import specify\n"
+        "from actr3d.experiment.trial_process import TrialProcess\n"
+        "p = TrialProcess(specify(sys.argv[1]).specification.to_json())\n"
+        "print('ready', flush=True)\n"
+        "p.run(0, 600)\n"
+    )
+    worker = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE)
+    assert worker.stdout is not None
+    assert worker.stdout.readline() == b"ready\n"
+
+    def children() -> list[str]:
+        return subprocess.run(["pgrep", "-P", str(worker.pid)], capture_output=True, text=True).stdout.split()
+
+    deadline = time.monotonic() + 60
+    while not (found := children()) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(1)
+    worker.kill()
+    worker.wait()
+    worker.stdout.close()
+    while time.monotonic() < deadline and any(
+        Path(f"/proc/{pid}/cmdline").exists() and Path(f"/proc/{pid}/cmdline").read_bytes() for pid in found
+    ):
+        time.sleep(0.05)
+    assert time.monotonic() < deadline, "it ran on without its worker"
+
+
+@pytest.mark.parametrize(
+    ("end", "says"),
+    [
+        ("rt = [1]", r"measure 'rt': must be a number, text, True, False or None \(got \[1\]\)"),
+        ("del rt", r"Design\.measures: the trial has no measure 'rt'"),
+    ],
+)
+def test_measures_that_cannot_be_kept_are_failures(tmp_path: Path, end: str, says: str) -> None:
+    path = write_experiment(tmp_path, model=f"{COUNTER}{end}\n", participants=1, trials=1)
+    errors = {row["error"] for row in rows_of(path)}
+    with pytest.raises(ExperimentError, match=says):
+        raise ExperimentError(errors.pop())
+    assert not errors
+
+
+def test_numbers_of_numpy_and_without_value_are_plain_measures(tmp_path: Path) -> None:
+    model = f"{COUNTER}import numpy as np\nrt = np.float32(0.5)\nluck = float('nan')\n"
+    row = rows_of(write_experiment(tmp_path, model=model, participants=1, trials=1))[0]
+    assert (row["rt"], row["luck"]) == (0.5, None)
+
+
+def test_helper_modules_of_model_and_design_travel_with_the_specification(tmp_path: Path) -> None:
+    (tmp_path / "pace.py").write_text("from rates import speed\n")
+    (tmp_path / "levels.py").write_text("many = [1, 2, 3]\n")
+    (tmp_path / "rates").mkdir()
+    (tmp_path / "rates" / "__init__.py").write_text("from .fast import speed\n")
+    (tmp_path / "rates" / "fast.py").write_text("speed = 7\n")
+    model = f"{COUNTER}import pace\nrt = pace.speed\n"
+    path = write_experiment(tmp_path, model=model, factors='{"n": levels.many}', participants=1, trials=1)
+    path.write_text("import levels\n" + path.read_text())
+    specification = specify(str(path)).specification
+    assert set(specification.model.helpers) == {"pace", "rates", "rates.fast"}
+    assert set(specification.design.helpers) == {"levels"}
+    for file in tmp_path.rglob("*.py"):
+        file.unlink()
+    process = TrialProcess(specification.to_json())
+    try:
+        assert [process.run(number, 60)["rt"] for number in range(3)] == [7, 7, 7]
+    finally:
+        process.end()
+
+
+def test_a_trial_of_a_body_has_the_fields_of_its_result_and_their_units(tmp_path: Path) -> None:
+    experiment = specify("warren_whang_1987", participants=1, trials=1, values={"aperture": 0.45, "condition": "fast"})
+    process = TrialProcess(experiment.specification.to_json())
+    try:
+        row = process.run(0, 60)
+        assert row["outcome"] == "passed"
+        assert 30 < row["wall_angle_deg"] < 60
+        assert process.about["clearance_left_m"]["unit"] == "m"
+        assert process.about["aperture"]["unit"] == "m"
+    finally:
+        process.end()
+
+
+# -- the store
+
+
+def finished(*numbers: int, **more: Any) -> list[Finished]:
+    return [
+        Finished(row={"trial": number, "x": number / 2, **more, "end": "end", "error": None}, wall_s=0.1, worker="w") for number in numbers
+    ]
+
+
+def store_of(tmp_path: Path) -> Store:
+    return Store.create(tmp_path / "out", specify(str(write_experiment(tmp_path))).specification)
+
+
+def test_rows_are_the_same_in_any_order_of_arrival(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    texts: list[bytes] = []
+    rows = [finished(2, y=1), finished(0, y=0.5, z=None), finished(1, z=True)]
+    for name, batches in (("a", rows), ("b", rows[::-1])):
+        with store_of(tmp_path / name) as store:
+            for batch in batches:
+                store.add(batch, "v 1")
+            export(store)
+            texts.append((store.folder / "trials.csv").read_bytes())
+            assert {column.name: column.type for column in store.columns}["y"] == "real"
+    assert texts[0] == texts[1]
+    assert texts[0].decode().splitlines()[0] == "trial,x,y,z,end,error,versions,wall_s,worker"
+
+
+def test_a_trial_has_one_row(tmp_path: Path) -> None:
+    with store_of(tmp_path) as store:
+        assert store.add(finished(0, 1), "v") == 2
+        assert store.add(finished(1, 2, late=True), "v") == 1
+        assert store.count == 3
+        row = store.row(1)
+        assert row is not None
+        assert row["late"] is None
+        assert list(store.missing(6)) == [3, 4, 5]
+        assert store.row(5) is None
+
+
+def test_tables_have_the_types_and_units_of_their_columns(tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    with store_of(tmp_path) as store:
+        store.add(finished(0, flag=True, name='\u00e9\n,"', none=None), "v", {"x": {"unit": "m", "meaning": "Its width [m]."}})
+        store.add(finished(1, flag=None, name=None, none=None), "v")
+        export(store)
+        table = parquet.read_table(store.folder / "trials.parquet")
+        assert table.column("flag").to_pylist() == [True, None]
+        assert table.column("name").to_pylist() == ['\u00e9\n,"', None]
+        assert table.schema.field("x").metadata[b"unit"] == b"m"
+        assert "x,real,m,Its width [m]." in (store.folder / "columns.csv").read_text()
+
+
+def test_only_one_process_writes(tmp_path: Path) -> None:
+    with store_of(tmp_path) as store, store.only_writer(), Store(store.folder) as other:
+        with pytest.raises(ExperimentError, match=rf"another process \({os.getpid()}\) runs this experiment"), other.only_writer():
+            pass
+        assert other.count == 0
+
+
+def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> None:
+    specification = specify(str(write_experiment(tmp_path))).specification
+    with pytest.raises(ExperimentError, match=r"is not empty"):
+        Store.create(tmp_path, specification)
+    Store.create(tmp_path / "out", specification).close()
+    with pytest.raises(ExperimentError, match="holds an experiment already; continue it with --resume"):
+        Store.create(tmp_path / "out", specification)
+    with pytest.raises(ExperimentError, match=r"holds no experiment: cannot read experiment\.json"):
+        Store(tmp_path)
+    (tmp_path / "out" / "trials.sqlite").write_bytes(b"not a database" * 100)
+    with pytest.raises(ExperimentError, match=r"trials\.sqlite: cannot be opened"):
+        Store(tmp_path / "out")
+
+
+def test_a_store_that_cannot_be_written_says_so_and_keeps_its_rows(tmp_path: Path) -> None:
+    with store_of(tmp_path) as store:
+        store.add(finished(0), "v")
+        with sqlite3.connect(store.folder / "trials.sqlite") as other:
+            pages = other.execute("PRAGMA page_count").fetchone()[0]
+        store._database.execute(f"PRAGMA max_page_count = {pages}")
+        with pytest.raises(ExperimentError, match=r"cannot write \(database or disk is full\); the rows before are kept"):
+            store.add(finished(*range(1, 500), text="x" * 1000), "v")
+        assert store.count == 1
+    gc.collect()
+
+
+def test_memory_does_not_grow_with_the_rows(tmp_path: Path) -> None:
+    """Of 40,000 rows, no more are in memory at a time than of 10,000."""
+    import tracemalloc
+
+    peaks: list[int] = []
+    with store_of(tmp_path) as store:
+        for total in (10_000, 40_000):
+            for begin in range(store.count, total, 500):
+                store.add(finished(*range(begin, begin + 500), text="x" * 100), "v")
+            tracemalloc.start()
+            assert sum(1 for _ in store.rows()) == total
+            export(store)
+            assert len(list(store.missing(total + 3))) == 3
+            peaks.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+    assert peaks[1] < 1.2 * peaks[0]
+
+
+# -- the command
+
+
+def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = write_experiment(tmp_path)
+    experiment = specify(str(path))
+    Store.create("out", experiment.specification).close()
+    path.unlink()
+    (tmp_path / "counter.py").unlink()
+    assert main(["experiment", "out", "--trial", "7", "--record", "seven.rec"]) == 0
+    assert "trial 7 is recorded in 'seven.rec'" in capsys.readouterr().out
+    assert main(["replay", "seven.rec"]) == 0
+    assert main(["experiment", "out", "--trial", "99", "--record", "x.rec"]) == 2
+    assert "trial: must be a number from 0 to 23 (got 99)" in capsys.readouterr().err
+    assert main(["experiment", "out", "--trial", "7"]) == 2
+    assert "--trial ID and --record RECORDING are given together" in capsys.readouterr().err
