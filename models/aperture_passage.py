@@ -45,10 +45,13 @@ What to try
 - `condition = "fast"`: walks and turns faster.
 - `variant = "replication", aperture = 0.7`: the original model turns even here.
 - `margin = 0, noise = 0.05`: a careless walker with poor eyes.
+- `bar = 0.6, aperture = 0.6`: a walker with a bar in both hands.
+- `aside = 0.3`: a start that is not in line with the doorway. This walker cannot steer: it walks into the wall.
 - Or move the slider of the aperture while the walker is on its way.
 """
 
 from dataclasses import dataclass
+from math import radians
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
@@ -60,7 +63,7 @@ from actr3d.motor import Motor
 from actr3d.sgoms import SGOMS, Ordered, Situated
 from actr3d.simulation import Simulation
 from actr3d.vision import Vision
-from actr3d.world import Aperture, Floor, Mannequin, Scene
+from actr3d.world import Aperture, Floor, Load, Mannequin, Scene
 
 WIDTHS = {"small": 0.404, "large": 0.484}
 SPEEDS = {("small", "normal"): 1.29, ("small", "fast"): 1.61, ("large", "normal"): 1.28, ("large", "fast"): 1.77}
@@ -117,6 +120,18 @@ class Parameters(Configuration):
 
     noise: Annotated[float, Ge(0), Le(0.2)] = 0.01
     """The standard deviation of perceived distances, as a fraction of them; 0 judges exactly. Source: chosen for this model."""
+
+    task: Literal["walk", "judge"] = "walk"
+    """What the walker does: walks through the doorway, or only judges whether it could pass without turning."""
+
+    bar: Annotated[float, Ge(0.1), Le(2)] | None = None
+    """The length of a bar that the walker holds crosswise in front of it [m]; None: empty hands."""
+
+    aside: Annotated[float, Ge(-1), Le(1)] = 0.0
+    """How far to the left of the middle of the doorway the walker starts [m]."""
+
+    off: Annotated[float, Ge(-20), Le(20)] = 0.0
+    """The walking direction at the start [degrees]; 0 is straight ahead, positive to the left."""
 
 
 class Wait(Model):
@@ -406,12 +421,16 @@ class Walker(SGOMS):
 
     def can_pass(b_unit_task="unit_task:judge state:?how", vision="busy:False", b_visual="feature:opening distance:?far"):
         print(f"{self.now():.2f} s: can pass {'as it is' if how == 'looking' else 'turned'}")
+        self.judged = "as it is" if how == "looking" else "turned"
+        if self.only_judges:
+            self.stop()
         b_unit_task.modify(state="finished")
         b_visual.clear()
         way.walk(float(far) + BEHIND, self.speed)
 
     def decline(b_unit_task="unit_task:judge state:imagining", vision="busy:False error:True"):
         print(f"{self.now():.2f} s: cannot pass")
+        self.judged = "not at all"
         self.stop()
 
     # -- walking
@@ -537,6 +556,8 @@ RADIUS = 3.0
 """The distance at which an obstacle alerts the replication, in shoulder widths. Source: docs/human-data.md."""
 HEIGHT = 1.714
 """The height of the replication's body, in both groups [m]. Source: shoulders of 0.444 m, the mean of both, over `SHOULDERS`."""
+BAR = 0.03
+"""The thickness of a bar that the walker holds [m]. Source: chosen for this model."""
 TRUNK = 0.11
 """The depth of the replication's trunk [m]. Source: the value that fits the original's means best; the original's depth is not known."""
 
@@ -545,16 +566,19 @@ def body_of(parameters: Parameters) -> Mannequin:
     """Returns the body of the walker."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
+    common = {"name": "walker", "shoulder_width": width, "position": (0.0, p.aside), "heading": radians(p.off)}
+    if p.bar is not None:
+        common["load"] = Load(shape="bar", size=(p.bar, BAR))
     if p.variant == "human":
-        return Mannequin(name="walker", height=width / SHOULDERS, shoulder_width=width, depth=CHEST * width, sideways=True)
-    return Mannequin(name="walker", height=HEIGHT, shoulder_width=width, trunk="box", depth=TRUNK)
+        return Mannequin(height=width / SHOULDERS, depth=CHEST * width, sideways=True, **common)
+    return Mannequin(height=HEIGHT, trunk="box", depth=TRUNK, **common)
 
 
 def agent_of(parameters: Parameters) -> Walker:
     """Returns the agent in that body."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "only_judges": p.task == "judge", "judged": None}
     if p.variant == "human":
         agent = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:

@@ -73,7 +73,7 @@ class Batch:
 
 
 @contextmanager
-def local_cluster(workers: int) -> Generator[Client]:
+def local_cluster(workers: int) -> Generator[Any]:
     """Starts a scheduler and workers on this computer, reachable only from it."""
     local: Any = LocalCluster  # its types are incomplete
     options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0", "memory_limit": 0}
@@ -86,7 +86,7 @@ def local_cluster(workers: int) -> Generator[Client]:
 
 
 @contextmanager
-def existing_cluster(address: str) -> Generator[Client]:
+def existing_cluster(address: str) -> Generator[Any]:
     """Connects to a scheduler.
 
     Args:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 import threading
@@ -172,10 +173,16 @@ def _check_versions(there: Specification, *, any_version: bool) -> None:
 def _show_failures(store: Store, console: Console) -> None:
     if not store.failures:
         return
-    kinds = Counter(str(row["error"]).strip().splitlines()[-1] for row in store.rows() if row["error"] is not None)
+    kinds = Counter(summary(row["error"]) for row in store.rows() if row["error"] is not None)
     console.print(f"[bold red]{store.failures:,} trials failed[/bold red] (columns `end` and `error` of the table):", highlight=False)
     for text, count in kinds.most_common(SHOWN):
         console.print(f"  {count:,}  {text}", highlight=False, markup=False)
+
+
+def summary(error: str) -> str:
+    """Returns the line of a traceback that names the error; notes may follow it."""
+    lines = error.strip().splitlines()
+    return next((line for line in reversed(lines) if re.match(r"[\w.]+: ", line)), lines[-1])
 
 
 @contextmanager

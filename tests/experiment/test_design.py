@@ -257,3 +257,25 @@ def test_a_specification_from_elsewhere_is_checked() -> None:
             Specification.from_json(text, "it")
     with pytest.raises(ExperimentError, match="it: has format 7; this version reads format 1"):
         Specification.from_json('{"format": 7}', "it")
+
+
+@pytest.mark.parametrize(
+    ("name", "trials", "cells"),
+    [
+        ("warren_whang_1987", 9600, 16),
+        ("higuchi_2012", 720, 9),
+        ("passability_judgement", 1400, 14),
+        ("wilmut_ratios", 420, 7),
+        ("misaligned_start", 600, 24),
+    ],
+)
+def test_designs_of_the_literature_have_their_numbers(name: str, trials: int, cells: int) -> None:
+    design = specify(name).design
+    assert (len(design), len(design.cells)) == (trials, cells)
+
+
+def test_ratios_become_apertures_and_bars() -> None:
+    for trial in specify("higuchi_2012").design.table():
+        v = trial.values
+        assert v["aperture"] == pytest.approx(v["ratio"] * max(v["bar"], v["shoulder_width"]), abs=1e-4)
+        assert v["bar"] == pytest.approx(v["bar_ratio"] * v["shoulder_width"], abs=1e-4)

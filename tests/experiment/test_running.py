@@ -157,7 +157,8 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, kill
     path = write_experiment(tmp_path, participants=2, trials=20 * kills, model=SLOW_MODEL)
     dice = random.Random(kills)
     killed: list[int] = []
-    with local_cluster(2) as client:
+    with local_cluster(2) as here:
+        client: Any = here
         over = threading.Event()
 
         def kill() -> None:
@@ -179,7 +180,7 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, kill
 
 
 @contextmanager
-def a_cluster(port: int) -> Generator[subprocess.Popen[bytes]]:
+def a_cluster(port: int) -> Generator[Any]:
     """Starts a scheduler and a worker as on any cluster, and ends them; yields the scheduler."""
     quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
     address = ["--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
