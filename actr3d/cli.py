@@ -245,6 +245,8 @@ def _parser() -> argparse.ArgumentParser:
     experiment.add_argument("--out", metavar="FOLDER", help="the new folder for the results (default: the name of the design)")
     experiment.add_argument("--resume", action="store_true", help="continue the experiment that is in the folder")
     experiment.add_argument("--any-version", action="store_true", help="continue although packages have other versions now")
+    experiment.add_argument("--check", action="store_true", help="check the design, run one trial, and print what would run")
+    experiment.add_argument("--json", action="store_true", help="print one JSON object a line: progress, and what is found")
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
     experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
@@ -283,8 +285,7 @@ def _experiment(options: argparse.Namespace) -> int:
             raise
         print(f"actr3d experiment: needs the package '{error.name}'; install: pip install 'actr3d[experiment]'", file=sys.stderr)
         return 2
-    out = command.console()
-    given = {name: getattr(options, name) for name in ("participants", "trials", "workers", "scheduler", "out", "resume", "any_version")}
+    out = command.Output(json=options.json)
     try:
         if options.name is None:
             return command.list_designs(out)
@@ -292,10 +293,13 @@ def _experiment(options: argparse.Namespace) -> int:
             if options.trial is None or options.record is None:
                 raise SettingError("--trial ID and --record RECORDING are given together")
             return command.run_again(options.name, options.trial, options.record, out)
-        values = read_settings(options.set, ())
-        if command.is_folder(options.name) and not (values or any(given.values())):
+        numbers = {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
+        if options.check:
+            return command.check(options.name, out, **numbers)
+        how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
+        if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
             return command.show_state(options.name, out)
-        return command.run(options.name, out, values=values, **given)
+        return command.run(options.name, out, folder=options.out, **numbers, **how)
     except (SettingError, DesignError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

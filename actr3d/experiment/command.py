@@ -11,7 +11,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -26,7 +26,9 @@ from actr3d.experiment.specification import Experiment, Specification, library_d
 from actr3d.experiment.store import SPECIFICATION, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import record_trial
+from actr3d.experiment.trial_process import TrialProcess
 from actr3d.recording.schema import versions
+from actr3d.values import to_json
 
 EVERY = 10.0
 """Time between two lines of progress where the output is not a terminal [s]."""
@@ -34,26 +36,92 @@ SHOWN = 3
 """The number of different failures that are shown."""
 
 
-def list_designs(console: Console) -> int:
+class Output:
+    """The output of the command: text for people, or one JSON object a line for programs.
+
+    Args:
+        json: Whether it is JSON.
+    """
+
+    def __init__(self, *, json: bool) -> None:
+        self.json = json
+        self.console = Console(file=sys.stdout, soft_wrap=True)
+
+    def line(self, text: str, *, markup: bool = True) -> None:
+        """Prints a line of text, unless the output is JSON."""
+        if not self.json:
+            self.console.print(text, highlight=False, markup=markup)
+
+    def event(self, name: str, data: Mapping[str, Any]) -> None:
+        """Prints an object, if the output is JSON."""
+        if self.json:
+            sys.stdout.write(f"{to_json({'event': name, **data})}\n")
+            sys.stdout.flush()
+
+
+def list_designs(out: Output) -> int:
     """Prints the library's designs."""
-    console.print("Designs of the library; any file with a function marked by @design can be run, too:\n")
+    out.line("Designs of the library; any file with a function marked by @design can be run, too:\n")
     for name in sorted(library_designs()):
         experiment = specify(name)
+        out.event("design", {"name": name, "trials": len(experiment.design), "description": experiment.description})
         first = " ".join(experiment.description.partition("\n\n")[0].split())
-        console.print(f"  [bold]{name:<24}[/bold]{len(experiment.design):>8,} trials  {first}", highlight=False)
+        out.line(f"  [bold]{name:<24}[/bold]{len(experiment.design):>8,} trials  {first}")
     return 0
+
+
+def check(name: str, out: Output, *, values: Mapping[str, Any], participants: int | None = None, trials: int | None = None) -> int:
+    """Checks a design, runs its first trial, and prints what the experiment would be; returns the exit code.
+
+    Raises:
+        ExperimentError: If the design is not valid.
+        Exception: Any error that the files of the design and of the model themselves raise.
+    """
+    experiment = specify(name, participants=participants, trials=trials, values=values)
+    design, total = experiment.design, len(experiment.design)
+    process = TrialProcess(experiment.specification.to_json())
+    try:
+        process.run(0, design.limit)  # the first one includes the start of the process
+        begin = time.perf_counter()
+        row = process.run(min(1, total - 1), design.limit)
+        seconds = time.perf_counter() - begin
+    finally:
+        process.end()
+    groups = {name: group.participants for name, group in design.groups.items()}
+    about: dict[str, Any] = {
+        "name": experiment.specification.name,
+        "description": experiment.description,
+        "trials": total,
+        "trials_a_cell": design.trials,
+        "factors": {name: list(levels) for name, levels in design.factors.items()},
+        "groups": groups,
+        "model": experiment.specification.model.file,
+        "seconds_a_trial": round(seconds, 3),
+        "error": row["error"],
+    }
+    out.event("check", about)
+    people = ", ".join(f"{count} {name}" for name, count in groups.items())
+    out.line(f"[bold]{about['name']}[/bold]: {total:,} trials of '{about['model']}' by participants: {people}")
+    for factor, levels in design.factors.items():
+        out.line(f"  {factor}: {', '.join(map(str, levels))}")
+    out.line(
+        f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
+    )
+    if row["error"] is not None:
+        out.line(f"the trial failed: {row['error']}")
+    return 0 if row["error"] is None else 1
 
 
 def run(
     name: str,
-    console: Console,
+    out: Output,
     *,
     values: Mapping[str, Any],
     participants: int | None = None,
     trials: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
-    out: str | None = None,
+    folder: str | None = None,
     resume: bool = False,
     any_version: bool = False,
 ) -> int:
@@ -61,13 +129,13 @@ def run(
 
     Args:
         name: A design of the library, a file, `FILE:NAME`, or the folder of an experiment.
-        console: Where to print.
+        out: Where to print.
         values: Values that replace those of the design.
         participants: The number of participants of each group; None for that of the design.
         trials: The number of trials of each combination of levels; None for that of the design.
         workers: The number of workers on this computer; None for one on each processor.
         scheduler: The address of an existing cluster; None for a cluster on this computer.
-        out: The folder; None for one with the name of the design.
+        folder: The folder of the results; None for one with the name of the design.
         resume: Whether to continue an experiment that is there.
         any_version: Whether to continue it with other versions of packages than those of its earlier trials.
 
@@ -75,40 +143,41 @@ def run(
         ExperimentError: If the experiment cannot be set up, run or continued.
         Exception: Any error that the files of the design and of the model themselves raise.
     """
-    experiment, store = _opened(name, values, participants, trials, out, resume=resume, any_version=any_version)
+    experiment, store = _opened(name, values, participants, trials, folder, resume=resume, any_version=any_version)
     with store:
         total, begin, before = len(experiment.design), time.monotonic(), store.count
-        console.print(
-            f"[bold]{experiment.specification.name}[/bold]: {total:,} trials in '{store.folder}', {before:,} finished", highlight=False
-        )
+        out.line(f"[bold]{experiment.specification.name}[/bold]: {total:,} trials in '{store.folder}', {before:,} finished")
         if before < total:
             cluster = local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler)
-            with _stopping() as stop, cluster as client, _progress(console, total) as show:
+            with _stopping() as stop, cluster as client, _progress(out, total) as show:
                 run_experiment(experiment, store, client, show=show, stop=stop)
             took, ran = time.monotonic() - begin, store.count - before
-            console.print(f"{ran:,} trials in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)", highlight=False)
+            out.line(f"{ran:,} trials in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
         files = export(store)
-        console.print(f"table: {', '.join(str(path) for path in files)}", highlight=False)
-        _show_failures(store, console)
+        out.line(f"table: {', '.join(str(path) for path in files)}")
+        _show_failures(store, out)
+        out.event("end", {"done": store.count, "total": total, "failures": store.failures, "folder": str(store.folder)})
         if store.count < total:
-            console.print(f"stopped after {store.count:,} of {total:,} trials; continue with: actr3d experiment {store.folder} --resume")
+            out.line(f"stopped after {store.count:,} of {total:,} trials; continue with: actr3d experiment {store.folder} --resume")
             return 130
         return 1 if store.failures else 0
 
 
-def show_state(folder: str, console: Console) -> int:
+def show_state(folder: str, out: Output) -> int:
     """Prints how far an experiment is; returns the exit code."""
     with Store(folder) as store:
         experiment = Experiment(store.specification)
         total = len(experiment.design)
-        console.print(f"{store.specification.name}: {store.count:,} of {total:,} trials have finished", highlight=False)
-        _show_failures(store, console)
+        state = {"done": store.count, "total": total, "failures": store.failures, "folder": str(store.folder)}
+        out.event("state", {**state, "name": store.specification.name})
+        out.line(f"{store.specification.name}: {store.count:,} of {total:,} trials have finished")
+        _show_failures(store, out)
         if store.count < total:
-            console.print(f"continue with: actr3d experiment {folder} --resume")
+            out.line(f"continue with: actr3d experiment {folder} --resume")
     return 0
 
 
-def run_again(folder: str, number: int, recording: str, console: Console) -> int:
+def run_again(folder: str, number: int, recording: str, out: Output) -> int:
     """Runs a trial of an experiment again and records it; returns the exit code.
 
     Raises:
@@ -120,8 +189,8 @@ def run_again(folder: str, number: int, recording: str, console: Console) -> int
         experiment = Experiment(store.specification, helpers)
         result = record_trial(experiment, experiment.design.trial(number), recording, helpers)
     if result is not None:
-        console.print(str(result), highlight=False)
-    console.print(f"trial {number} is recorded in '{recording}'", highlight=False)
+        out.line(str(result))
+    out.line(f"trial {number} is recorded in '{recording}'")
     return 0
 
 
@@ -135,14 +204,14 @@ def _opened(
     values: Mapping[str, Any],
     participants: int | None,
     trials: int | None,
-    out: str | None,
+    folder: str | None,
     *,
     resume: bool,
     any_version: bool,
 ) -> tuple[Experiment, Store]:
     """Creates or opens the folder of an experiment."""
     if is_folder(name):
-        if values or participants is not None or trials is not None or out is not None:
+        if values or participants is not None or trials is not None or folder is not None:
             raise ExperimentError(f"'{name}' is an experiment, whose design is fixed; name a design to run it with other values")
         if not resume:
             raise ExperimentError(f"'{name}' is an experiment; continue it with --resume")
@@ -150,7 +219,7 @@ def _opened(
         _check_versions(store.specification, any_version=any_version)
         return Experiment(store.specification), store
     experiment = specify(name, participants=participants, trials=trials, values=values)
-    folder = out or experiment.specification.name
+    folder = folder or experiment.specification.name
     if not (resume and is_folder(folder)):
         return experiment, Store.create(folder, experiment.specification)
     store = Store(folder)
@@ -170,13 +239,13 @@ def _check_versions(there: Specification, *, any_version: bool) -> None:
         raise ExperimentError(f"the trials so far were run with {', '.join(different)}; install these versions, or add --any-version")
 
 
-def _show_failures(store: Store, console: Console) -> None:
+def _show_failures(store: Store, out: Output) -> None:
     if not store.failures:
         return
     kinds = Counter(summary(row["error"]) for row in store.rows() if row["error"] is not None)
-    console.print(f"[bold red]{store.failures:,} trials failed[/bold red] (columns `end` and `error` of the table):", highlight=False)
+    out.line(f"[bold red]{store.failures:,} trials failed[/bold red] (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
-        console.print(f"  {count:,}  {text}", highlight=False, markup=False)
+        out.line(f"  {count:,}  {text}", markup=False)
 
 
 def summary(error: str) -> str:
@@ -207,10 +276,10 @@ def _stopping() -> Generator[threading.Event]:
 
 
 @contextmanager
-def _progress(console: Console, total: int) -> Generator[Callable[[State], None]]:
+def _progress(out: Output, total: int) -> Generator[Callable[[State], None]]:
     """Shows the progress inside the block: a bar in a terminal, else a line from time to time."""
-    if not console.is_terminal:
-        yield _lines(console)
+    if out.json or not out.console.is_terminal:
+        yield _lines(out)
         return
     columns = (
         BarColumn(),
@@ -221,7 +290,7 @@ def _progress(console: Console, total: int) -> Generator[Callable[[State], None]
         TimeRemainingColumn(),
         TextColumn("{task.fields[failed]}"),
     )
-    with Progress(*columns, console=console) as bar:
+    with Progress(*columns, console=out.console) as bar:
         task = bar.add_task("", total=total, rate="", failed="")
         begin: list[tuple[float, int]] = []
 
@@ -233,17 +302,18 @@ def _progress(console: Console, total: int) -> Generator[Callable[[State], None]
         yield show
 
 
-def _lines(console: Console) -> Callable[[State], None]:
+def _lines(out: Output) -> Callable[[State], None]:
     begin: list[tuple[float, int]] = []
     last = [0.0]
 
     def show(state: State) -> None:
         now = time.monotonic()
+        out.event("progress", asdict(state))
         if not begin:
             begin.append((now, state.done))
         if now - last[0] >= EVERY:
             last[0] = now
-            console.print(f"{state.done:,} of {state.total:,} trials, {state.failures:,} failed {_rate(begin[0], state)}", highlight=False)
+            out.line(f"{state.done:,} of {state.total:,} trials, {state.failures:,} failed {_rate(begin[0], state)}")
 
     return show
 
@@ -254,8 +324,3 @@ def _rate(begin: tuple[float, int], state: State) -> str:
         return f"{state.workers} workers"
     left = (state.total - state.done) * took / done
     return f"{done / took:,.1f}/s, {state.workers} workers, {left:,.0f} s left"
-
-
-def console() -> Console:
-    """Returns the console of the command."""
-    return Console(file=sys.stdout, soft_wrap=True)

@@ -7,6 +7,7 @@ change nothing.
 from __future__ import annotations
 
 import ast
+import inspect
 import json
 import pkgutil
 import sys
@@ -149,7 +150,7 @@ class Experiment:
     @property
     def description(self) -> str:
         """The docstring of the design."""
-        return (getattr(self._module, self.specification.name).__doc__ or "").strip()
+        return inspect.getdoc(getattr(self._module, self.specification.name)) or ""
 
     def describe(self, fields_of_result: Sequence[Parameter]) -> None:
         """Adds units and meanings of measures, once they are known."""
