@@ -11,8 +11,9 @@ from actr3d.benchmark import BENCHMARKS
 
 
 def find_benchmarks() -> dict[str, Callable[..., int]]:
-    """Imports all modules of `actr3d.bench` and `actr3d.experiment`, and returns the benchmarks that they register."""
+    """Imports all modules of `actr3d.bench`, and those called `benchmark` of `actr3d.experiment`; returns what they register."""
     for name, path in ((__name__, __path__), (actr3d.experiment.__name__, actr3d.experiment.__path__)):
         for module in pkgutil.walk_packages(path, f"{name}."):
-            import_module(module.name)
+            if name == __name__ or module.name.endswith(".benchmark"):
+                import_module(module.name)
     return BENCHMARKS

@@ -134,8 +134,9 @@ class Design(Configuration):
     """The names of the measures to keep; empty to keep all of them."""
     until: Annotated[float, Gt(0)] = 60.0
     """The maximum simulated time of a trial [s]."""
-    limit: Annotated[float, Gt(0)] = 60.0
-    """The maximum wall time of a trial [s]: a trial that takes longer is ended, and counts as failed."""
+    limit: Annotated[float, Gt(0)] = 600.0
+    """The maximum wall time of a trial [s]: a trial that takes longer is ended, and counts as failed. The first one on a computer
+    may have to compile the camera, which takes up to a minute."""
     human: str | None = None
     """The name of the human data that the report shows beside the model's; see `actr3d.experiment.human_data`."""
     seed: int = 1

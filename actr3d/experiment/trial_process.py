@@ -22,7 +22,7 @@ from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.trial import Row, run_trial
 from actr3d.runner.traceback_report import traceback_report
 
-START = 120.0
+START = 600.0
 """The maximum time that a process may take to load an experiment [s]."""
 ATTEMPTS = 3
 """How often a trial is tried whose process ends without an answer: another program may have ended it."""

@@ -1,0 +1,187 @@
+"""`actr3d bench experiment`: measures what a trial costs beside its physics, and how experiments scale with workers and rows.
+
+The trials are those of the aperture model, except where the cost of an experiment itself is measured: there, they are a few
+milliseconds long.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+import tracemalloc
+from itertools import islice
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import mujoco
+
+from actr3d.benchmark import Figure, benchmark, processor_time_of, ratio, report
+from actr3d.experiment.specification import Experiment, specify
+from actr3d.experiment.trial import parameters_for, record_trial, run_trial
+from actr3d.printing import ModelOutput, printing_to
+
+DESIGN = "warren_whang_1987"
+SAMPLE = 8
+"""The number of trials whose cost is measured."""
+ROWS = 200_000
+"""The number of rows that are written."""
+SMALL = 4_000
+"""The number of small trials in which a change of the cost per trial would show."""
+PROGRAM = '''
+n = 3
+from actr3d.actr import *
+
+
+class Counter(ACTR):
+    goal = Buffer()
+
+    def init():
+        goal.set("count 0")
+
+    def count(goal="count ?k"):
+        goal.set(f"count {int(k) + 1}" if int(k) < n else "done")
+
+
+model = Counter()
+model.run()
+time = model.now()
+
+
+from actr3d.experiment import Design, Group, design
+
+
+@design
+def counting():
+    """Counts."""
+    return Design(factors={"n": [1, 2, 3]}, groups={"all": Group(participants=10)}, trials=10_000, measures=["time"])
+'''
+
+
+def _aperture(folder: Path) -> list[Figure]:
+    """Returns the cost of trials of the aperture model as multiples of their physics, and of all trials of the paper's design."""
+    specification = specify(DESIGN).specification
+    with specification.sealed() as helpers:
+        experiment = Experiment(specification, helpers)
+        step = len(experiment.design) // SAMPLE
+        trials = [experiment.design.trial(number * step) for number in range(SAMPLE)]
+        steps = [round(run_trial(experiment, trial, helpers)["time_s"] / _timestep(experiment)) for trial in trials]
+
+        def plain() -> None:
+            for trial in trials:
+                run_trial(experiment, trial, helpers)
+
+        count = iter(range(1_000_000))
+
+        def recorded() -> None:
+            with printing_to(ModelOutput(lambda _: None)):
+                for trial in trials:
+                    record_trial(experiment, trial, folder / f"{next(count)}.rec", helpers)
+
+        physics = _physics(experiment, sum(steps))
+        costs = [ratio(lambda work=work: processor_time_of(work), lambda: processor_time_of(physics), 3) for work in (plain, recorded)]
+        hours = processor_time_of(plain) / SAMPLE * len(experiment.design) / (os.cpu_count() or 1)
+    return [
+        Figure(name="a trial", value=costs[0], sense="at most", bar=3, what="processor time of a trial / bare mj_step of its ticks"),
+        Figure(name="a recorded trial", value=costs[1], sense="at most", bar=3, what="the same with a recording"),
+        Figure(name="the paper's design", value=hours / 60, sense="at most", bar=20, what="minutes for 9,600 trials on all processors"),
+    ]
+
+
+def _timestep(experiment: Experiment) -> float:
+    """Returns the length of a physics step of the model [s]."""
+    assert experiment.blueprint is not None
+    simulation, _ = experiment.blueprint.build(parameters_for(experiment, experiment.design.trial(0)))
+    return float(simulation.world.mj_model.opt.timestep)
+
+
+def _physics(experiment: Experiment, steps: int) -> Any:
+    assert experiment.blueprint is not None
+    simulation, _ = experiment.blueprint.build(parameters_for(experiment, experiment.design.trial(0)))
+    simulation.run(2)
+    model, data = simulation.world.mj_model, simulation.world.mj_data
+
+    def work() -> None:
+        for _ in range(steps):
+            mujoco.mj_step(model, data)
+
+    return work
+
+
+def _small(folder: Path) -> list[Figure]:
+    """Returns how the cost of small trials changes over many of them."""
+    path = folder / "counting.py"
+    path.write_text(PROGRAM, encoding="utf-8")
+    specification = specify(str(path)).specification
+    with specification.sealed() as helpers:
+        experiment = Experiment(specification, helpers)
+        costs: list[float] = []
+        for trial in islice(experiment.design.table(), SMALL):
+            begin = time.process_time()
+            run_trial(experiment, trial, helpers)
+            costs.append(time.process_time() - begin)
+    part = SMALL // 4
+    change = median(costs[-part:]) / median(costs[:part])
+    return [Figure(name="many trials", value=change, sense="at most", bar=1.1, what=f"cost of the last of {SMALL} trials / of the first")]
+
+
+def _rows(folder: Path) -> list[Figure]:
+    """Returns how fast rows are written and how the memory for them grows."""
+    from actr3d.experiment.store import Finished, Store
+
+    peaks: list[int] = []
+    with Store.create(folder / "rows", specify(str(folder / "counting.py")).specification) as store:
+
+        def write(first: int, last: int) -> None:
+            for begin in range(first, last, 200):
+                rows = [
+                    {
+                        "trial": n,
+                        "participant": "all 1",
+                        "group": "all",
+                        **{f"m{k}": n / (k + 1) for k in range(15)},
+                        "end": "end",
+                        "error": None,
+                    }
+                    for n in range(begin, begin + 200)
+                ]
+                store.add([Finished(row=row, wall_s=0.1, worker="0") for row in rows], "versions")
+
+        begin = time.perf_counter()
+        write(0, ROWS)
+        rate = ROWS / (time.perf_counter() - begin)
+        for part in (10, 1):
+            tracemalloc.start()
+            write(ROWS * (11 - part), ROWS * (11 - part) + ROWS // part)
+            sum(1 for _ in islice(store.rows(), ROWS // part))
+            peaks.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+    return [
+        Figure(name="writing", value=rate, sense="at least", bar=5_000, what=f"rows a second, of {ROWS}"),
+        Figure(name="memory", value=peaks[1] / peaks[0], sense="at most", bar=1.2, what=f"peak memory for {ROWS} rows / for {ROWS // 10}"),
+    ]
+
+
+def _workers(folder: Path) -> list[Figure]:
+    """Returns the speed of two workers relative to one."""
+    from actr3d.experiment.cluster import local_cluster, run_experiment
+    from actr3d.experiment.store import Store
+
+    experiment = specify(DESIGN, participants=2, trials=2)
+    took: list[float] = []
+    for workers in (1, 2):
+        with local_cluster(workers) as client, Store.create(folder / f"workers {workers}", experiment.specification) as store:
+            seen: list[float] = []
+            run_experiment(experiment, store, client, show=lambda _, seen=seen: seen.append(time.perf_counter()))
+            took.append(seen[-1] - seen[workers])  # without the start of the processes
+    return [Figure(name="two workers", value=took[0] / took[1], sense="at least", bar=1.9, what="trials a second / with one worker")]
+
+
+@benchmark("experiment")
+def main(*, json_output: bool) -> int:
+    """Measures and prints; returns the exit code."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        figures = [*_aperture(folder), *_small(folder), *_rows(folder), *_workers(folder)]
+    return report(figures, json_output=json_output)
