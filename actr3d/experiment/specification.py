@@ -278,8 +278,10 @@ def _imported_roots(text: str) -> set[str]:
 def _model_of(of: Design, path: Path) -> Path:
     if of.model is None:
         return path
-    beside = path.parent / of.model
     shipped = library_models() / of.model
+    if path.parent in map(Path, designs.__path__) and shipped.exists():  # a design and its model may have the same name
+        return shipped
+    beside = path.parent / of.model
     if not beside.exists() and not shipped.exists():
         near = did_you_mean(of.model, [file.name for folder in (path.parent, library_models()) for file in folder.glob("*.py")])
         raise ExperimentError(f"{path}: Design.model: there is no file '{of.model}' beside it or in {library_models()}{near}")
