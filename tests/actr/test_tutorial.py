@@ -19,9 +19,12 @@ TUTORIAL = [name for name in NAMES if name.startswith("tutorial/")]
 NOISY = {
     "aperture_passage",
     "aperture_passage@replication",
+    "fan_effect",
+    "paired_associates",
     "tutorial/partial_matching",
     "tutorial/sos_vision",
     "tutorial/utility_learning",
+    "utility_learning",
 }
 """The models that draw random numbers which make a difference."""
 LARGEST = 300_000

@@ -17,11 +17,13 @@ GOLDEN = Path(__file__).resolve().parent
 ROOT = GOLDEN.parent.parent
 MODELS = ROOT / "models"
 IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tutorial/parallel_system", "tutorial/two_agents"}
-"""The models whose golden traces hold every event; those of the others, which are long, hold productions and buffers."""
+"""The models whose golden traces hold every event; those of the others hold productions and buffers, or productions only."""
 VARIANTS = {"aperture_passage": ("replication",)}
 """By model, the variants that have golden traces besides the default."""
 EMBODIED = {"aperture_passage", "aperture_passage@replication", "doorway"}
 """Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
+PRODUCTIONS_ONLY = {*EMBODIED, "paired_associates"}
+"""The models whose golden traces hold productions, and no buffers: those with bodies, and those that are too long otherwise."""
 
 
 def model_names() -> list[str]:
@@ -42,7 +44,7 @@ def golden_names() -> list[str]:
 
 def options(name: str, seed: int = 1) -> tuple[str, ...]:
     """Returns how a model's golden trace is made."""
-    level = "all" if name in IN_FULL else "production" if name in EMBODIED else "buffer"
+    level = "all" if name in IN_FULL else "production" if name in PRODUCTIONS_ONLY else "buffer"
     variant = name.partition("@")[2]
     return (*(("--variant", variant) if variant else ()), "--seed", str(seed), "--trace", level, "--json")
 

@@ -1,0 +1,22 @@
+"""The person-location experiment of Anderson (1974) on the fan effect."""
+
+from actr3d.experiment.design import Design, Group, design
+
+
+@design
+def fan_effect() -> Design:
+    """Recognising facts: person and location with one, two or three facts each, targets and foils (Anderson 1974, experiment 1).
+
+    A row is one sentence. `reaction_time` is in seconds, `correct` says whether the answer is right. The numbers of participants and
+    trials are not the original's, which are not known here. Human data: 18 mean reaction times, as the ACT-R tutorial (unit 5) quotes
+    them; it quotes no error rates and no standard deviations.
+    """
+    factors = {"probe": ("target", "foil"), "location_fan": (1, 2, 3), "person_fan": (1, 2, 3)}
+    return Design(
+        model="fan_effect.py",
+        factors=factors,
+        groups={"all": Group(participants=20)},
+        trials=10,
+        measures=("reaction_time", "correct"),
+        human="fan_effect",
+    )
