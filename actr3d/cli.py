@@ -7,7 +7,7 @@ import inspect
 import os
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
@@ -250,6 +250,30 @@ def _parser() -> argparse.ArgumentParser:
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
     experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
+    fit = commands.add_parser(
+        "fit",
+        help="fit parameters of a model to data",
+        description="Fits parameters of a model to means of human data, with intervals. The candidates stay in the folder: a fit that was "
+        "stopped continues there.",
+    )
+    fit.add_argument("name", metavar="NAME|FILE", help="a design, or a file with one")
+    fit.add_argument("--parameter", action="append", default=[], metavar="NAME=LOW..HIGH", help="a parameter, and the range to search")
+    fit.add_argument("--target", metavar="NAME|FILE", help="human data (default: those that the design names)")
+    fit.add_argument("--measure", metavar="NAME", help="the measure to fit, if the data have several")
+    fit.add_argument("--candidates", type=_count, default=40, metavar="N", help="number of candidates (default 40)")
+    fit.add_argument(
+        "--hold-out", action="append", default=[], metavar="DESIGN", help="compare another design with its data, not fitted to"
+    )
+    fit.add_argument("--ablate", action="append", default=[], metavar="NAME=VALUE", help="show the fit with this part changed")
+    fit.add_argument("--recover", type=_count, default=0, metavar="N", help="estimate the known parameters of N simulated data sets")
+    fit.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
+    fit.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
+    fit.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
+    fit.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
+    fit.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    fit.add_argument("--out", metavar="FOLDER", help="the folder for the candidates and the result")
+    fit.add_argument("--json", action="store_true", help="print one JSON object a line")
+    fit.set_defaults(function=_fit)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
@@ -278,28 +302,52 @@ def _bench(options: argparse.Namespace) -> int:
 
 
 def _experiment(options: argparse.Namespace) -> int:
-    try:
-        from actr3d.experiment import command
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.startswith("actr3d"):
-            raise
-        print(f"actr3d experiment: needs the package '{error.name}'; install: pip install 'actr3d[experiment]'", file=sys.stderr)
-        return 2
-    out = command.Output(json=options.json)
-    try:
+    def work(command: Any) -> int:
+        out = command.Output(json=options.json)
         if options.name is None:
             return command.list_designs(out)
         if options.trial is not None or options.record is not None:
             if options.trial is None or options.record is None:
                 raise SettingError("--trial ID and --record RECORDING are given together")
             return command.run_again(options.name, options.trial, options.record, out)
-        numbers: dict[str, Any] = {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
+        numbers = _numbers(options)
         if options.check:
             return command.check(options.name, out, **numbers)
         how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
         if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
             return command.show_state(options.name, out)
         return command.run(options.name, out, folder=options.out, **numbers, **how)
+
+    return _with_experiments(options, work)
+
+
+def _fit(options: argparse.Namespace) -> int:
+    def work(command: Any) -> int:
+        same = ("target", "measure", "candidates", "hold_out", "ablate", "recover", "workers", "scheduler")
+        given = {name: getattr(options, name) for name in same}
+        out = command.Output(json=options.json)
+        return command.fit(options.name, out, ranges=options.parameter, folder=options.out, **_numbers(options), **given)
+
+    return _with_experiments(options, work)
+
+
+def _numbers(options: argparse.Namespace) -> dict[str, Any]:
+    """Returns the options that change a design."""
+    return {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
+
+
+def _with_experiments(options: argparse.Namespace, work: Callable[[Any], int]) -> int:
+    """Does work with the module of the commands for experiments, whose packages may not be installed; returns the exit code."""
+    try:
+        from actr3d.experiment import command
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("actr3d"):
+            raise
+        text = f"needs the package '{error.name}'; install: pip install 'actr3d[experiment]'"
+        print(f"actr3d {options.command}: {text}", file=sys.stderr)
+        return 2
+    try:
+        return work(command)
     except (SettingError, DesignError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -97,11 +97,16 @@ def existing_cluster(address: str) -> Generator[Any]:
     """
     with dask.config.set(SETTINGS):
         try:
-            client = Client(scheduler_file=address, timeout=PATIENCE) if os.path.isfile(address) else Client(address, timeout=PATIENCE)  # noqa: PTH113
+            client: Any = Client(scheduler_file=address, timeout=PATIENCE) if os.path.isfile(address) else Client(address, timeout=PATIENCE)  # noqa: PTH113
         except (OSError, TimeoutError, ValueError, ImportError, RuntimeError) as error:
             raise ExperimentError(f"--scheduler: no scheduler answers at '{address}' ({error or type(error).__name__})") from None
         with client:
-            yield client
+            try:
+                yield client
+            finally:
+                if client.status == "running":
+                    with suppress(Exception):
+                        client.run(end_processes, on_error="ignore")
 
 
 def run_experiment(
@@ -129,12 +134,7 @@ def run_experiment(
     with store.only_writer():
         left = store.missing(total)
         run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures)
-        try:
-            run.all(left)
-        finally:
-            if client.status == "running":
-                with suppress(Exception):
-                    client.run(end_processes, experiment.specification.to_json(), on_error="ignore")
+        run.all(left)
 
 
 class _Run:
@@ -233,7 +233,8 @@ def cluster_versions() -> dict[str, str]:
     return {**versions(), **{package: version(package) for package in PACKAGES}}
 
 
-_PROCESSES: dict[tuple[str, int], TrialProcess] = {}
+_PROCESSES: dict[int, TrialProcess] = {}
+"""The process of each thread of a worker."""
 _LOCK = threading.Lock()
 
 
@@ -257,22 +258,21 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     ]
     if different:
         raise ExperimentError(f"worker {address}: has other versions: {', '.join(different)}; install the same on both")
-    key = specification, threading.get_ident()
     with _LOCK:
-        process = _PROCESSES.setdefault(key, TrialProcess(specification))
+        process = _PROCESSES.setdefault(threading.get_ident(), TrialProcess())
     rows: list[tuple[int, Row, float]] = []
     for number in numbers:
         begin = time.perf_counter()
-        row = process.run(number, limit)
+        row = process.run(specification, number, limit)
         rows.append((number, row, time.perf_counter() - begin))
     return Batch(rows=rows, worker=address, about=process.about)
 
 
-def end_processes(specification: str) -> None:
-    """Ends the processes of a worker that run trials of an experiment."""
+def end_processes() -> None:
+    """Ends the processes of a worker that run trials."""
     with _LOCK:
-        for key in [key for key in _PROCESSES if key[0] == specification]:
-            _PROCESSES.pop(key).end()
+        while _PROCESSES:
+            _PROCESSES.popitem()[1].end()
 
 
 def _worker_name() -> str:

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -79,11 +79,11 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     """
     experiment = specify(name, participants=participants, trials=trials, values=values)
     design, total = experiment.design, len(experiment.design)
-    process = TrialProcess(experiment.specification.to_json())
+    process, text = TrialProcess(), experiment.specification.to_json()
     try:
-        process.run(0, design.limit)  # the first one includes the start of the process
+        process.run(text, 0, design.limit)  # the first one includes the start of the process
         begin = time.perf_counter()
-        row = process.run(min(1, total - 1), design.limit)
+        row = process.run(text, min(1, total - 1), design.limit)
         seconds = time.perf_counter() - begin
     finally:
         process.end()
@@ -161,6 +161,77 @@ def run(
             out.line(f"stopped after {store.count:,} of {total:,} trials; continue with: actr3d experiment {store.folder} --resume")
             return 130
         return 1 if store.failures else 0
+
+
+def fit(
+    name: str,
+    out: Output,
+    *,
+    ranges: Sequence[str],
+    target: str | None,
+    measure: str | None,
+    candidates: int,
+    hold_out: Sequence[str],
+    ablate: Sequence[str],
+    recover: int,
+    values: Mapping[str, Any],
+    participants: int | None = None,
+    trials: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    folder: str | None = None,
+) -> int:
+    """Fits parameters of a model to means, or continues a fit that is in the folder; returns the exit code.
+
+    Raises:
+        ExperimentError: If the fit cannot be set up or run.
+        Exception: Any error that the files of the design and of the model themselves raise.
+    """
+    from actr3d.experiment.fit import Fit, Range, to_json
+    from actr3d.experiment.human_data import PublishedMean, load_means
+
+    def means(design: str, of: str | None) -> tuple[PublishedMean, ...]:
+        experiment = specify(design)
+        data = of or experiment.design.human
+        if data is None:
+            raise ExperimentError(f"design '{design}': names no human data; give --target FILE")
+        found = load_means(data, [parameter.name for parameter in experiment.parameters] + [*experiment.design.factors])
+        wanted = tuple(one for one in found if measure in (None, one.measure))
+        if not wanted:
+            raise ExperimentError(f"'{data}': has no means of '{measure}'; it has: {', '.join(sorted({one.measure for one in found}))}")
+        return wanted
+
+    path = Path(folder or f"fit {Path(name).stem}")
+    wanted = means(name, target)
+    held_out = {design: means(design, None) for design in hold_out}
+    options = {"values": values, "participants": participants, "trials": trials}
+    with local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client:
+        last = [""]
+
+        def show(what: str, state: State) -> None:
+            out.event("progress", {"what": what, **asdict(state)})
+            if what != last[0]:
+                last[0] = what
+                out.line(what)
+
+        path.mkdir(parents=True, exist_ok=True)
+        running = Fit(name, [Range.from_text(text) for text in ranges], wanted, path, client, options=options, show=show)
+        result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
+    (path / "fit.json").write_text(to_json(result), encoding="utf-8")
+    out.event("fit", asdict(result))
+    out.line(f"\n[bold]fitted[/bold] to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
+    for one in result.parameters:
+        low, high = ("not determined" if bound is None else f"{bound:g}" for bound in (one.low, one.high))
+        out.line(f"  {one.name} = {one.value:g}   95 % interval: {low} to {high}")
+    for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
+        for what, found in agreements.items():
+            r2 = "none" if found.r2 is None else f"{found.r2:.3f}"
+            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r2 {r2}, {found.cells} means")
+    for number, one in enumerate(result.recovered, start=1):
+        pairs = ", ".join(f"{each.name} {one[f'true {each.name}']:g} found as {one[each.name]:g}" for each in result.parameters)
+        out.line(f"simulated data {number}: {pairs}")
+    out.line(f"result: {path / 'fit.json'}")
+    return 0
 
 
 def show_state(folder: str, out: Output) -> int:

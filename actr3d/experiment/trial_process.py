@@ -1,7 +1,7 @@
 """A process of its own for the trials of a worker, which can be ended when a trial hangs.
 
-`TrialProcess` starts `python -m actr3d.experiment.trial_process`. Both sides write lines of JSON: first the specification of the
-experiment, then the number of a trial; each is answered by one line.
+`TrialProcess` starts `python -m actr3d.experiment.trial_process`. Both sides write lines of JSON: the specification of an
+experiment, then the numbers of its trials, then perhaps another specification; each is answered by one line.
 """
 
 from __future__ import annotations
@@ -29,23 +29,19 @@ ATTEMPTS = 3
 
 
 class TrialProcess:
-    """Runs trials in a process of its own.
+    """Runs trials in a process of its own."""
 
-    Args:
-        specification: The experiment, as JSON.
-    """
-
-    def __init__(self, specification: str) -> None:
-        self._specification = specification
+    def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._limit = START
+        self._loaded: str | None = None
         self.about: dict[str, dict[str, str | None]] = {}
-        """Units and meanings of columns, as far as they are known."""
+        """Units and meanings of columns of the loaded experiment, as far as they are known."""
 
-    def run(self, number: int, limit: float) -> Row:
+    def run(self, specification: str, number: int, limit: float) -> Row:
         """Runs a trial, and returns what `run_trial` does; a trial that has to be ended, or ends its own process, has no measures.
 
         Args:
+            specification: The experiment, as JSON.
             number: The number of the trial.
             limit: Its maximum wall time [s].
 
@@ -54,8 +50,7 @@ class TrialProcess:
         """
         code = ""
         for _ in range(ATTEMPTS):
-            if self._process is None:
-                self._start()
+            self._load(specification)
             try:
                 answer = self._ask(json.dumps(number), limit)
             except TimeoutError:
@@ -79,15 +74,20 @@ class TrialProcess:
                     with suppress(OSError):
                         pipe.close()
 
-    def _start(self) -> None:
-        # The order of sets of texts is the same in every process.
-        environment = {**os.environ, "PYTHONHASHSEED": "0"}
-        command = [sys.executable, "-m", "actr3d.experiment.trial_process"]
-        self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True, bufsize=0
-        )
+    def _load(self, specification: str) -> None:
+        """Starts the process if there is none, and loads an experiment there if it is not the loaded one."""
+        if self._process is None:
+            # The order of sets of texts is the same in every process.
+            environment = {**os.environ, "PYTHONHASHSEED": "0"}
+            command = [sys.executable, "-m", "actr3d.experiment.trial_process"]
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True, bufsize=0
+            )
+        elif specification == self._loaded:
+            return
+        self._loaded, self.about = None, {}
         try:
-            answer = self._ask(json.dumps(self._specification), START)
+            answer = self._ask(json.dumps(specification), START)
         except TimeoutError:
             self.end()
             raise ExperimentError(f"the experiment did not load within {START:g} s") from None
@@ -96,6 +96,7 @@ class TrialProcess:
         if "failed" in answer:
             self.end()
             raise ExperimentError(answer["failed"])
+        self._loaded = specification
 
     def _ask(self, line: str, limit: float) -> Any:
         """Sends a line and returns the answer; None if the process has ended.
@@ -145,42 +146,48 @@ def main() -> None:
 
 
 def _answer(questions: BinaryIO, answers: BinaryIO) -> None:
-    try:
-        specification = Specification.from_json(json.loads(questions.readline()), "experiment")
-        with specification.sealed() as helpers:
-            experiment = Experiment(specification, helpers)
-            answers.write(b"{}\n")
-            asked, described = _Questions(questions), 0
-            while True:
-                row = run_trial(experiment, experiment.design.trial(asked.next()), helpers)
-                news = experiment.about if len(experiment.about) > described else {}
-                described = len(experiment.about)
-                answers.write(json.dumps({"row": row, "about": news}, allow_nan=False).encode() + b"\n")
-    except BrokenPipeError:
-        raise
-    except Exception as error:  # noqa: BLE001 - the client reports it
-        answers.write(json.dumps({"failed": traceback_report(error).text.strip()}).encode() + b"\n")
+    """Answers with what `run_trial` returns, or with the error of an experiment that cannot be loaded."""
+    asked = _Questions(questions)
+    question: str | int = asked.next()
+    while True:
+        try:
+            assert isinstance(question, str), "the first question is an experiment"
+            specification = Specification.from_json(question, "experiment")
+            with specification.sealed() as helpers:
+                experiment = Experiment(specification, helpers)
+                answers.write(b"{}\n")
+                described = 0
+                while isinstance(question := asked.next(), int):
+                    row = run_trial(experiment, experiment.design.trial(question), helpers)
+                    news = experiment.about if len(experiment.about) > described else {}
+                    described = len(experiment.about)
+                    answers.write(json.dumps({"row": row, "about": news}, allow_nan=False).encode() + b"\n")
+        except BrokenPipeError:
+            raise
+        except Exception as error:  # noqa: BLE001 - the client reports it, and ends this process
+            answers.write(json.dumps({"failed": traceback_report(error).text.strip()}).encode() + b"\n")
+            question = asked.next()
 
 
 class _Questions:
-    """Reads the numbers of trials in a thread, and ends this process at once when the client is gone."""
+    """Reads experiments and numbers of trials in a thread, and ends this process at once when the client is gone."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
         self._there = threading.Condition()
-        self._numbers: list[int] = []
+        self._waiting: list[str | int] = []
         threading.Thread(target=self._read, daemon=True).start()
 
-    def next(self) -> int:
-        """Waits for the next number and returns it."""
+    def next(self) -> str | int:
+        """Waits for the next question and returns it."""
         with self._there:
-            self._there.wait_for(lambda: self._numbers)
-            return self._numbers.pop(0)
+            self._there.wait_for(lambda: self._waiting)
+            return self._waiting.pop(0)
 
     def _read(self) -> None:
         for line in self._file:
             with self._there:
-                self._numbers.append(json.loads(line))
+                self._waiting.append(json.loads(line))
                 self._there.notify()
         os._exit(0)
 

@@ -26,10 +26,10 @@ from tests.helpers.experiments import COUNTER, write_experiment
 def rows_of(path: Path, **values: Any) -> list[dict[str, Any]]:
     """Runs all trials of a design in one process, without a cluster."""
     experiment = specify(str(path), values=values)
-    process = TrialProcess(experiment.specification.to_json())
+    process, text = TrialProcess(), experiment.specification.to_json()
     try:
         trials = experiment.design.table()
-        return [{**trial.columns, **process.run(trial.number, experiment.design.limit)} for trial in trials]
+        return [{**trial.columns, **process.run(text, trial.number, experiment.design.limit)} for trial in trials]
     finally:
         process.end()
 
@@ -85,13 +85,13 @@ def test_what_a_model_prints_does_not_mix_with_the_rows(tmp_path: Path) -> None:
 
 def test_a_process_that_somebody_ends_is_started_again(tmp_path: Path) -> None:
     experiment = specify(str(write_experiment(tmp_path)))
-    process = TrialProcess(experiment.specification.to_json())
+    process, text = TrialProcess(), experiment.specification.to_json()
     try:
-        first = process.run(0, 60)
+        first = process.run(text, 0, 60)
         child = subprocess.run(["pgrep", "-P", str(os.getpid()), "-f", "trial_process"], capture_output=True, text=True).stdout.split()
         assert len(child) == 1
         os.kill(int(child[0]), signal.SIGKILL)
-        assert process.run(0, 60) == first
+        assert process.run(text, 0, 60) == first
     finally:
         process.end()
 
@@ -102,9 +102,9 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
         "import sys, threading\n"
         "from actr3d.experiment.specification import specify\n"
         "from actr3d.experiment.trial_process import TrialProcess\n"
-        "p = TrialProcess(specify(sys.argv[1]).specification.to_json())\n"
+        "p = TrialProcess()\n"
         "print('ready', flush=True)\n"
-        "p.run(0, 600)\n"
+        "p.run(specify(sys.argv[1]).specification.to_json(), 0, 600)\n"
     )
     worker = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE)
     assert worker.stdout is not None
@@ -162,18 +162,18 @@ def test_helper_modules_of_model_and_design_travel_with_the_specification(tmp_pa
     assert set(specification.design.helpers) == {"levels"}
     for file in tmp_path.rglob("*.py"):
         file.unlink()
-    process = TrialProcess(specification.to_json())
+    process, text = TrialProcess(), specification.to_json()
     try:
-        assert [process.run(number, 60)["rt"] for number in range(3)] == [7, 7, 7]
+        assert [process.run(text, number, 60)["rt"] for number in range(3)] == [7, 7, 7]
     finally:
         process.end()
 
 
 def test_a_trial_of_a_body_has_the_fields_of_its_result_and_their_units(tmp_path: Path) -> None:
     experiment = specify("warren_whang_1987", participants=1, trials=1, values={"aperture": 0.45, "condition": "fast"})
-    process = TrialProcess(experiment.specification.to_json())
+    process, text = TrialProcess(), experiment.specification.to_json()
     try:
-        row = process.run(0, 60)
+        row = process.run(text, 0, 60)
         assert row["outcome"] == "passed"
         assert 30 < row["wall_angle_deg"] < 60
         assert process.about["clearance_left_m"]["unit"] == "m"

@@ -1,0 +1,429 @@
+"""Fits parameters of a model to data, and says how well they are determined.
+
+Candidates are proposed by Optuna's TPE sampler. Each candidate is an experiment of its own, with the same seeds as all others, so
+that the misfit is a function of the parameters alone. The candidates and their rows stay in the folder: a fit that was killed
+continues where it was, and gives the same result.
+
+Around the best candidate, the sum of squared differences is described by a quadratic surface. It gives every second candidate (its
+minimum), the intervals of the parameters (profile likelihood, normal errors of unknown variance) and the estimates of parameter recovery.
+Source: Raue et al. (2009), Bioinformatics 25(15), for profile likelihoods.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import random
+import warnings
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from statistics import fmean
+from typing import Any, cast
+
+import numpy as np
+import optuna
+from numpy.typing import NDArray
+from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
+
+from actr3d.configuration import Configuration
+from actr3d.errors import ExperimentError, did_you_mean
+from actr3d.experiment.cluster import Progress, run_experiment
+from actr3d.experiment.human_data import PublishedMean
+from actr3d.experiment.specification import Experiment, specify
+from actr3d.experiment.store import SPECIFICATION, Store
+
+STARTING = 10
+"""The number of candidates that are drawn evenly before any are proposed."""
+RISE: float = cast("Any", chi2).ppf(0.95, 1)
+"""By how much -2 log likelihood rises at the bounds of an interval of 95 %."""
+GRID = 201
+"""The number of values of each parameter at which the surface of one or two parameters is evaluated; fewer for more parameters."""
+
+Cell = tuple[tuple[str, Any], ...]
+"""The conditions of a mean: names of columns and their values."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range(Configuration):
+    """The range in which a parameter is fitted."""
+
+    name: str
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        """Checks the range.
+
+        Raises:
+            ConfigurationError: If a bound is not a number.
+            ExperimentError: If the range is empty.
+        """
+        super().__post_init__()
+        if self.low >= self.high:
+            raise ExperimentError(f"--parameter {self.name}: must be a range LOW..HIGH with LOW < HIGH (got {self.low:g}..{self.high:g})")
+
+    @classmethod
+    def from_text(cls, text: str) -> Range:
+        """Returns the range that `NAME=LOW..HIGH` describes.
+
+        Raises:
+            ExperimentError: If the text has another form.
+        """
+        name, equals, bounds = text.partition("=")
+        low, dots, high = bounds.partition("..")
+        try:
+            if not equals or not dots:
+                raise ValueError
+            return cls(name=name.strip(), low=float(low), high=float(high))
+        except ValueError:
+            raise ExperimentError(f"--parameter: must be NAME=LOW..HIGH (got {text!r})") from None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Agreement:
+    """How well a model's means agree with a target's."""
+
+    cells: int
+    """The number of means that are compared."""
+    rmse: float
+    """The root mean square difference, in the unit of the measure."""
+    r2: float | None
+    """The square of the correlation; None if there is none."""
+    rows: tuple[dict[str, Any], ...] = ()
+    """Each mean: its conditions, `target` and `model`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitted:
+    """A fitted parameter."""
+
+    name: str
+    value: float
+    """The value of the best candidate."""
+    low: float | None
+    """The lower bound of its interval; None if the data do not determine it within the range that was searched."""
+    high: float | None
+    """The upper bound."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitResult:
+    """The result of a fit."""
+
+    design: str
+    measure: str
+    parameters: tuple[Fitted, ...]
+    fit: Agreement
+    """The agreement with the target that the parameters were fitted to."""
+    candidates: int
+    held_out: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
+    """The agreement with targets that the parameters were not fitted to, by design."""
+    ablated: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
+    """The agreement with the target if one part of the model is changed, by `NAME=VALUE`."""
+    recovered: tuple[dict[str, float], ...] = ()
+    """For each simulated data set, the true value of each parameter (`true NAME`) and its estimate (`NAME`)."""
+
+
+class Fit:
+    """A fit of parameters to means.
+
+    Args:
+        design: The name or file of the design.
+        ranges: The parameters and their ranges.
+        target: The means to fit, of one measure.
+        folder: Where candidates are kept.
+        client: The cluster.
+        options: `values`, `participants` and `trials` for `specify`.
+        seed: The seed of the proposals.
+        show: Called with the number of a candidate and the progress of its trials.
+
+    Raises:
+        ExperimentError: If nothing can be fitted.
+        DesignError: If the design, or the range of a parameter, does not fit the model.
+    """
+
+    def __init__(
+        self,
+        design: str,
+        ranges: Sequence[Range],
+        target: Sequence[PublishedMean],
+        folder: Path,
+        client: Any,
+        *,
+        options: Mapping[str, Any] | None = None,
+        seed: int = 1,
+        show: Callable[[str, Progress], object] = lambda _name, _progress: None,
+    ) -> None:
+        self._design, self._ranges, self._folder, self._client = design, tuple(ranges), folder, client
+        self._options: dict[str, Any] = {"values": {}, "participants": None, "trials": None, **(options or {})}
+        self._seed, self._show = seed, show
+        if not ranges:
+            raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
+        self.target = cells_of_target(target)
+        self.measure = target[0].measure
+        for ends in itertools.product(*((one.low, one.high) for one in ranges)):
+            self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
+        self._points: list[dict[str, float]] = []
+        self._means: list[dict[Cell, float]] = []
+
+    @property
+    def _names(self) -> list[str]:
+        return [one.name for one in self._ranges]
+
+    def run(
+        self,
+        candidates: int,
+        *,
+        hold_out: Mapping[str, Sequence[PublishedMean]] | None = None,
+        ablate: Sequence[str] = (),
+        recover: int = 0,
+    ) -> FitResult:
+        """Fits the parameters, and returns the result.
+
+        Args:
+            candidates: The number of candidates.
+            hold_out: Other designs, and what they are compared with.
+            ablate: Changes of the model, `NAME=VALUE`, whose effects are shown.
+            recover: The number of simulated data sets whose parameters are estimated.
+
+        Raises:
+            ExperimentError: If no candidate has all means of the target.
+        """
+        for number in range(candidates):
+            self._evaluate(number)
+        best = min(range(candidates), key=lambda number: rmse(self._means[number], self.target))
+        if not math.isfinite(rmse(self._means[best], self.target)):
+            raise ExperimentError(f"measure '{self.measure}': no candidate has a mean in all conditions of the target")
+        values = self._points[best]
+        surface = self._surface(self.target)
+        intervals = [surface.interval(axis) for axis in range(len(self._ranges))]
+        return FitResult(
+            design=self._design,
+            measure=self.measure,
+            parameters=tuple(
+                Fitted(name=one.name, value=values[one.name], low=_at(one, bounds[0]), high=_at(one, bounds[1]))
+                for one, bounds in zip(self._ranges, intervals, strict=True)
+            ),
+            fit=agreement(self._means[best], self.target),
+            candidates=candidates,
+            held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
+            ablated={change: self._ablated(change, values) for change in ablate},
+            recovered=tuple(self._recover(number) for number in range(recover)),
+        )
+
+    # -- candidates
+
+    def _propose(self, number: int) -> dict[str, float]:
+        """Returns a candidate; it follows from those before alone."""
+        if number < STARTING:
+            rng = random.Random(f"{self._seed} {number // STARTING}")
+            columns: dict[str, float] = {}
+            for one in self._ranges:  # a Latin hypercube: each tenth of each range once
+                order = list(range(STARTING))
+                rng.shuffle(order)
+                columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), 6)
+            return columns
+        if number % 2 == 0:
+            minimum = self._values_at(self._surface(self.target).minimum())
+            if minimum not in self._points:
+                return minimum
+        distributions: dict[str, Any] = {one.name: optuna.distributions.FloatDistribution(one.low, one.high) for one in self._ranges}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+            sampler = optuna.samplers.TPESampler(seed=self._seed * 100_003 + number, n_startup_trials=0, multivariate=True)
+        optuna.logging.set_verbosity(optuna.logging.WARNING)
+        study = optuna.create_study(sampler=sampler)
+        for point, means in zip(self._points, self._means, strict=True):
+            loss = rmse(means, self.target)
+            if math.isfinite(loss):
+                study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=loss))
+        return {name: round(value, 6) for name, value in study.ask(distributions).params.items()}
+
+    def _evaluate(self, number: int) -> None:
+        point = self._propose(number)
+        self._points.append(point)
+        self._means.append(self._simulate(f"candidate {number:04}", self._experiment(point)))
+
+    def _experiment(self, values: Mapping[str, Any], design: str | None = None) -> Experiment:
+        if design is not None:
+            return specify(design, values=values)
+        options = self._options
+        return specify(self._design, values={**options["values"], **values}, participants=options["participants"], trials=options["trials"])
+
+    def _simulate(self, name: str, experiment: Experiment) -> dict[Cell, float]:
+        """Runs an experiment, or continues it, and returns its means by cell."""
+        folder = self._folder / name
+        if (folder / SPECIFICATION).exists():
+            store = Store(folder)
+            if store.specification != experiment.specification:
+                raise ExperimentError(f"'{folder}': belongs to another fit; choose another --out")
+        else:
+            store = Store.create(folder, experiment.specification)
+        with store:
+            run_experiment(experiment, store, self._client, show=lambda progress: self._show(name, progress))
+            return cells_of_rows(store.rows(), self.measure, [name for name, _ in next(iter(self.target))])
+
+    def _surface(self, target: Mapping[Cell, float]) -> Surface:
+        """Returns the surface of the sums of squares of all candidates so far."""
+        points = [[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points]
+        return Surface(np.array(points), [len(target) * rmse(means, target) ** 2 for means in self._means], len(target))
+
+    def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
+        parts = zip(self._ranges, point.tolist(), strict=True)
+        return {one.name: round(one.low + part * (one.high - one.low), 6) for one, part in parts}
+
+    # -- other designs, other models, other data
+
+    def _held_out(self, name: str, target: Sequence[PublishedMean], values: Mapping[str, float]) -> Agreement:
+        cells = cells_of_target(target)
+        experiment = self._experiment(values, name)
+        folder = self._folder / f"hold-out {Path(name).stem}"
+        store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
+        with store:
+            run_experiment(experiment, store, self._client, show=lambda progress: self._show(f"hold-out {name}", progress))
+            means = cells_of_rows(store.rows(), target[0].measure, [column for column, _ in next(iter(cells))])
+        return agreement(means, cells)
+
+    def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
+        name, equals, text = change.partition("=")
+        if not equals:
+            raise ExperimentError(f"--ablate: must be NAME=VALUE (got {change!r})")
+        try:
+            value: Any = json.loads(text)
+        except ValueError:
+            value = text
+        return agreement(self._simulate(f"ablated {change}", self._experiment({**values, name: value})), self.target)
+
+    def _recover(self, number: int) -> dict[str, float]:
+        """Simulates data with known parameters, and estimates these from the candidates."""
+        rng = random.Random(f"{self._seed} recover {number}")
+        true = {one.name: round(rng.uniform(one.low, one.high), 6) for one in self._ranges}
+        experiment = self._experiment({**true, "seed": 1_000_000 + number})
+        simulated = self._simulate(f"simulated {number:04}", experiment)
+        target = {cell: simulated[cell] for cell in self.target if cell in simulated}
+        return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
+
+
+class Surface:
+    """A quadratic surface through the sums of squares of candidates near the best one.
+
+    Args:
+        points: The candidates, (n, p), each parameter from 0 to 1.
+        squares: Their sums of squared differences from the data; infinite for candidates without a value.
+        data: The number of data.
+    """
+
+    def __init__(self, points: NDArray[np.float64], squares: Sequence[float], data: int) -> None:
+        values = np.array(squares)
+        order = np.argsort(values, kind="stable")
+        order = order[np.isfinite(values[order])]
+        self._axes, self._data = points.shape[1], data
+        terms = (self._axes + 1) * (self._axes + 2) // 2
+        near = order[: max(2 * terms, len(order) // 2)]
+        self._least = max(float(values[order[0]]) if len(order) else 0.0, 1e-12)
+        design = self._terms(points[near])
+        # The best candidates weigh most: the surface need not be quadratic far from the minimum.
+        weights = self._least / (values[near] + self._least)
+        weighted = design.T * weights
+        self._weights = np.linalg.solve(weighted @ design + 1e-9 * np.eye(design.shape[1]), weighted @ values[near])
+
+    def _terms(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        products = [points[:, a] * points[:, b] for a in range(self._axes) for b in range(a, self._axes)]
+        return np.column_stack([np.ones(len(points)), points, *products])
+
+    def _grid(self) -> NDArray[np.float64]:
+        count = GRID if self._axes <= 2 else max(5, int(GRID ** (2 / self._axes)))
+        return np.array(list(itertools.product(*[np.linspace(0, 1, count)] * self._axes)))
+
+    def minimum(self) -> NDArray[np.float64]:
+        """Returns the point with the least sum of squares, (p,)."""
+        grid = self._grid()
+        return grid[int(np.argmin(self._terms(grid) @ self._weights))]
+
+    def interval(self, axis: int) -> tuple[float | None, float | None]:
+        """Returns the bounds of a parameter between which the profile likelihood is near its maximum; None where the range ends first."""
+        grid = self._grid()
+        losses = self._data * np.log(np.maximum(self._terms(grid) @ self._weights, self._least) / self._least)
+        values = np.unique(grid[:, axis])
+        profile = np.array([losses[grid[:, axis] == value].min() for value in values])
+        inside = values[profile - profile.min() <= RISE]
+        low, high = float(inside.min()), float(inside.max())
+        return None if low <= 0 else low, None if high >= 1 else high
+
+
+# -- means
+
+
+def cells_of_target(target: Sequence[PublishedMean]) -> dict[Cell, float]:
+    """Returns the means of a target by cell.
+
+    Raises:
+        ExperimentError: If there are none, they are of several measures, or two are of the same conditions.
+    """
+    measures = sorted({one.measure for one in target})
+    if len(measures) != 1:
+        raise ExperimentError(f"--target: must have means of one measure; choose it with --measure ({', '.join(measures) or 'none'})")
+    found: dict[Cell, float] = {}
+    for one in target:
+        cell = tuple(sorted(one.conditions.items()))
+        if cell in found:
+            raise ExperimentError(f"--target: has two means for {dict(cell)}")
+        found[cell] = one.mean
+    return found
+
+
+def cells_of_rows(rows: Any, measure: str, columns: Sequence[str]) -> dict[Cell, float]:
+    """Returns the means of a measure by cell, with participants as the unit: means of the participants' means.
+
+    Raises:
+        ExperimentError: If no row has the measure or a column.
+    """
+    found: defaultdict[Cell, defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
+    known: dict[str, Any] = {}
+    for row in rows:
+        known = row
+        value = row.get(measure)
+        if isinstance(value, (int, float)) and all(column in row for column in columns):
+            found[tuple(sorted((column, row[column]) for column in columns))][row["participant"]].append(float(value))
+    if not found:
+        wrong = next((name for name in (measure, *columns) if name not in known), measure)
+        raise ExperimentError(f"no trial has a value of '{wrong}'{did_you_mean(wrong, known)}; the columns are: {', '.join(known)}")
+    return {cell: fmean(fmean(values) for values in people.values()) for cell, people in found.items()}
+
+
+def rmse(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> float:
+    """Returns the root mean square difference; infinite if a mean is missing."""
+    if not target or any(cell not in means for cell in target):
+        return math.inf
+    return math.sqrt(fmean((means[cell] - mean) ** 2 for cell, mean in target.items()))
+
+
+def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agreement:
+    """Returns how well means agree with those of a target, in the conditions that both have.
+
+    Raises:
+        ExperimentError: If they have no conditions in common.
+    """
+    both = {cell: (mean, means[cell]) for cell, mean in target.items() if cell in means}
+    if not both:
+        raise ExperimentError("the design and the target have no conditions in common")
+    wanted, got = (np.array(values) for values in zip(*both.values(), strict=True))
+    varied = len(both) > 2 and wanted.std() > 0 and got.std() > 0
+    return Agreement(
+        cells=len(both),
+        rmse=float(np.sqrt(np.mean((wanted - got) ** 2))),
+        r2=float(np.corrcoef(wanted, got)[0, 1] ** 2) if varied else None,
+        rows=tuple({**dict(cell), "target": mean, "model": round(found, 6)} for cell, (mean, found) in both.items()),
+    )
+
+
+def to_json(result: FitResult) -> str:
+    """Returns the result as JSON."""
+    return json.dumps(asdict(result), indent=1, ensure_ascii=False)
+
+
+def _at(one: Range, part: float | None) -> float | None:
+    return None if part is None else round(one.low + part * (one.high - one.low), 6)

@@ -1,0 +1,152 @@
+"""Fits: parameters that are known are found again, with intervals; what is held out stays apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError
+from actr3d.experiment.cluster import local_cluster
+from actr3d.experiment.fit import Fit, Range, Surface, agreement, cells_of_target
+from actr3d.experiment.human_data import PublishedMean
+
+LINE = """
+x = 1
+slope = 2.0
+offset = 0.5
+noise = 0.1
+
+from actr3d.actr import *
+from actr3d.experiment import Design, Group, design
+
+
+class Draw(ACTR):
+    goal = Buffer()
+
+    def init():
+        goal.set("draw")
+
+    def draw(goal="draw"):
+        self.value = slope * x + offset + noise * self.random.gauss(0, 1)
+        goal.set("done")
+
+
+model = Draw()
+model.run()
+y = model.value
+
+
+@design
+def line():
+    '''A line through noise.'''
+    return Design(factors={"x": [1, 2, 3, 4, 5]}, groups={"all": Group(participants=4)}, trials=3, measures=["y"])
+
+
+@design
+def steeper():
+    '''The same line, further on.'''
+    return Design(factors={"x": [10, 20, 30]}, groups={"all": Group(participants=4)}, trials=3, measures=["y"])
+"""
+TRUE = {"slope": 1.4, "offset": 1.0}
+
+
+@pytest.fixture(scope="module")
+def client() -> Generator[Any]:
+    with local_cluster(2) as found:
+        yield found
+
+
+def means(levels: tuple[int, ...]) -> tuple[PublishedMean, ...]:
+    return tuple(PublishedMean(conditions={"x": x}, measure="y", mean=TRUE["slope"] * x + TRUE["offset"]) for x in levels)
+
+
+def fit_of(tmp_path: Path, client: Any, *ranges: str, **options: Any) -> Fit:
+    (tmp_path / "line.py").write_text(LINE, encoding="utf-8")
+    parsed = [Range.from_text(text) for text in ranges or ("slope=0..3", "offset=0..2")]
+    return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", client, **options)
+
+
+def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) -> None:
+    fit = fit_of(tmp_path, client)
+    held_out = {f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))}
+    result = fit.run(24, hold_out=held_out, ablate=["slope=0"], recover=3)
+    slope, offset = result.parameters
+    assert slope.value == pytest.approx(1.4, abs=0.15)
+    assert offset.value == pytest.approx(1.0, abs=0.4)
+    assert slope.low is not None
+    assert slope.high is not None
+    assert slope.low < 1.4 < slope.high
+    assert slope.high - slope.low < 0.8
+    assert result.fit.rmse < 0.25
+    assert result.fit.cells == 5
+    (further,) = result.held_out.values()
+    assert further.cells == 3
+    assert further.rmse == pytest.approx(abs(slope.value - 1.4) * math.sqrt(1400 / 3), abs=1)
+    assert result.ablated["slope=0"].rmse > 10 * result.fit.rmse
+    for one in result.recovered:
+        assert one["slope"] == pytest.approx(one["true slope"], abs=0.4)
+
+
+def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, client: Any) -> None:
+    (tmp_path / "a").mkdir()
+    whole = fit_of(tmp_path / "a", client).run(13)
+    first = fit_of(tmp_path / "a", client)
+    again = first.run(13)
+    assert again == whole
+    folders = sorted(path.name for path in (tmp_path / "a" / "fit").iterdir())
+    assert folders == [f"candidate {number:04}" for number in range(13)]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("slope", r"--parameter: must be NAME=LOW\.\.HIGH \(got 'slope'\)"),
+        ("slope=1", r"--parameter: must be NAME=LOW\.\.HIGH"),
+        ("slope=a..b", r"--parameter: must be NAME=LOW\.\.HIGH"),
+        ("slope=2..1", r"--parameter slope: must be a range LOW\.\.HIGH with LOW < HIGH \(got 2\.\.1\)"),
+    ],
+)
+def test_wrong_ranges_are_refused(text: str, says: str) -> None:
+    with pytest.raises(ExperimentError, match=says):
+        Range.from_text(text)
+
+
+def test_ranges_without_numbers_are_refused() -> None:
+    with pytest.raises((ExperimentError, ConfigurationError)):
+        Range.from_text("slope=nan..inf")
+
+
+def test_parameters_that_the_model_does_not_have_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(DesignError, match=r"--set slop: Design: the model has no parameter 'slop'; did you mean 'slope'"):
+        fit_of(tmp_path, None, "slop=0..1")
+
+
+def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> None:
+    fit = fit_of(tmp_path, client)
+    fit.measure = "z"
+    with pytest.raises(ExperimentError, match="no trial has a value of 'z'"):
+        fit.run(1)
+    two = (*means((1,)), PublishedMean(measure="z", mean=1))
+    with pytest.raises(ExperimentError, match=r"must have means of one measure; choose it with --measure \(y, z\)"):
+        cells_of_target(two)
+    with pytest.raises(ExperimentError, match="has two means for"):
+        cells_of_target(means((1, 1)))
+    with pytest.raises(ExperimentError, match="no conditions in common"):
+        agreement({(("x", 1),): 1.0}, {(("x", 2),): 1.0})
+
+
+def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
+    rng = np.random.default_rng(1)
+    points = rng.uniform(size=(60, 2))
+    squares = [1 + 30 * (x - 0.4) ** 2 for x, _ in points]
+    surface = Surface(points, squares, 10)
+    low, high = surface.interval(0)
+    half = math.sqrt((math.exp(3.84 / 10) - 1) / 30)
+    assert (low, high) == (pytest.approx(0.4 - half, abs=0.01), pytest.approx(0.4 + half, abs=0.01))
+    assert surface.interval(1) == (None, None)
+    assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
