@@ -138,7 +138,7 @@ def to_json(value: Any) -> str:
         line = json.dumps(value, ensure_ascii=False, allow_nan=False)
     except ValueError:
         line = json.dumps(_finite(value), ensure_ascii=False, allow_nan=False)
-    return _encodable(line)
+    return escape_surrogates(line)
 
 
 def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
@@ -152,12 +152,12 @@ def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
         line = _ENCODE(value)
     except (TypeError, ValueError, RecursionError):
         line = otherwise(value)
-    return _encodable(line)
+    return escape_surrogates(line)
 
 
-def _encodable(line: str) -> str:
-    """Returns JSON in which lone surrogates, which no encoding has, are written as JSON escapes."""
-    return line if line.isascii() else line.encode("utf-8", "backslashreplace").decode("utf-8")
+def escape_surrogates(text: str) -> str:
+    """Returns a text in which lone surrogates, which no encoding has, are written as escapes such as `\\ud800`; JSON has the same ones."""
+    return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def _finite(value: Any) -> Any:

@@ -17,10 +17,10 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
+from actr3d.values import escape_surrogates
 from workbench import recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
-from workbench.loader import sendable
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping
@@ -92,7 +92,7 @@ def _manual() -> ASGIApp:
 
 def _told(problem: str, status: int, headers: Mapping[str, str] | None = None) -> JSONResponse:
     """Returns a response that describes a problem; unpaired surrogate characters are written as escapes."""
-    return JSONResponse({"error": sendable(problem)}, status_code=status, headers=headers)
+    return JSONResponse({"error": escape_surrogates(problem)}, status_code=status, headers=headers)
 
 
 async def _refused(_: Request, error: Exception) -> JSONResponse:

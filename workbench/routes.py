@@ -12,9 +12,10 @@ from fastapi import Path as InPath
 from fastapi.responses import Response
 from pydantic import Field
 
+from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.files import ModelFile
-from workbench.loader import listing_of, sendable
+from workbench.loader import listing_of
 from workbench.outlines import outline_of
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
@@ -91,8 +92,8 @@ def sessions_of(request: Request) -> Sessions:
 def models(request: Request) -> dict[str, Any]:
     """Lists the model files; none of them is executed."""
     folder = sessions_of(request).folder
-    files = [{"path": sendable(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
-    return {"folder": sendable(str(folder.root)), "models": files}
+    files = [{"path": escape_surrogates(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
+    return {"folder": escape_surrogates(str(folder.root)), "models": files}
 
 
 @router.get("/model")

@@ -36,7 +36,7 @@ from workbench.worker.messages import (
     State,
     Where,
     framed,
-    whole,
+    shortened,
 )
 
 WIRE_LOST = 88
@@ -137,7 +137,9 @@ class Channel:
         lines: list[traceback.FrameSummary] = [] if frame is None else list(traceback.extract_stack(frame))
         folder = self.start.folder + os.sep
         own = [line for line in lines if line.filename == self.start.path or line.filename.startswith(folder)]
-        return At(file=whole(own[-1].filename), line=own[-1].lineno, function=whole(own[-1].name)) if own else At(file=None, line=None)
+        return (
+            At(file=shortened(own[-1].filename), line=own[-1].lineno, function=shortened(own[-1].name)) if own else At(file=None, line=None)
+        )
 
     def _check_wire(self) -> None:
         """Ends the process if the model has closed the connection: its number may belong to another file of the model by now."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from actr3d.errors import Actr3dError
 from actr3d.runner.traceback_report import traceback_report
 from workbench.worker.memory import relieve
-from workbench.worker.messages import Notice, notice, whole
+from workbench.worker.messages import Notice, notice, shortened
 
 _HERE = str(Path(__file__).parents[1])
 
@@ -23,7 +23,7 @@ def told_of(error: BaseException) -> str:
         return f"the model ended its process (SystemExit: {error.code})"
     try:
         text = str(error) if isinstance(error, Actr3dError) else traceback_report(error, _HERE).message
-        return whole(text) or type(error).__name__
+        return shortened(text) or type(error).__name__
     except MemoryError:
         return f"{type(error).__name__}, and not enough memory is left to say more"
 

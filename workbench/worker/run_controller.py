@@ -21,7 +21,7 @@ from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import told_of
 from workbench.worker.known_run import KnownRun, difference_notice
-from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
+from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, shortened
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
@@ -152,7 +152,7 @@ class RunController:
 
     def pause(self, reason: str) -> None:
         """Pauses the run."""
-        self.status, self.reason = "paused", whole(reason)
+        self.status, self.reason = "paused", shortened(reason)
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
@@ -161,7 +161,7 @@ class RunController:
         trace = self.run.trace
         news = trace.since(self._seen) if trace is not None and self.watch.of_events else []
         missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # the condition may be met at the very end
-        self.status, self.reason = status, whole(f"{reason}; {missed}" if missed else reason)
+        self.status, self.reason = status, shortened(f"{reason}; {missed}" if missed else reason)
         self._halt()
 
     def _finish_errors(self) -> None:
