@@ -289,20 +289,20 @@ def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
         value = ast.literal_eval(node)
     except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
         raise ValueError(ast.unparse(node)) from None
-    if not _can_be_told(value):
+    if not _fits_json(value):
         raise ValueError(ast.unparse(node))
     return value
 
 
-def _can_be_told(value: Any) -> bool:
+def _fits_json(value: Any) -> bool:
     """Returns whether JSON can represent a value."""
     if isinstance(value, float):
         return math.isfinite(value)
     if isinstance(value, str):
         return value == escape_surrogates(value)
     if isinstance(value, (list, tuple)):
-        return all(map(_can_be_told, cast("Sequence[Any]", value)))
+        return all(map(_fits_json, cast("Sequence[Any]", value)))
     if isinstance(value, dict):
         entries = cast("dict[Any, Any]", value)
-        return all(isinstance(key, str) and _can_be_told(key) and _can_be_told(each) for key, each in entries.items())
+        return all(isinstance(key, str) and _fits_json(key) and _fits_json(each) for key, each in entries.items())
     return value is None or isinstance(value, int)

@@ -102,7 +102,7 @@ def model(request: Request, path: InFolder) -> dict[str, Any]:
     sessions = sessions_of(request)
     file = sessions.folder.read(path)
     request.app.state.later(sessions.saved, sessions.folder.locate(path))  # the client may reload because the file has changed
-    return _told(file)
+    return _file_and_listing(file)
 
 
 @router.get("/model/version")
@@ -119,13 +119,13 @@ def save(request: Request, body: Save) -> dict[str, Any]:
     sessions = sessions_of(request)
     file = sessions.folder.save(body.path, body.text, body.version)
     request.app.state.later(sessions.saved, sessions.folder.locate(file.path))
-    return _told(file)
+    return _file_and_listing(file)
 
 
 @router.post("/model/duplicate")
 def duplicate(request: Request, body: Rename) -> dict[str, Any]:
     """Copies a model file."""
-    return _told(sessions_of(request).folder.copy(body.path, body.to))
+    return _file_and_listing(sessions_of(request).folder.copy(body.path, body.to))
 
 
 @router.post("/model/rename")
@@ -135,7 +135,7 @@ def rename(request: Request, body: Rename) -> dict[str, Any]:
     before = sessions.folder.locate(body.path)
     file = sessions.folder.rename(body.path, body.to)
     request.app.state.later(sessions.renamed, before, sessions.folder.locate(file.path), file.path)
-    return _told(file)
+    return _file_and_listing(file)
 
 
 @router.post("/model/delete")
@@ -159,7 +159,7 @@ async def check(request: Request, body: Check) -> dict[str, Any]:
     return {"problems": problems, "listing": asdict(listing)}
 
 
-def _told(file: ModelFile) -> dict[str, Any]:
+def _file_and_listing(file: ModelFile) -> dict[str, Any]:
     return {**asdict(file), "listing": asdict(listing_of(file.text, file.path))}
 
 

@@ -154,7 +154,7 @@ class Session:
                 return
             case Facts() if shown and message is not self.facts:
                 self.facts = message
-                self._tell_watchers(message)
+                self._notify_watchers(message)
                 self._changed(facts=True)
             case State() if shown:
                 self._take_state(message)
@@ -188,7 +188,7 @@ class Session:
             self._changed(facts=True)
         self.state = state
         self.state_version += 1
-        self._tell_watchers(state)
+        self._notify_watchers(state)
 
     def _attempt_of(self, worker: Worker) -> Attempt | None:
         """Returns the attempt whose worker this is; None if a newer attempt has replaced it."""
@@ -208,7 +208,7 @@ class Session:
         self._cuts.clear()
         if self._drawn:
             attempt.worker.send(Draw(kinds=self._drawn))
-        self._tell_watchers(facts)
+        self._notify_watchers(facts)
         self._changed(facts=True)
 
     def take_end(self, worker: Worker, ending: str) -> None:
@@ -283,7 +283,7 @@ class Session:
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
         await self.stop()
-        self._tell_watchers(None)
+        self._notify_watchers(None)
         tasks = list(self._tasks)
         if tasks:
             await asyncio.wait(tasks, timeout=1)
@@ -338,7 +338,7 @@ class Session:
     def show_overlay(self, name: str, shown: bool) -> None:
         """Shows or hides an overlay of the 3D view."""
         self.look = self.look.with_overlay(name, shown)
-        self._tell_watchers(self.look)
+        self._notify_watchers(self.look)
         self._changed(facts=True)
 
     async def ask(self, command: Command) -> Reply:
@@ -505,7 +505,7 @@ class Session:
         for feed in self.feeds:
             feed.wake()
 
-    def _tell_watchers(self, what: Facts | State | ViewSettings | None) -> None:
+    def _notify_watchers(self, what: Facts | State | ViewSettings | None) -> None:
         for watcher in self.watchers:
             watcher(what)
 

@@ -211,7 +211,7 @@ class Motor(WithParameters, Port):
             known(group, self._known().groups, plan.name, "muscle group")
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], place)
         if not groups and "stop" in plan.actuators:
-            self._tell("stop", place=place)
+            self._send_command("stop", place=place)
 
     def _need(self, word: str) -> None:
         """Checks that the body has a command.
@@ -468,7 +468,7 @@ class Motor(WithParameters, Port):
 
     def _send(self, orders: Iterable[Order], place: str) -> None:
         for word, values, named in orders:
-            self._tell(word, *values, named=named, place=place)
+            self._send_command(word, *values, named=named, place=place)
 
     # -- feeling
 

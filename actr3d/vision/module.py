@@ -201,7 +201,7 @@ class Vision(WithParameters, Searching):
             SimulationError: If the agent has no body.
         """
         angles = (number(value, f"vision '{self._path}': gaze: {name}") for name, value in (("left", left), ("up", up)))
-        self._tell("gaze", *map(math.radians, angles))
+        self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:
         """Begins a bottom-up search, or makes it wait; it replaces an earlier one."""
@@ -316,7 +316,7 @@ class Vision(WithParameters, Searching):
     def _turn_eye(self, search: Search, begun: int, left: float, up: float) -> None:
         """Turns the eye to the feature of a search, unless another search has replaced it."""
         if search is self._top_down and search.begun == begun:
-            self._tell("saccade", left, up)
+            self._send_command("saccade", left, up)
 
     # -- results
 

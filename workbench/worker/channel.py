@@ -47,7 +47,7 @@ MOST_BYTES = 50_000_000
 """The maximum size of these events [bytes]."""
 AT_ONCE = 2_000
 """The maximum number of events in one message."""
-MOST_TOLD = 1_000
+MOST_MESSAGES = 1_000
 """The maximum number of messages that wait to be sent; beyond it warnings are left out."""
 
 
@@ -153,7 +153,7 @@ class Channel:
         if isinstance(message, Notice) and self.events is not None:
             message = msgspec.structs.replace(message, events=self.events())
         with self._something:
-            if isinstance(message, Notice) and len(self._messages) >= MOST_TOLD and message.level != "error":
+            if isinstance(message, Notice) and len(self._messages) >= MOST_MESSAGES and message.level != "error":
                 return
             if isinstance(message, (Reply, At, Facts)) and self._state is not None:
                 self._flush_events()

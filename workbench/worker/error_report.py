@@ -15,7 +15,7 @@ UNFORESEEN = (Exception, SystemExit, KeyboardInterrupt)
 """All exceptions that a model may raise and that are reported to its author, but not those that end a run from outside."""
 
 
-def told_of(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Returns a short description of an error."""
     if isinstance(error, MemoryError):
         return "the model used more memory than it may"
@@ -34,7 +34,7 @@ def notice_of(error: BaseException) -> Notice:
         relieve()
     try:
         report = traceback_report(error, _HERE)
-        text = told_of(error).removeprefix(f"{report.file}:{report.line}: ")  # the notice has the position in separate fields
+        text = describe_error(error).removeprefix(f"{report.file}:{report.line}: ")  # the notice has the position in separate fields
         return notice("error", text, report.file, report.line, report.text)
     except MemoryError:
-        return notice("error", told_of(error))
+        return notice("error", describe_error(error))

@@ -19,7 +19,7 @@ from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
-from workbench.worker.error_report import told_of
+from workbench.worker.error_report import describe_error
 from workbench.worker.known_run import KnownRun, difference_notice
 from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, shortened
 from workbench.worker.names import lost_breakpoints
@@ -211,7 +211,7 @@ class RunController:
             self.channel.post(Reply(id=message.id))
             raise
         except Exception as error:  # noqa: BLE001 - any error is reported to the sender
-            self.channel.post(Reply(id=message.id, error=told_of(error)))
+            self.channel.post(Reply(id=message.id, error=describe_error(error)))
             return
         self.channel.post(Reply(id=message.id, result=to_json(result).encode()))
 
@@ -297,7 +297,7 @@ class RunController:
             drawn=run.drawn(self._drawn) if self._drawn else {},
         )
         with self._sending:
-            self._tell(state, trace)
+            self._send(state, trace)
 
     def show_busy(self) -> None:
         """Sends what happened before the model became busy, for example in an endless loop; the thread that listens to the server calls it.
@@ -311,9 +311,9 @@ class RunController:
                 return
             clock = self.run.clock
             time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
-            self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
+            self._send(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
-    def say_all(self, ends: bool) -> None:
+    def send_all(self, ends: bool) -> None:
         """Records and sends all events so far, from any thread of the model, as it may be about to end its process.
 
         Args:
@@ -328,7 +328,7 @@ class RunController:
             self.show_busy()
             self.channel.flush()
 
-    def _tell(self, state: State, trace: Trace | None) -> None:
+    def _send(self, state: State, trace: Trace | None) -> None:
         """Sends the server a state, and the events up to it that it does not have yet."""
         count = state.events
         on_its_thread = threading.current_thread() is threading.main_thread()  # otherwise the run may be in the middle of a tick

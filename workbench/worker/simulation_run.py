@@ -27,7 +27,7 @@ from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import ModelListing
-from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
+from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Branched, Facts
@@ -137,8 +137,8 @@ class SimulationRun:
             if controller.channel.left:
                 raise  # in a copy of the process that the model has made, which ends with it
             controller.channel.post(notice_of(error))
-            self._tell_failure(failure(error))
-            controller.end("failed", told_of(error))
+            self._record_failure(failure(error))
+            controller.end("failed", describe_error(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
         controller.passed()
@@ -253,7 +253,7 @@ class SimulationRun:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
         if self._failed:
-            self._tell_failure(None)
+            self._record_failure(None)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
@@ -285,7 +285,7 @@ class SimulationRun:
             raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
         return path
 
-    def _tell_failure(self, text: str | None) -> None:
+    def _record_failure(self, text: str | None) -> None:
         """Records the exception of the model; None if the run continues differently now."""
         self._failed = text is not None
         if self._recording is not None:

@@ -11,14 +11,14 @@ from actr3d.actr.chunks.chunk import PLAIN_TYPES
 
 
 @cache
-def _told_fields(kind: type[Any]) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind) if "untold" not in field.metadata)
+def _traced_fields(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind) if "not_traced" not in field.metadata)
 
 
 def plain_answer(answer: Any) -> Any:
     """Returns an answer as plain values, lists and dicts.
 
-    A frozen dataclass becomes a dict of its fields except those marked `UNTOLD`; an object with a `summary()`, such as a view,
+    A frozen dataclass becomes a dict of its fields except those marked `NOT_TRACED`; an object with a `summary()`, such as a view,
     becomes that.
     """
     kind = cast("type[Any]", type(answer))
@@ -27,7 +27,7 @@ def plain_answer(answer: Any) -> Any:
     if hasattr(answer, "summary"):
         return plain_answer(answer.summary())
     if is_dataclass(answer):
-        return {name: plain_answer(getattr(answer, name)) for name in _told_fields(kind)}
+        return {name: plain_answer(getattr(answer, name)) for name in _traced_fields(kind)}
     if isinstance(answer, Mapping):
         items = cast("Mapping[Any, Any]", answer).items()
         return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}

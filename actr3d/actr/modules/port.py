@@ -89,7 +89,7 @@ class Embodiment:
 class Port(Model):
     """A part of an agent that sends requests to the body and receives its answers."""
 
-    def _tell(self, word: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
+    def _send_command(self, word: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
         """Sends a command to the body, on behalf of the modeller's line at `place`, or of the one that is running."""
         named = {} if named is None else named
         embodiment = self._joined(word)
@@ -185,7 +185,7 @@ class BodyPort(Port):
         Raises:
             SimulationError: If the agent has no body, or is not converted yet.
         """
-        self._tell(word, *values, named=named)
+        self._send_command(word, *values, named=named)
 
     def get(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body for what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
