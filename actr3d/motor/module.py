@@ -213,15 +213,15 @@ class Motor(WithParameters, Port):
         if not groups and "stop" in plan.actuators:
             self._send_command("stop", place=place)
 
-    def _need(self, word: str) -> None:
+    def _need(self, command: str) -> None:
         """Checks that the body has a command.
 
         Raises:
             WorldError: If it does not.
         """
         plan = self._known().plan
-        if word not in plan.actuators:
-            raise WorldError(f"{plan.name} cannot {word}; its commands are: {', '.join(plan.actuators) or 'none'}")
+        if command not in plan.actuators:
+            raise WorldError(f"{plan.name} cannot {command}; its commands are: {', '.join(plan.actuators) or 'none'}")
 
     # -- limbs
 
@@ -467,8 +467,8 @@ class Motor(WithParameters, Port):
         return gait(walk, turn)
 
     def _send(self, orders: Iterable[Order], place: str) -> None:
-        for word, values, named in orders:
-            self._send_command(word, *values, named=named, place=place)
+        for command, values, named in orders:
+            self._send_command(command, *values, named=named, place=place)
 
     # -- feeling
 

@@ -228,8 +228,8 @@ class Vision(WithParameters, Searching):
         self._ask_for_view(search)
         return search
 
-    def _kept_private(self, word: str) -> str | None:
-        return "Vision(private_view=False)" if word == "view" and self.private_view else None
+    def _kept_private(self, sensor: str) -> str | None:
+        return "Vision(private_view=False)" if sensor == "view" and self.private_view else None
 
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")

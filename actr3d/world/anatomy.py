@@ -81,7 +81,7 @@ class Anatomy:
     """Its named movements."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Noise of sensors: the word and the standard deviation of every number of the reading, in its unit."""
+    """Noise of sensors: the name and the standard deviation of every number of the reading, in its unit."""
 
     steering: Steering | None = None
     """How it is driven; None if it is no vehicle."""

@@ -36,9 +36,9 @@ def plain_answer(answer: Any) -> Any:
     return answer.tolist() if hasattr(answer, "tolist") else repr(answer)
 
 
-def answer_slots(word: str, answer: Any) -> dict[str | int, Any]:
-    """Returns the slots of a chunk made from an answer: the word first, then the sensed values, by name or in order."""
-    slots: dict[str | int, Any] = {0: word}
+def answer_slots(sensor: str, answer: Any) -> dict[str | int, Any]:
+    """Returns the slots of a chunk made from an answer: the sensor's name first, then the sensed values, by name or in order."""
+    slots: dict[str | int, Any] = {0: sensor}
     if hasattr(answer, "summary"):  # such an object is too large for slots
         slots["seen"] = answer
     elif is_dataclass(answer):

@@ -122,7 +122,7 @@ class Mannequin(Configuration):
     """Greatest force of the legs [N]. Source: chosen; pushing while walking, people reach 200 to 400 N."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Noise of its sensors: the word and the standard deviation, in the reading's unit; sensors that are not named are exact."""
+    """Noise of its sensors: the name and the standard deviation, in the reading's unit; sensors that are not named are exact."""
 
     colour: Colour = (0.35, 0.47, 0.62, 1.0)
     """Of the clothes: red, green, blue, alpha in 0 to 1."""

@@ -27,7 +27,7 @@ class Proprioception:
     """Posture and movement of a body, in as few numbers as a motor module needs each tick."""
 
     positions: tuple[float, ...] = field(metadata=NOT_TRACED)
-    """Of all joints, in the order of the word `anatomy` [rad] or [m]. A recording has them in the physics state of the same tick."""
+    """Of all joints, in the order of the sensor `anatomy` [rad] or [m]. A recording has them in the physics state of the same tick."""
     moving: tuple[str, ...]
     """The joints that a command still moves, or tries to."""
     speed: tuple[float, float, float]
