@@ -215,9 +215,9 @@ def _parser() -> argparse.ArgumentParser:
         help="run a recording again",
         description="Runs a recording again: does every byte agree? It runs the code that the recording holds, with modules that "
         "are recorded or installed.",
-        epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, of "
-        "another form, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that ran it; "
-        "130 it was interrupted.",
+        epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, "
+        "of another format, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that "
+        "ran it; 130 it was interrupted.",
     )
     again.add_argument("file", metavar="RECORDING", help="the recording")
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")

@@ -99,9 +99,9 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
     return OpenFile(file, KINDS[form], f"{recording}.{form}")
 
 
-async def _made(request: Request, form: str, *paths: Path, **options: Any) -> FileIO:
+async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
     """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_wanted(sessions_of(request).readers.make(form, *paths, **options), lambda: gone(request.receive))
+    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), lambda: gone(request.receive))
 
 
 @router.get("/recordings/{recording}/curves")

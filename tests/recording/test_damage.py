@@ -173,7 +173,7 @@ FACTS = [
     ("INSERT INTO states VALUES (0, 1, x'00', x'00', x'')", "is damaged: "),
     ("CREATE VIEW more AS SELECT 1", "it has other tables than a recording"),
     ("DROP TABLE answers", "it has other tables than a recording"),
-    ("UPDATE facts SET value = '\"actr3d recording 2\"' WHERE name = 'form'", "it has another form: it says 'actr3d recording 2'"),
+    ("UPDATE facts SET value = '\"actr3d recording 2\"' WHERE name = 'form'", "it has another format: it says 'actr3d recording 2'"),
 ]
 
 

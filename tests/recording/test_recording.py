@@ -275,7 +275,7 @@ def test_what_is_no_recording_is_called_that(content: bytes | None, message: str
         Recorded(path)
 
 
-def test_a_recording_of_another_form_is_refused(tmp_path: Path) -> None:
+def test_a_recording_of_another_format_is_refused(tmp_path: Path) -> None:
     with Recording(tmp_path / "run", {"form": "actr3d recording 9"}):
         pass
     with pytest.raises(RecordingError, match="says 'actr3d recording 9', this version reads"):

@@ -45,8 +45,8 @@ class Start(Message, frozen=True, kw_only=True):
     folder: str = ""
     recordings: tuple[str, ...] = ()
     """The recordings to read."""
-    form: str = ""
-    """The kind of file to make: one of `workbench.forms`."""
+    export: str = ""
+    """The kind of file to make: one of `workbench.exports`."""
     to: str = ""
     """The path of the file to make."""
     settings: dict[str, Any] = {}

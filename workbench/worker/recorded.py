@@ -11,7 +11,7 @@ from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from actr3d.values import to_json
-from workbench.forms import FORMS
+from workbench.exports import EXPORTS
 from workbench.recording_index import summary_json, without_path
 from workbench.worker.channel import Channel
 from workbench.worker.memory import relieve
@@ -56,7 +56,7 @@ def make(channel: Channel) -> None:
         room = max(LEAST_ROOM, ROOM * sum(path.stat().st_size for path in paths))
         soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (room if soft == resource.RLIM_INFINITY else min(room, soft), hard))
-        FORMS[start.form](*paths, to, **start.settings)
+        EXPORTS[start.export](*paths, to, **start.settings)
         return str(to.stat().st_size).encode()
 
     channel.post(_answer(0, made, paths))
