@@ -74,7 +74,7 @@ def _errors(channel: Channel, controller: RunController) -> ModelOutput:
         if channel.left:  # a forked copy of the process sends nothing; its output goes the way of other processes
             with suppress(OSError):
                 os.write(2, f"{line}\n".encode(errors="replace"))
-        elif line.strip() and not controller.repeats:
+        elif line.strip() and not controller.catches_up:
             count += 1
             if count <= MOST_PRINTED:
                 channel.post(notice("info", line.rstrip()))

@@ -113,23 +113,23 @@ class ProgramRun:
                     self._recording.leave()
                 self._recording.close()
 
-    def _foresee(self) -> None:
+    def _show_recorded(self) -> None:
         """Shows the whole timeline of a recorded run that is run again."""
         recorded = self._controller.channel.start.recorded
         if recorded is not None:
             known_run = KnownRun(Path(recorded))
             self._furthest = max(self._furthest, known_run.time)
-            self._controller.know(known_run)
+            self._controller.repeat_recorded(known_run)
 
     def _introduce(self) -> None:
         """Informs the server that the run has begun; for a program that makes a simulation, once this simulation is at its start."""
         if not self._introduced:
             self._introduced = True
             self._send_facts()
-            self._controller.conduct(self)
+            self._controller.set_run(self)
             if self._shown is not None and self._shown.simulation.world.bodies:
                 self._controller.embodied()
-            self._foresee()
+            self._show_recorded()
             if self._listing.simulates:
                 self._controller.show()
                 self._controller.channel.flush()  # whatever the program does next, that it has begun is known

@@ -75,7 +75,7 @@ class RunController:
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
-    def conduct(self, run: ControlledRun) -> None:
+    def set_run(self, run: ControlledRun) -> None:
         """Sets the run to control; its names are known by now."""
         self.run = run
         self.channel.events = self._count
@@ -83,8 +83,8 @@ class RunController:
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.channel.post(lost)
 
-    def know(self, known_run: KnownRun) -> None:
-        """Sends all events of a recorded run before this run, which repeats it, has reached them."""
+    def repeat_recorded(self, known_run: KnownRun) -> None:
+        """Sends all events of a recorded run, which this run repeats, before this run has reached them."""
         with self._sending:
             self._known_run = known_run
             self._sent = known_run.count
@@ -92,12 +92,12 @@ class RunController:
             known_run.events = []
 
     @property
-    def relives(self) -> bool:
+    def repeats_recording(self) -> bool:
         """Whether the run repeats a recorded one and still agrees with it."""
         return self._known_run is not None
 
     @property
-    def repeats(self) -> bool:
+    def catches_up(self) -> bool:
         """Whether the run, after going back, is still before the furthest time that it had reached."""
         return self._reached > 0 and self.run.clock < self._reached
 

@@ -62,7 +62,7 @@ class SimulationRun:
         """At which tick the run is over, and why, once that is known."""
         self._failed = False
         self._known_run: KnownRun | None = None
-        """The recorded run that is lived through again."""
+        """The recorded run that is repeated."""
         self._simulation: Simulation
         self._shown: Shown
 
@@ -84,9 +84,9 @@ class SimulationRun:
                 self._controller.embodied()
             try:
                 self._controller.channel.post(self._facts(limits, parameters))
-                self._controller.conduct(self)
+                self._controller.set_run(self)
                 if self._known_run is not None:
-                    self._controller.know(self._known_run)
+                    self._controller.repeat_recorded(self._known_run)
                 self._controller.show()
                 self._controller.channel.flush()  # whatever the model does next, that it was built is known
                 while True:
@@ -240,15 +240,15 @@ class SimulationRun:
         before = 0 if trace is None else len(trace)
         ahead = self.furthest > self.clock
         at, until = seconds(self.clock), seconds(self.furthest)
-        relived = Path(self._start.recorded) if self._start.recorded is not None and self._controller.relives else None
-        branch = self._keep_branch(at, until, drop=drop) if ahead and relived is None else None
+        repeated = Path(self._start.recorded) if self._start.recorded is not None and self._controller.repeats_recording else None
+        branch = self._keep_branch(at, until, drop=drop) if ahead and repeated is None else None
         try:
             self._simulation.command(word, *values, body=body, **named)
         except BaseException:
             if branch is not None:
                 branch.unlink(missing_ok=True)  # nothing has changed
             raise
-        kept = branch or (relived if ahead else None)  # what is lived through again is kept by its own recording
+        kept = branch or (repeated if ahead else None)  # a repeated run is kept by its own recording
         if branch is not None:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
