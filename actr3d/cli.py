@@ -176,7 +176,7 @@ def _seconds(text: str) -> float:
     except ValueError:
         value = 0
     if not 0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"must be a number of seconds above 0 and below 1e9 (got {text})")
+        raise argparse.ArgumentTypeError(f"must be a number of seconds > 0 and < 1e9 (got {text})")
     return value
 
 
@@ -336,7 +336,7 @@ def _check_run(options: argparse.Namespace, words: list[str], arguments: list[st
     if file is None:
         options.parser.error("the following arguments are required: FILE")
     elif words and arguments.index(words[0]) < arguments.index(file):
-        options.parser.error(f"{words[0]} is no option of every run; those of the model file come after its name")
+        options.parser.error(f"{words[0]} is not an option of every run; those of the model file come after its name")
     options.words = words
 
 

@@ -104,7 +104,7 @@ async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     if first["type"] == "json_invalid":
-        return _error_response(f"the body is no JSON: {first['ctx']['error']} at character {first['loc'][-1]}", 400)
+        return _error_response(f"the body is not JSON: {first['ctx']['error']} at character {first['loc'][-1]}", 400)
     return _error_response(problem_of(first), 422)
 
 

@@ -142,7 +142,7 @@ class GeometricCamera:
         )
         if count < 0:
             name = names_of(self._mj_model, "geom")[-1 - count] or str(-1 - count)
-            raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is no number; did the physics diverge?")
+            raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is not a number; did the physics diverge?")
         return count
 
 

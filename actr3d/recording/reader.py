@@ -58,7 +58,7 @@ class Recorded:
             check_facts(self.facts)
         except (sqlite3.Error, ValueError, TypeError, RecursionError, RecordingError) as error:
             self._file.close()
-            raise RecordingError(f"'{path}' is no recording: {_words(error)}") from None
+            raise RecordingError(f"'{path}' is not a recording: {_words(error)}") from None
 
     def _begin(self) -> dict[str, str]:
         """Starts a read transaction on the file, which may be written meanwhile; returns the facts as JSON texts.
@@ -193,7 +193,7 @@ class Recorded:
             for run, tick, text in self._rows("commands"):
                 data = _parsed(text)
                 if run < 1 or tick < 0 or not _is_command(data):
-                    raise ValueError(f"{_short(data)} is no command")
+                    raise ValueError(f"{_short(data)} is not a command")
                 yield RecordedCommand(run, tick, data)
 
     def _things(self, table: str, size: int, kinds: tuple[type, ...]) -> Iterator[list[Any]]:

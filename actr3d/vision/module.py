@@ -197,7 +197,7 @@ class Vision(WithParameters, Searching):
             up: Above it [degrees].
 
         Raises:
-            WorldError: If one of them is no number.
+            WorldError: If one of them is not a number.
             SimulationError: If the agent has no body.
         """
         angles = (number(value, f"vision '{self._path}': gaze: {name}") for name, value in (("left", left), ("up", up)))

@@ -125,8 +125,8 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
     if not math.isfinite(given):
         raise WorldError(f"{what}: must be a finite number (got {value!r})")
     if not least <= given <= most:
-        bounds = f"{least:g} to {most:g}" if most < math.inf else f"at least {least:g}"
-        raise WorldError(f"{what}: must be {bounds} (got {value!r})")
+        bound = f">= {least:g}" if given < least else f"<= {most:g}"
+        raise WorldError(f"{what}: must be {bound} (got {value!r})")
     return given
 
 

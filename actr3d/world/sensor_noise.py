@@ -37,7 +37,7 @@ class SensorNoise:
             sd: The standard deviation in the reading's unit, or one for each field named.
 
         Raises:
-            WorldError: If a standard deviation is not a number from 0 on, or is for a field that the reading does not have.
+            WorldError: If a standard deviation is not a number >= 0, or is for a field that the reading does not have.
         """
         of = f"{self._name}: noise of {sensor}"
         checked = {_field(name, of): number(value, of, 0) for name, value in sd.items()} if isinstance(sd, Mapping) else number(sd, of, 0)

@@ -57,7 +57,7 @@ def _rows(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _cell(text: str) -> str:
-    """Returns a text for a cell of a table: bars do not end it, and units in brackets are no links."""
+    """Returns a text for a cell of a table: bars do not end it, and units in brackets are not links."""
     text = text.replace("|", "\\|")
     return text if text.startswith("`") else text.replace("[", "\\[")
 

@@ -58,7 +58,7 @@ def test_what_has_other_tables_is_no_recording(path: Path, script: str) -> None:
 def test_no_value_is_larger_than_can_be_read(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     altered(path, f"INSERT INTO facts VALUES ('large', '{'x' * 2_000_000}')")
     monkeypatch.setattr(opening, "LARGEST_VALUE", 1_000_000)
-    with pytest.raises(RecordingError, match="is no recording: string or blob too big"):
+    with pytest.raises(RecordingError, match="is not a recording: string or blob too big"):
         Recorded(path)
 
 

@@ -21,12 +21,12 @@ SURE = 0.74
 
 
 def check_patterns(production: Production) -> None:
-    """Warns about objects that are no patterns, and therefore match anything."""
+    """Warns about objects that are not patterns, and therefore match anything."""
     for name, pattern in production.pattern_specs.items():
         parts = cast("list[Any]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
         for part in parts:
             if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
-                _warn_likely(production, f"{name}={part!r} is no pattern and matches anything; write text, such as {name}='{part}'")
+                _warn_likely(production, f"{name}={part!r} is not a pattern and matches anything; write text, such as {name}='{part}'")
 
 
 def check_variables(production: Production) -> None:

@@ -97,9 +97,9 @@ class Car(Configuration):
         """
         super().__post_init__()
         if self.rear >= self.wheelbase:
-            raise ConfigurationError(f"Car.rear: must be less than the wheelbase of {self.wheelbase:g} m (got {self.rear!r})")
+            raise ConfigurationError(f"Car.rear: must be < the wheelbase of {self.wheelbase:g} m (got {self.rear!r})")
         if WAIST * self.size[2] <= CLEARANCE:
-            raise ConfigurationError(f"Car.size: its height must be more than {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
+            raise ConfigurationError(f"Car.size: its height must be > {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
 
     def anatomy(self) -> Anatomy:
         """Returns its description for a `Body`."""
