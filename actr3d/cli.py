@@ -176,7 +176,7 @@ def _seconds(text: str) -> float:
     except ValueError:
         value = 0
     if not 0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"must be a number of seconds above 0 and below 1e9 (got {text})")
+        raise argparse.ArgumentTypeError(f"must be a number of seconds > 0 and < 1e9 (got {text})")
     return value
 
 
@@ -215,9 +215,9 @@ def _parser() -> argparse.ArgumentParser:
         help="run a recording again",
         description="Runs a recording again: does every byte agree? It runs the code that the recording holds, with modules that "
         "are recorded or installed.",
-        epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, of "
-        "another form, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that ran it; "
-        "130 it was interrupted.",
+        epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, "
+        "of another format, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that "
+        "ran it; 130 it was interrupted.",
     )
     again.add_argument("file", metavar="RECORDING", help="the recording")
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
@@ -388,7 +388,7 @@ def _check_run(options: argparse.Namespace, words: list[str], arguments: list[st
     if file is None:
         options.parser.error("the following arguments are required: FILE")
     elif words and arguments.index(words[0]) < arguments.index(file):
-        options.parser.error(f"{words[0]} is no option of every run; those of the model file come after its name")
+        options.parser.error(f"{words[0]} is not an option of every run; those of the model file come after its name")
     options.words = words
 
 

@@ -30,7 +30,7 @@ def microseconds(seconds: float, what: str = "a time") -> int:
             return round(seconds * MICROSECONDS)
     except (TypeError, OverflowError):
         pass
-    raise SchedulerError(f"{what} must be a finite number of seconds (got {seconds!r})")
+    raise SchedulerError(f"{what}: must be a finite number of seconds (got {seconds!r})")
 
 
 def seconds(time: int) -> float:
@@ -80,7 +80,7 @@ class Ends:
             length += more
             left -= more
         if length < 0:
-            raise SchedulerError(f"the limit of a run must not be negative (got {duration!r} s)")
+            raise SchedulerError(f"the limit of a run: must be >= 0 (got {duration!r} s)")
         self._left = left
         self._at = end = now_us + length
         return end

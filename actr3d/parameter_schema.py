@@ -21,6 +21,7 @@ import annotated_types
 from actr3d.actr.kernel.source_code import parse
 from actr3d.configuration import Live
 from actr3d.errors import ConfigurationError
+from actr3d.values import escape_surrogates
 
 _UNIT = re.compile(r"\[([^\]]+)\]")
 _TAKES = {"float": "number", "int": "whole number", "str": "text", "bool": "switch"}
@@ -202,7 +203,7 @@ def parameters_in(tree: ast.Module, build: ast.FunctionDef | None) -> Iterator[P
     for node, below in zip(kind.body, [*kind.body[1:], ast.Pass()], strict=True) if kind is not None else ():
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             words = below.value.value if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) else ""
-            text = " ".join(sendable(inspect.cleandoc(words)).split()) if isinstance(words, str) else ""
+            text = " ".join(escape_surrogates(inspect.cleandoc(words)).split()) if isinstance(words, str) else ""
             unit = _UNIT.search(text)
             declared = _declared(Parameter(name=node.target.id, takes=""), node.annotation, constants)
             default = default_of(node.value, constants)
@@ -215,7 +216,7 @@ def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str
         try:
             return _declared(parameter, parse(annotation.value, mode="eval").body, constants)
         except (SyntaxError, ValueError):  # for example while it is being typed
-            return replace(parameter, takes=sendable(annotation.value))
+            return replace(parameter, takes=escape_surrogates(annotation.value))
     if isinstance(annotation, ast.BinOp) and isinstance(annotation.op, ast.BitOr):
         sides = [side for side in (annotation.left, annotation.right) if ast.unparse(side) != "None"]
         inner = _declared(parameter, (sides or [annotation.left])[0], constants)
@@ -288,25 +289,20 @@ def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
         value = ast.literal_eval(node)
     except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
         raise ValueError(ast.unparse(node)) from None
-    if not _can_be_told(value):
+    if not _fits_json(value):
         raise ValueError(ast.unparse(node))
     return value
 
 
-def _can_be_told(value: Any) -> bool:
+def _fits_json(value: Any) -> bool:
     """Returns whether JSON can represent a value."""
     if isinstance(value, float):
         return math.isfinite(value)
     if isinstance(value, str):
-        return value == sendable(value)
+        return value == escape_surrogates(value)
     if isinstance(value, (list, tuple)):
-        return all(map(_can_be_told, cast("Sequence[Any]", value)))
+        return all(map(_fits_json, cast("Sequence[Any]", value)))
     if isinstance(value, dict):
         entries = cast("dict[Any, Any]", value)
-        return all(isinstance(key, str) and _can_be_told(key) and _can_be_told(each) for key, each in entries.items())
+        return all(isinstance(key, str) and _fits_json(key) and _fits_json(each) for key, each in entries.items())
     return value is None or isinstance(value, int)
-
-
-def sendable(text: str) -> str:
-    """Returns a text that can be sent: unpaired surrogate characters, which no encoding has, become escapes."""
-    return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -33,7 +33,7 @@ MOST = 10_000
 """The maximum number of repeated lists in a record; beyond it, the value is a graph whose copy could grow without limit."""
 LONGEST = 14_000
 """The maximum size of a whole number that is written in decimals [bits]; JSON readers accept no longer ones."""
-UNTOLD: Mapping[str, bool] = MappingProxyType({"untold": True})
+NOT_TRACED: Mapping[str, bool] = MappingProxyType({"not_traced": True})
 """The metadata of a dataclass field that traces and recordings omit, because they have its value elsewhere."""
 
 _ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, check_circular=False).encode
@@ -138,7 +138,7 @@ def to_json(value: Any) -> str:
         line = json.dumps(value, ensure_ascii=False, allow_nan=False)
     except ValueError:
         line = json.dumps(_finite(value), ensure_ascii=False, allow_nan=False)
-    return _encodable(line)
+    return escape_surrogates(line)
 
 
 def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
@@ -152,12 +152,12 @@ def plain_to_json(value: Any, otherwise: Callable[[Any], str] = to_json) -> str:
         line = _ENCODE(value)
     except (TypeError, ValueError, RecursionError):
         line = otherwise(value)
-    return _encodable(line)
+    return escape_surrogates(line)
 
 
-def _encodable(line: str) -> str:
-    """Returns JSON in which lone surrogates, which no encoding has, are written as JSON escapes."""
-    return line if line.isascii() else line.encode("utf-8", "backslashreplace").decode("utf-8")
+def escape_surrogates(text: str) -> str:
+    """Returns a text in which lone surrogates, which no encoding has, are written as escapes such as `\\ud800`; JSON has the same ones."""
+    return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def _finite(value: Any) -> Any:

@@ -225,12 +225,12 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["run", "model.py", "--until", "-1"], "--until: must be a number of seconds above 0 and below 1e9 (got -1)"),
-        (["run", "model.py", "--until", "nan"], "above 0 and below 1e9 (got nan)"),
-        (["run", "model.py", "--until", "soon"], "above 0 and below 1e9 (got soon)"),
+        (["run", "model.py", "--until", "-1"], "--until: must be a number of seconds > 0 and < 1e9 (got -1)"),
+        (["run", "model.py", "--until", "nan"], "> 0 and < 1e9 (got nan)"),
+        (["run", "model.py", "--until", "soon"], "> 0 and < 1e9 (got soon)"),
         (["run", "model.py", "--seed", "x"], "--seed: invalid int value: 'x'"),
         (["run", "model.py", "--trace", "much"], "--trace: invalid choice: 'much'"),
-        (["run", "--fast", "model.py"], "--fast is no option of every run; those of the model file come after its name"),
+        (["run", "--fast", "model.py"], "--fast is not an option of every run; those of the model file come after its name"),
         (["bench", "core", "--fast"], "unrecognized arguments: --fast"),
         (["bench", "coer"], "no benchmark 'coer'; did you mean 'core'?; there are: aperture, camera, core, lockstep, soak"),
         (["bench", "camera", "--trials", "3"], "actr3d bench camera: it has no trials"),

@@ -29,7 +29,7 @@ def test_other_kinds_of_number() -> None:
 
 @pytest.mark.parametrize("wrong", [float("nan"), float("inf"), -float("inf"), "1", None, 1j, [1], 10**400])
 def test_what_is_no_time_is_named(wrong: Any) -> None:
-    with pytest.raises(SchedulerError, match=r"Timer\.delay must be a finite number of seconds \(got "):
+    with pytest.raises(SchedulerError, match=r"Timer\.delay: must be a finite number of seconds \(got "):
         microseconds(wrong, "Timer.delay")
 
 
@@ -100,5 +100,5 @@ def test_what_is_left_over_counts_only_where_that_run_has_ended() -> None:
 
 
 def test_a_negative_duration_is_refused() -> None:
-    with pytest.raises(SchedulerError, match=r"the limit of a run must not be negative \(got -1 s\)"):
+    with pytest.raises(SchedulerError, match=r"the limit of a run: must be >= 0 \(got -1 s\)"):
         Ends().after(5_000_000, -1)

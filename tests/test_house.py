@@ -26,7 +26,7 @@ PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
     "configuration": {"errors"},
-    "parameter_schema": {"errors", "configuration", "actr"},
+    "parameter_schema": {"errors", "configuration", "values", "actr"},
     "warnings": {"errors"},
     "values": set(),
     "registry": set(),

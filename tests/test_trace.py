@@ -109,7 +109,7 @@ def test_json_of_odd_values_can_be_read_by_any_reader() -> None:
     line = TraceEvent(1_500_000, "top", "state", data).to_json()  # pyright: ignore
 
     def refuse(name: str) -> None:
-        raise AssertionError(f"{name} is no JSON")
+        raise AssertionError(f"{name} is not JSON")
 
     read = json.loads(line, parse_constant=refuse)
     assert read["time"] == 1.5

@@ -50,7 +50,7 @@ def strictly(line: str) -> Any:
     """Reads JSON as a strict reader does."""
 
     def refuse(name: str) -> None:
-        raise AssertionError(f"{name} is no JSON")
+        raise AssertionError(f"{name} is not JSON")
 
     return json.loads(line.encode("utf-8"), parse_constant=refuse)
 

@@ -17,10 +17,10 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
+from actr3d.values import escape_surrogates
 from workbench import recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
 from workbench.files import ModelFolder
-from workbench.loader import sendable
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping
@@ -90,13 +90,13 @@ def _manual() -> ASGIApp:
     return StaticFiles(directory=folder, html=True)
 
 
-def _told(problem: str, status: int, headers: Mapping[str, str] | None = None) -> JSONResponse:
+def _error_response(problem: str, status: int, headers: Mapping[str, str] | None = None) -> JSONResponse:
     """Returns a response that describes a problem; unpaired surrogate characters are written as escapes."""
-    return JSONResponse({"error": sendable(problem)}, status_code=status, headers=headers)
+    return JSONResponse({"error": escape_surrogates(problem)}, status_code=status, headers=headers)
 
 
 async def _refused(_: Request, error: Exception) -> JSONResponse:
-    return _told(str(error), getattr(error, "status", 409))
+    return _error_response(str(error), getattr(error, "status", 409))
 
 
 async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
@@ -104,16 +104,16 @@ async def _misunderstood(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     if first["type"] == "json_invalid":
-        return _told(f"the body is no JSON: {first['ctx']['error']} at character {first['loc'][-1]}", 400)
-    return _told(problem_of(first), 422)
+        return _error_response(f"the body is not JSON: {first['ctx']['error']} at character {first['loc'][-1]}", 400)
+    return _error_response(problem_of(first), 422)
 
 
 async def _no_answer(_: Request, error: Exception) -> JSONResponse:
     """Reports that the address does not exist or does not accept the request."""
     assert isinstance(error, HTTPException)
-    return _told(error.detail, error.status_code, error.headers)
+    return _error_response(error.detail, error.status_code, error.headers)
 
 
 async def _unexpected(_: Request, error: Exception) -> JSONResponse:
     logging.getLogger("workbench").error("an error of the workbench itself", exc_info=error)
-    return _told(f"an error of the workbench itself: {type(error).__name__}", 500)
+    return _error_response(f"an error of the workbench itself: {type(error).__name__}", 500)

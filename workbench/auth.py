@@ -162,7 +162,7 @@ def _judge_change(headers: _Headers) -> tuple[int, str]:
         return 403, f"what changes something is sent with the header {HEADER.decode()}"
     length = headers.one("content-length") or "0"
     if not (length.isascii() and length.isdigit()):
-        return 400, "the length of the request is no number"
+        return 400, "the length of the request is not a number"
     return (413, f"no request has more than {LARGEST:,} bytes") if int(length) > LARGEST else (200, "")
 
 

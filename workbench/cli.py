@@ -97,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from workbench.server import serve
 
         keeping = Keeping(number=options.recordings, megabytes=options.recordings_size)
-        started = partial(_tell, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
+        started = partial(_announce, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
         app = make_app(folder, gate, memory=options.memory, keeping=keeping, zygote=zygote)
         if interrupted.is_set():  # the import of a library may have swallowed the exception
             raise KeyboardInterrupt
@@ -116,7 +116,7 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
     return f"the models folder '{where}' cannot be used: {'it is a file' if where.is_file() else reason}"
 
 
-def _tell(folder: Path, url: str, token: Token, browse: bool) -> None:
+def _announce(folder: Path, url: str, token: Token, browse: bool) -> None:
     """Prints the address as the last line and opens it in the browser."""
     address = f"{url}/?token={token.reveal()}"
     print(f"models: {folder}")

@@ -74,7 +74,7 @@ class EventLog:
 
 
 class FeedSource(Protocol):
-    """The part of a session that a feed sends."""
+    """The part of a session that a feed sends; `Session` itself imports this module."""
 
     @property
     def name(self) -> str:

@@ -94,7 +94,7 @@ class ModelFolder:
         """
         parts = path.split("/")
         if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
-            raise FileError("that is no name of a model file")
+            raise FileError("that is not a name for a model file")
         if any(part in ("", ".", "..") or part[0] == "." or len(part.encode("utf-8", "replace")) > 200 for part in parts):
             raise FileError("a model file lies inside the models folder, and no part of its path is hidden")
         if not path.endswith(".py") or any(unicodedata.category(c)[0] == "C" for c in path) or ":" in path:

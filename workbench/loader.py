@@ -12,8 +12,9 @@ from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.loading.source_text import compile_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
-from actr3d.parameter_schema import Parameter, default_of, parameters_in, sendable
+from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
+from actr3d.values import escape_surrogates
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +60,7 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
     """Returns the description of a model's text; errors and warnings are in `problems`."""
     problems = tuple(problems_of(source, filename))
     tree = syntax_tree(source)
-    text = sendable(ast.get_docstring(tree) or "")
+    text = escape_surrogates(ast.get_docstring(tree) or "")
     builds = has_build(source)
     return ModelListing(
         title=text.split("\n", 1)[0],
@@ -80,12 +81,14 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
             compile_source(source, filename)
         except ModelFileError as error:
             named = re.match(rf"{re.escape(filename)}:(\d+): (.*)", str(error), re.DOTALL)
-            yield Problem(level="error", message=sendable(named[2] if named else str(error)), line=int(named[1]) if named else None)
+            yield Problem(
+                level="error", message=escape_surrogates(named[2] if named else str(error)), line=int(named[1]) if named else None
+            )
     found = problem_of_build(source)
     if found is not None:
-        yield Problem(level="error", message=sendable(found[1]), line=found[0])
+        yield Problem(level="error", message=escape_surrogates(found[1]), line=found[0])
     for warning in caught:
-        yield Problem(level="warning", message=sendable(str(warning.message)), line=warning.lineno)
+        yield Problem(level="warning", message=escape_surrogates(str(warning.message)), line=warning.lineno)
 
 
 def _of_first_lines(source: str) -> Iterator[Parameter]:

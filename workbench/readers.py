@@ -44,13 +44,13 @@ class Readers:
         self._turns = asyncio.Semaphore(MOST)
         self._turns_of: WeakValueDictionary[Path, asyncio.Semaphore] = WeakValueDictionary()
 
-    async def make(self, form: str, *paths: Path, **options: Any) -> FileIO:
+    async def make(self, kind: str, *paths: Path, **options: Any) -> FileIO:
         """Returns an open file with what was made of recordings; it has no name any more, and is gone when it is closed.
 
         Args:
-            form: What is made: one of `workbench.forms`.
+            kind: The kind of file to make, one of `workbench.exports`.
             paths: The recordings.
-            options: What the form takes.
+            options: The options of that kind of file.
 
         Raises:
             NoSuchRecordingError: If one of them is gone meanwhile.
@@ -62,7 +62,7 @@ class Readers:
             folder = Path(tempfile.mkdtemp(prefix="actr3d-"))
             try:
                 to = folder / "made"
-                await self._made(Start(job="make", form=form, recordings=tuple(map(str, paths)), to=str(to), settings=options))
+                await self._made(Start(job="make", export=kind, recordings=tuple(map(str, paths)), to=str(to), settings=options))
                 return to.open("rb", buffering=0)
             except ReadingError:
                 if not all(path.is_file() for path in paths):

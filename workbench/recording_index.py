@@ -78,7 +78,7 @@ def summary_json(path: Path) -> bytes:
     summary = to_json(vars(found)).encode()
     if len(summary) > MOST_TEXT:
         return to_json(vars(unreadable(path, "the description of its run is too long to be listed"))).encode()
-    return msgspec.json.encode(msgspec.json.decode(_sendable(summary.decode()), type=Summary))
+    return msgspec.json.encode(msgspec.json.decode(_without_surrogates(summary.decode()), type=Summary))
 
 
 def without_path(text: str, path: Path) -> str:
@@ -86,7 +86,7 @@ def without_path(text: str, path: Path) -> str:
     return text.replace(f"the recording '{path}'", "it").replace(f"'{path}'", "it")
 
 
-def _sendable(text: str) -> str:
+def _without_surrogates(text: str) -> str:
     """Returns JSON in which unpaired surrogates, which no encoding has, are question marks."""
     if "\\ud" not in text.lower():
         return text
@@ -101,7 +101,9 @@ def unreadable(path: Path, reason: str) -> Summary:
 def _read(recorded: Recorded, size: int) -> Summary:
     facts, path = recorded.facts, recorded.path
     ended: dict[str, Any] | None = facts.get("ended")
-    last = [event for text in recorded.last_events() for event in EVENTS.decode(_sendable(text))]  # the result is recorded at the very end
+    last = [
+        event for text in recorded.last_events() for event in EVENTS.decode(_without_surrogates(text))
+    ]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
     return Summary(

@@ -12,9 +12,8 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 from pydantic import Field
 
-from actr3d.values import to_json
+from actr3d.values import escape_surrogates, to_json
 from workbench.listing import MOST as MOST_LISTED
-from workbench.loader import sendable
 from workbench.open_file import OpenFile, gone
 from workbench.page_commands import Name, PageMessage
 from workbench.readers import while_wanted
@@ -100,9 +99,9 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
     return OpenFile(file, KINDS[form], f"{recording}.{form}")
 
 
-async def _made(request: Request, form: str, *paths: Path, **options: Any) -> FileIO:
+async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
     """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_wanted(sessions_of(request).readers.make(form, *paths, **options), lambda: gone(request.receive))
+    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), lambda: gone(request.receive))
 
 
 @router.get("/recordings/{recording}/curves")
@@ -140,8 +139,13 @@ async def recorded_code(request: Request, recording: Id) -> dict[str, Any]:
     `made_here` says whether this installation made the recording and nobody has changed it since.
     """
     began = await sessions_of(request).beginning(recording)
-    helpers = {sendable(name): sendable(text) for name, (_, text) in began.helpers.items()}
-    return {"made_here": began.made_here, "file": sendable(began.file), "source": sendable(began.source), "helpers": helpers}
+    helpers = {escape_surrogates(name): escape_surrogates(text) for name, (_, text) in began.helpers.items()}
+    return {
+        "made_here": began.made_here,
+        "file": escape_surrogates(began.file),
+        "source": escape_surrogates(began.source),
+        "helpers": helpers,
+    }
 
 
 @router.post("/recordings/{recording}/replay")

@@ -12,9 +12,10 @@ from fastapi import Path as InPath
 from fastapi.responses import Response
 from pydantic import Field
 
+from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.files import ModelFile
-from workbench.loader import listing_of, sendable
+from workbench.loader import listing_of
 from workbench.outlines import outline_of
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
@@ -91,8 +92,8 @@ def sessions_of(request: Request) -> Sessions:
 def models(request: Request) -> dict[str, Any]:
     """Lists the model files; none of them is executed."""
     folder = sessions_of(request).folder
-    files = [{"path": sendable(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
-    return {"folder": sendable(str(folder.root)), "models": files}
+    files = [{"path": escape_surrogates(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
+    return {"folder": escape_surrogates(str(folder.root)), "models": files}
 
 
 @router.get("/model")
@@ -101,7 +102,7 @@ def model(request: Request, path: InFolder) -> dict[str, Any]:
     sessions = sessions_of(request)
     file = sessions.folder.read(path)
     request.app.state.later(sessions.saved, sessions.folder.locate(path))  # the client may reload because the file has changed
-    return _told(file)
+    return _file_and_listing(file)
 
 
 @router.get("/model/version")
@@ -118,13 +119,13 @@ def save(request: Request, body: Save) -> dict[str, Any]:
     sessions = sessions_of(request)
     file = sessions.folder.save(body.path, body.text, body.version)
     request.app.state.later(sessions.saved, sessions.folder.locate(file.path))
-    return _told(file)
+    return _file_and_listing(file)
 
 
 @router.post("/model/duplicate")
 def duplicate(request: Request, body: Rename) -> dict[str, Any]:
     """Copies a model file."""
-    return _told(sessions_of(request).folder.copy(body.path, body.to))
+    return _file_and_listing(sessions_of(request).folder.copy(body.path, body.to))
 
 
 @router.post("/model/rename")
@@ -134,7 +135,7 @@ def rename(request: Request, body: Rename) -> dict[str, Any]:
     before = sessions.folder.locate(body.path)
     file = sessions.folder.rename(body.path, body.to)
     request.app.state.later(sessions.renamed, before, sessions.folder.locate(file.path), file.path)
-    return _told(file)
+    return _file_and_listing(file)
 
 
 @router.post("/model/delete")
@@ -158,7 +159,7 @@ async def check(request: Request, body: Check) -> dict[str, Any]:
     return {"problems": problems, "listing": asdict(listing)}
 
 
-def _told(file: ModelFile) -> dict[str, Any]:
+def _file_and_listing(file: ModelFile) -> dict[str, Any]:
     return {**asdict(file), "listing": asdict(listing_of(file.text, file.path))}
 
 

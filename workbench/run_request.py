@@ -1,4 +1,4 @@
-"""Describes an attempt to start a run: the options it starts with, and the worker that is given to it."""
+"""Describes a run that is to be started: the options it starts with, and the worker that is given to it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 from actr3d.actr.kernel.run_limits import fresh_seed
 from actr3d.actr.loading.source_text import read_source
 from workbench.files import ModelFolder
-from workbench.source_versions import Texts
+from workbench.source_versions import SourceVersions
 from workbench.worker.messages import Start, digest_of
 from workbench.worker.workers import Worker
 
 
 @dataclass(frozen=True, kw_only=True)
-class Relived:
+class RepeatedRun:
     """Describes an earlier run that is to be repeated."""
 
     file: str
@@ -31,7 +31,7 @@ class Relived:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wanted:
+class RunOptions:
     """Holds the options of a run; see `Start`."""
 
     settings: dict[str, Any] = field(default_factory=dict[str, Any])
@@ -41,43 +41,43 @@ class Wanted:
     record: bool = True
     run: bool = False
     """Whether the run starts going at once, instead of paused."""
-    relived: Relived | None = None
+    repeated: RepeatedRun | None = None
     """The earlier run to repeat; None for a new run of the current file."""
 
 
-def start_of(path: Path, wanted: Wanted, **more: Any) -> Start:
+def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     """Returns the instructions with which a run of a model starts.
 
     Args:
         path: The model file.
-        wanted: The options of the run.
+        options: The options of the run.
         more: Other fields of `Start`, passed on unchanged.
 
     Raises:
         ModelFileError: If the file cannot be read.
         OSError: If the file has been removed or cannot be read any more.
     """
-    relived = wanted.relived
-    if relived is None:
+    repeated = options.repeated
+    if repeated is None:
         more |= {"source": read_source(path), "version": ModelFolder.version(path)}
     else:
-        path = Path(relived.file)
-        more |= {"source": relived.source, "version": digest_of(relived.source)}
-        more |= {"commands": relived.commands, "helpers": relived.helpers, "recorded": str(relived.recording)}
-    seed = fresh_seed() if wanted.seed is None else wanted.seed
-    return Start(path=str(path), folder=str(path.parent), settings=wanted.settings, seed=seed, run=wanted.run, **more)
+        path = Path(repeated.file)
+        more |= {"source": repeated.source, "version": digest_of(repeated.source)}
+        more |= {"commands": repeated.commands, "helpers": repeated.helpers, "recorded": str(repeated.recording)}
+    seed = fresh_seed() if options.seed is None else options.seed
+    return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
 
 
 @dataclass(eq=False)
-class Attempt:
+class LaunchedRun:
     """Holds a run and its worker, from the moment the run is started."""
 
     start: Start
     worker: Worker
-    texts: Texts = field(init=False)
-    """The source texts that the run is made of."""
+    versions: SourceVersions = field(init=False)
+    """The versions of the texts that the run is made of."""
     over: bool = False
     """Whether the worker has ended."""
 
     def __post_init__(self) -> None:
-        self.texts = Texts(self.start)
+        self.versions = SourceVersions(self.start)

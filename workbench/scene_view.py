@@ -192,7 +192,7 @@ class _Drawn:
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
         send_scene_data(server, "stage", self._stage.data(lay_grounds(server, self._model)))
-        self._tell_now()
+        self._send_now()
         self._panel = panel({name: (least, most) for name, (least, most) in world["widths"].items()})
         self._look: ViewSettings | None = None
 
@@ -209,7 +209,7 @@ class _Drawn:
             overlay.show(name in look.shown)
         self._panel.choose(look)
         self._scene.update_from_mjdata(self.data)
-        self._tell_now()
+        self._send_now()
 
     def show(self, state: State) -> None:
         """Shows a state of the run."""
@@ -224,9 +224,9 @@ class _Drawn:
             if overlay.visible or name == "frustum":
                 overlay.draw(self.data, state.drawn.get(name))
         self._panel.show(state)
-        self._tell_now()
+        self._send_now()
 
-    def _tell_now(self) -> None:
+    def _send_now(self) -> None:
         """Sends browsers the positions of the body, its eye and its head, and the shadows and labels."""
         if not np.isfinite(self.data.xpos).all():
             return  # physics has diverged: keep the last valid state

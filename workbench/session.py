@@ -16,7 +16,7 @@ from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.retention import erase, never_begun
-from workbench.run_request import Attempt, Wanted, start_of
+from workbench.run_request import LaunchedRun, RunOptions, start_of
 from workbench.view_settings import ViewSettings
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
@@ -24,7 +24,7 @@ from workbench.worker_monitor import WorkerMonitor
 
 
 class Command(Protocol):
-    """A page command, as a session sees it; see `workbench.page_commands`."""
+    """A page command, as a session sees it; `PageCommand` itself imports this module."""
 
     takes_control: ClassVar[bool]
     of_shown_run: ClassVar[bool]
@@ -71,12 +71,12 @@ class Session:
         """What was kept when a user last changed something in the past of the current run."""
         self.has_scene = False
         """Whether there is a 3D view."""
-        self._shown: Attempt | None = None
-        """The attempt whose run is on screen, even after its worker has ended."""
-        self._loading: Attempt | None = None
-        """The attempt whose run is being built."""
+        self._shown: LaunchedRun | None = None
+        """The run on screen, even after its worker has ended."""
+        self._loading: LaunchedRun | None = None
+        """The run that is being built."""
         self._attempt = 0
-        """The number of the latest attempt."""
+        """The number of the latest attempt to start a run."""
         self._notice_number = 0
         self._cuts: deque[tuple[int, int]] = deque(maxlen=MOST_NOTICES)
         """Where the run was cut and continued differently: (number of the next notice, number of events kept).
@@ -109,34 +109,34 @@ class Session:
         return None if self._shown is None or self._shown.over else self._shown.worker
 
     @property
-    def _newest(self) -> Attempt | None:
+    def _newest(self) -> LaunchedRun | None:
         return self._loading or self._shown
 
-    async def begin(self, wanted: Wanted | None = None) -> None:
+    async def begin(self, options: RunOptions | None = None) -> None:
         """Starts a new run in a new worker; the old run stays on screen until the new one is built, so that an error does not remove it.
 
         Args:
-            wanted: The options of the run; None for the defaults of the model.
+            options: The options of the run; None for the defaults of the model.
 
         Raises:
             ModelFileError: If the file cannot be read.
             OSError: If no worker can be started.
         """
         async with self._beginning:
-            wanted = wanted or Wanted()
-            record = str(self._new_recording(self.path.stem)) if wanted.record else None
+            options = options or RunOptions()
+            record = str(self._new_recording(self.path.stem)) if options.record else None
             more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
-            start = start_of(self.path, wanted, attempt=self._attempt + 1, **more)
+            start = start_of(self.path, options, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
-            attempt = Attempt(start, await self._workers.launch())
-            self.run_task(WorkerMonitor(attempt.worker, start, self).serve())
+            launched = LaunchedRun(start, await self._workers.launch())
+            self.run_task(WorkerMonitor(launched.worker, start, self).serve())
             if start.attempt <= self._given_up:  # stopped in the meantime
-                self._asked.add(attempt.worker)
-                attempt.worker.kill()
+                self._asked.add(launched.worker)
+                launched.worker.kill()
                 return
             if self._loading is not None:
                 self._leave(self._loading.worker)
-            self._loading = attempt
+            self._loading = launched
             self._ending = ""
             self._changed(facts=True)
 
@@ -145,16 +145,16 @@ class Session:
         if isinstance(message, Reply):
             self._waiting.take(message)
             return
-        attempt = self._attempt_of(worker)
-        if isinstance(message, Facts) and attempt is not None and attempt is self._loading:
-            self._swap(attempt, message)
-        shown = attempt is self._shown
+        launched = self._run_of(worker)
+        if isinstance(message, Facts) and launched is not None and launched is self._loading:
+            self._swap(launched, message)
+        shown = launched is self._shown
         match message:
-            case _ if attempt is None:
+            case _ if launched is None:
                 return
             case Facts() if shown and message is not self.facts:
                 self.facts = message
-                self._tell_watchers(message)
+                self._notify_watchers(message)
                 self._changed(facts=True)
             case State() if shown:
                 self._take_state(message)
@@ -171,7 +171,7 @@ class Session:
                 self.branched = message
                 self._changed(facts=True)
             case Loaded():
-                attempt.texts.take(message)
+                launched.versions.add(message)
                 self._changed(facts=shown)
             case Notice():
                 self.add_notice(message, start)
@@ -188,16 +188,16 @@ class Session:
             self._changed(facts=True)
         self.state = state
         self.state_version += 1
-        self._tell_watchers(state)
+        self._notify_watchers(state)
 
-    def _attempt_of(self, worker: Worker) -> Attempt | None:
-        """Returns the attempt whose worker this is; None if a newer attempt has replaced it."""
+    def _run_of(self, worker: Worker) -> LaunchedRun | None:
+        """Returns the run of a worker; None if a newer run has replaced it."""
         return next((one for one in (self._shown, self._loading) if one is not None and one.worker is worker), None)
 
-    def _swap(self, attempt: Attempt, facts: Facts) -> None:
+    def _swap(self, launched: LaunchedRun, facts: Facts) -> None:
         """Shows a newly built run in place of the previous one."""
         before, worker = self._shown, self._worker
-        self._shown, self._loading = attempt, None
+        self._shown, self._loading = launched, None
         useless = before.start.record if before is not None and never_begun(self.state, self.log) else None
         if before is not None and worker is not None:
             self._leave(worker, useless)
@@ -207,8 +207,8 @@ class Session:
         self.facts, self.state, self._stuck, self.branched = facts, None, None, None
         self._cuts.clear()
         if self._drawn:
-            attempt.worker.send(Draw(kinds=self._drawn))
-        self._tell_watchers(facts)
+            launched.worker.send(Draw(kinds=self._drawn))
+        self._notify_watchers(facts)
         self._changed(facts=True)
 
     def take_end(self, worker: Worker, ending: str) -> None:
@@ -216,8 +216,8 @@ class Session:
         self._waiting.end(worker)
         asked = worker in self._asked
         self._asked.discard(worker)
-        attempt = self._attempt_of(worker)
-        if attempt is None or attempt.over:
+        launched = self._run_of(worker)
+        if launched is None or launched.over:
             return
         self._ending = "stopped" if asked else ending
         where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
@@ -225,8 +225,8 @@ class Session:
             self.add_notice(Notice(level="error", text=f"{self._ending}{where}"))
         elif asked and where:
             self.add_notice(Notice(level="warning", text=f"stopped while it was busy{where}"))
-        attempt.over = True
-        if attempt is self._loading:
+        launched.over = True
+        if launched is self._loading:
             self._loading = None
         else:
             self._stuck = None
@@ -244,7 +244,7 @@ class Session:
 
     def halt(self, worker: Worker, name: str) -> None:
         """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
-        if self._attempt_of(worker) is None:
+        if self._run_of(worker) is None:
             return
         self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
         if name:
@@ -283,7 +283,7 @@ class Session:
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
         await self.stop()
-        self._tell_watchers(None)
+        self._notify_watchers(None)
         tasks = list(self._tasks)
         if tasks:
             await asyncio.wait(tasks, timeout=1)
@@ -324,7 +324,7 @@ class Session:
         if newest is not None:
             settings = newest.start.settings if settings is None else settings
             seed = newest.start.seed if seed is None and not new_seed else seed
-        await self.begin(Wanted(settings=settings or {}, seed=seed, record=record, run=run))
+        await self.begin(RunOptions(settings=settings or {}, seed=seed, record=record, run=run))
 
     def set_speed(self, factor: float | None) -> None:
         """Stores the speed for this and later runs, as a multiple of real time; None for as fast as possible."""
@@ -338,7 +338,7 @@ class Session:
     def show_overlay(self, name: str, shown: bool) -> None:
         """Shows or hides an overlay of the 3D view."""
         self.look = self.look.with_overlay(name, shown)
-        self._tell_watchers(self.look)
+        self._notify_watchers(self.look)
         self._changed(facts=True)
 
     async def ask(self, command: Command) -> Reply:
@@ -415,7 +415,7 @@ class Session:
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
-            "stale": self._shown is not None and self._shown.texts.differ(self.path),
+            "stale": self._shown is not None and self._shown.versions.differ(self.path),
             "gone": not self.path.is_file(),
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
@@ -455,8 +455,8 @@ class Session:
     @property
     def source(self) -> str | None:
         """The model text of the run on screen, or else of the one being built; None if there is neither."""
-        attempt = self._shown or self._loading
-        return None if attempt is None else attempt.start.source
+        launched = self._shown or self._loading
+        return None if launched is None else launched.start.source
 
     # -- who watches
 
@@ -475,7 +475,7 @@ class Session:
         self._changed(facts=True)
 
     def add_notice(self, notice: Notice, start: Start | None = None) -> None:
-        """Sends a notice to all who watch, with the attempt it is about and the version of the model's text at that time."""
+        """Sends a notice to all who watch, with the number of its attempt and the version of the model's text at that time."""
         shown: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         shown |= {"file": self._shown_file(notice.file, start), "line": notice.line}
         is_shown = self._shown is not None and (self._attempt if start is None else start.attempt) == self._shown.start.attempt
@@ -492,7 +492,7 @@ class Session:
 
     def file_changed(self, path: Path) -> None:
         """Informs pages that a file may have changed: a run that was made from it is stale."""
-        if path == self.path or (self._shown is not None and self._shown.texts.has_helper(path)):
+        if path == self.path or (self._shown is not None and self._shown.versions.has_helper(path)):
             self._changed(facts=True)
 
     def renamed(self, path: Path, model: str) -> None:
@@ -505,7 +505,7 @@ class Session:
         for feed in self.feeds:
             feed.wake()
 
-    def _tell_watchers(self, what: Facts | State | ViewSettings | None) -> None:
+    def _notify_watchers(self, what: Facts | State | ViewSettings | None) -> None:
         for watcher in self.watchers:
             watcher(what)
 

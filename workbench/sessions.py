@@ -14,7 +14,7 @@ from workbench.readers import Readers
 from workbench.recorded_start import Beginning, parsed
 from workbench.recordings import Recordings
 from workbench.replays import Reruns
-from workbench.run_request import Relived, Wanted
+from workbench.run_request import RepeatedRun, RunOptions
 from workbench.scene_view import SceneView
 from workbench.session import Session
 from workbench.worker.messages import Start
@@ -113,7 +113,7 @@ class Sessions:
         where = self.folder.locate(model)
         self.folder.read(model)
         try:
-            return await self._begun(where, model, Wanted(settings=settings, seed=seed, record=record, run=run), real_time=real_time)
+            return await self._begun(where, model, RunOptions(settings=settings, seed=seed, record=record, run=run), real_time=real_time)
         except ModelFileError:
             self.folder.read(model)  # raises the error of a file that does not exist, if it was renamed or deleted in the meantime
             raise
@@ -170,17 +170,17 @@ class Sessions:
             if not path.is_relative_to(self.folder.root):
                 path = self.folder.root / path.name  # a new run uses the user's own model of that name, if there is one
             shown = path.relative_to(self.folder.root).as_posix()
-            relived = Relived(file=began.file, source=began.source, commands=began.commands, helpers=began.helpers, recording=where)
-            wanted = Wanted(settings=began.parameters, seed=began.seed, record=False, relived=relived)
-            return await self._begun(path, shown, wanted, real_time=real_time)
+            repeated = RepeatedRun(file=began.file, source=began.source, commands=began.commands, helpers=began.helpers, recording=where)
+            options = RunOptions(settings=began.parameters, seed=began.seed, record=False, repeated=repeated)
+            return await self._begun(path, shown, options, real_time=real_time)
 
-    async def _begun(self, path: Path, model: str, wanted: Wanted, *, real_time: bool = False) -> Session:
+    async def _begun(self, path: Path, model: str, options: RunOptions, *, real_time: bool = False) -> Session:
         """Returns a new session that has started a run; if the run cannot be started, the session is closed again."""
         async with self._opening:  # making room takes a moment, in which no other session may take it
             session = await self._new(path, model)
         session.real_time = real_time
         try:
-            await session.begin(wanted)
+            await session.begin(options)
         except BaseException:
             if self._sessions.get(session.name) is session:
                 await self.close(session.name)

@@ -12,7 +12,7 @@ MOST = 100
 """Maximum number of helper modules that are watched."""
 
 
-class Texts:
+class SourceVersions:
     """Holds the versions of the texts that a run was made from.
 
     Args:
@@ -25,7 +25,7 @@ class Texts:
         for file, text in list(start.helpers.values())[:MOST]:
             self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
 
-    def take(self, loaded: Loaded) -> None:
+    def add(self, loaded: Loaded) -> None:
         """Records a helper module that the run has loaded."""
         path = Path(loaded.file).resolve()
         if path in self._helpers or len(self._helpers) < MOST:

@@ -29,7 +29,7 @@ _MEANINGS = {
 
 
 class Receiver(Protocol):
-    """Receives what a monitor reports; a session does."""
+    """Receives what a monitor reports: a session, or a job without one (see `workbench.jobs`)."""
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Handles a message from a worker."""

@@ -57,7 +57,7 @@ class Eye:
         axes = np.stack((x, y, -z, place) if self._kind == "camera" else (-y, z, x, place))
         length = float(x @ x + y @ y + z @ z)
         if not math.isfinite(length + float(place.sum())):
-            raise CameraError(f"GeometricCamera: the pose of the {self._kind} '{self._name}' is no number; did the physics diverge?")
+            raise CameraError(f"GeometricCamera: the pose of the {self._kind} '{self._name}' is not a number; did the physics diverge?")
         if abs(length - 3.0) > 1e-6:
             raise CameraError(
                 f"GeometricCamera: the pose of the {self._kind} '{self._name}' was not computed; "

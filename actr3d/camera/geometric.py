@@ -21,6 +21,7 @@ from actr3d.camera.topology import geoms_of, objects_of, topology_of
 from actr3d.camera.view import View
 from actr3d.errors import CameraError
 from actr3d.warnings import warn_modeller
+from actr3d.world.frames import upright_axes
 
 
 class GeometricCamera:
@@ -142,7 +143,7 @@ class GeometricCamera:
         )
         if count < 0:
             name = names_of(self._mj_model, "geom")[-1 - count] or str(-1 - count)
-            raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is no number; did the physics diverge?")
+            raise CameraError(f"GeometricCamera.look: the pose of geom '{name}' is not a number; did the physics diverge?")
         return count
 
 
@@ -171,7 +172,6 @@ def _upright(axes: NDArray[np.float64], heading: float | None) -> NDArray[np.flo
     """Returns the eye's axes `(3, 3)`, given in the world frame, in a frame rotated about the vertical to a heading."""
     if heading is None:
         heading = math.atan2(axes[2, 1], axes[2, 0])
-    c, s = math.cos(heading), math.sin(heading)
-    upright = axes @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    upright = axes @ upright_axes(heading)
     upright.flags.writeable = False
     return upright

@@ -57,4 +57,4 @@ class CameraParameters(Configuration):
         """
         super().__post_init__()
         if self.range is not None and self.range <= self.near:
-            raise ConfigurationError(f"CameraParameters.range: must be above near, {self.near:g} m (got {self.range!r})")
+            raise ConfigurationError(f"CameraParameters.range: must be > near, {self.near:g} m (got {self.range!r})")

@@ -175,9 +175,9 @@ class Limbs:
         """
         most = self.fastest[kind]
         if 0 < abs(speed) < SLOWEST:
-            raise WorldError(f"{call}: speed: {self.plan.name} can do no less than {SLOWEST / unit:.2g} (got {speed / unit:g})")
+            raise WorldError(f"{call}: speed: must be >= {SLOWEST / unit:.2g} for {self.plan.name}, or 0 (got {speed / unit:g})")
         if abs(speed) > most + TINY:
-            raise WorldError(f"{call}: speed: {self.plan.name} can do at most {most / unit:g} (got {speed / unit:g})")
+            raise WorldError(f"{call}: speed: must be <= {most / unit:g} for {self.plan.name} (got {speed / unit:g})")
 
     def inside(self, joint: str, position: float) -> bool:
         """Returns whether a position [rad] or [m] is within a joint's limits."""

@@ -116,11 +116,11 @@ class Motor(WithParameters, Port):
         from_0 = {"angle_noise": angle_noise, "size_noise": size_noise, "preparation": preparation, "initiation": initiation}
         for name, value in {**above, **from_0}.items():
             if value is not None and not (0 <= value < HUGE and (value > 0 or name in from_0)):
-                bounds = "at least 0" if name in from_0 else "above 0"
-                raise ParameterError(f"Motor.{name}: must be {bounds}, and below {HUGE:g} (got {value!r})")
+                bound = ">= 0" if name in from_0 else "> 0"
+                raise ParameterError(f"Motor.{name}: must be {bound} and < {HUGE:g} (got {value!r})")
         for name, grid in grids.items():
             if grid < FINEST:
-                raise ParameterError(f"Motor.{name}: must be at least {FINEST:g} (got {grid!r})")
+                raise ParameterError(f"Motor.{name}: must be >= {FINEST:g} (got {grid!r})")
         self.speed = speed
         self.angle_grid = angle_grid
         self.size_grid = size_grid
@@ -162,7 +162,7 @@ class Motor(WithParameters, Port):
         """Walks at a speed [m/s], backward if negative, until `stop`; while walking, it changes the speed.
 
         Raises:
-            WorldError: If the speed is no number, or the body cannot walk.
+            WorldError: If the speed is not a number, or the body cannot walk.
         """
         self._command(partial(self._walk, number(speed, "walk: speed")), "walk", speed=speed)
 
@@ -174,7 +174,7 @@ class Motor(WithParameters, Port):
             speed: Speed [degrees/s]; without an angle, negative turns to the right.
 
         Raises:
-            WorldError: If a value is no number, or the body cannot walk.
+            WorldError: If a value is not a number, or the body cannot walk.
         """
         by = None if angle is None else radians(number(angle, "turn: angle"))
         rate = radians(self._speed("turn", speed, by is not None))
@@ -211,17 +211,17 @@ class Motor(WithParameters, Port):
             known(group, self._known().groups, plan.name, "muscle group")
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], place)
         if not groups and "stop" in plan.actuators:
-            self._tell("stop", place=place)
+            self._send_command("stop", place=place)
 
-    def _need(self, word: str) -> None:
+    def _need(self, command: str) -> None:
         """Checks that the body has a command.
 
         Raises:
             WorldError: If it does not.
         """
         plan = self._known().plan
-        if word not in plan.actuators:
-            raise WorldError(f"{plan.name} cannot {word}; its commands are: {', '.join(plan.actuators) or 'none'}")
+        if command not in plan.actuators:
+            raise WorldError(f"{plan.name} cannot {command}; its commands are: {', '.join(plan.actuators) or 'none'}")
 
     # -- limbs
 
@@ -282,7 +282,7 @@ class Motor(WithParameters, Port):
             speed: Speed of each joint [degrees/s] or [m/s].
 
         Raises:
-            ChunkError: If it is no posture.
+            ChunkError: If it is not a posture.
             WorldError: If it names no joint of the body, or a value is invalid.
         """
         pace = self._speed("assume", speed, True)
@@ -293,7 +293,7 @@ class Motor(WithParameters, Port):
         """Feels the body at the end of this tick, and stores that posture under a name.
 
         Raises:
-            WorldError: If the name is no text.
+            WorldError: If the name is not text.
         """
         if not isinstance(name, str) or not name.strip():  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
             raise WorldError(f"feel: name: must be a name for the posture (got {name!r})")
@@ -315,7 +315,7 @@ class Motor(WithParameters, Port):
         limbs = self._known()
         named = limbs.movement(movement, side)
         if named.to is not None and (to is not None or pace < 0):
-            raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed above 0")
+            raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed > 0")
         targets: dict[str, float] = {}
         for joint, way in named.joints:
             limit = limbs.limit(joint, way * pace)
@@ -353,11 +353,11 @@ class Motor(WithParameters, Port):
         """Returns a given speed, in the units of commands, or the default.
 
         Raises:
-            WorldError: If it is no number, 0, or negative although there is a target angle.
+            WorldError: If it is not a number, is 0, or is negative although there is a target angle.
         """
         given = self.speed if speed is None else number(speed, f"{call}: speed")
         if given == 0 or (bounded and given < 0):
-            raise WorldError(f"{call}: speed: must {'be above 0 to go to an angle' if bounded else 'not be 0'} (got {speed!r})")
+            raise WorldError(f"{call}: speed: must {'be > 0 to go to an angle' if bounded else 'not be 0'} (got {speed!r})")
         return given
 
     # -- knowing the body
@@ -467,8 +467,8 @@ class Motor(WithParameters, Port):
         return gait(walk, turn)
 
     def _send(self, orders: Iterable[Order], place: str) -> None:
-        for word, values, named in orders:
-            self._tell(word, *values, named=named, place=place)
+        for command, values, named in orders:
+            self._send_command(command, *values, named=named, place=place)
 
     # -- feeling
 

@@ -19,7 +19,7 @@ FASTER = 1.2
 INFINITE = float("inf")
 
 Order = tuple[str, tuple[Any, ...], Mapping[str, Any]]
-"""A command to the body: a word, its values, and more values by name."""
+"""A command to the body: its name, its values, and more values by name."""
 
 
 class Step(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from struct import pack
 
-from actr3d.recording.schema import COLUMNS, FORM
+from actr3d.recording.schema import COLUMNS, FORMAT
 
 
 class Checksums:
@@ -37,7 +37,7 @@ class Checksums:
     def whole(self) -> bytes:
         """Returns the checksum of the whole recording so far."""
         facts = [part for fact in sorted(self.facts.items()) for part in fact]
-        return _digest(FORM, *self.last.values(), *facts)
+        return _digest(FORMAT, *self.last.values(), *facts)
 
 
 def _digest(*values: int | str | bytes) -> bytes:

@@ -85,7 +85,7 @@ def _ended(value: Any) -> bool:
 _TEXT = _Kind("a text", _text)
 _TEXTS = _Kind("texts by their names, without NUL characters", _texts)
 _SEED = _Kind("a whole number or a text", _seed)
-_PERIOD = _Kind("a whole number above 0", _whole)
+_PERIOD = _Kind("a whole number > 0", _whole)
 _DICT = _Kind("values by their names", _dict)
 _FLAG = _Kind("true or false", _flag)
 _KINDS = {
@@ -99,7 +99,7 @@ _KINDS = {
     "built": _FLAG,
     "seed": _SEED,
     "program_seed": _SEED,
-    "until": _Kind("a number above 0, or null", _until),
+    "until": _Kind("a number > 0, or null", _until),
     "period_us": _PERIOD,
     "timestep_us": _PERIOD,
     "scene": _TEXT,
@@ -108,7 +108,7 @@ _KINDS = {
     "ended": _Kind('{"by": a text}, or null', _ended),
     "failed": _Kind("a text, or null", _failed),
     "whole": _Kind("true, or null", _true),
-    "branched": _Kind("a number from 0 on, or null", _time),
+    "branched": _Kind("a number >= 0, or null", _time),
 }
 """Facts that this library or the workbench reads; what others are, whoever writes them knows."""
 _SHOWN = 60

@@ -16,7 +16,7 @@ from actr3d.recording.checksums import Checksums
 from actr3d.recording.facts import LARGEST, check_facts
 from actr3d.recording.key import is_sealed
 from actr3d.recording.opening import opened
-from actr3d.recording.schema import COLUMNS, FORM, LEFT, SCHEMA
+from actr3d.recording.schema import COLUMNS, FORMAT, LEFT, SCHEMA
 from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
 
@@ -45,7 +45,7 @@ class Recorded:
         path: The file.
 
     Raises:
-        RecordingError: If there is no such file, or it is not a recording of this form.
+        RecordingError: If there is no such file, or it is not a recording of this format.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -58,7 +58,7 @@ class Recorded:
             check_facts(self.facts)
         except (sqlite3.Error, ValueError, TypeError, RecursionError, RecordingError) as error:
             self._file.close()
-            raise RecordingError(f"'{path}' is no recording: {_words(error)}") from None
+            raise RecordingError(f"'{path}' is not a recording: {_words(error)}") from None
 
     def _begin(self) -> dict[str, str]:
         """Starts a read transaction on the file, which may be written meanwhile; returns the facts as JSON texts.
@@ -67,7 +67,7 @@ class Recorded:
         SQLite do does not happen.
 
         Raises:
-            RecordingError: If it is not a recording of this form.
+            RecordingError: If it is not a recording of this format.
         """
         self._file.set_progress_handler(lambda: 1, OPENING_STEPS)
         self._file.execute("BEGIN")
@@ -79,9 +79,9 @@ class Recorded:
             if type(name) is not str or type(value) is not str or (facts and name <= next(reversed(facts))):
                 raise RecordingError("its facts are damaged")
             facts[name] = value
-        form = _parsed(facts["form"]) if "form" in facts else None
-        if form != FORM:
-            raise RecordingError(f"it has another form: it says {_short(form)}, this version reads {FORM!r}")
+        version = _parsed(facts["form"]) if "form" in facts else None
+        if version != FORMAT:
+            raise RecordingError(f"it has another format: it says {_short(version)}, this version reads {FORMAT!r}")
         if sorted(schema) != sorted((table,) for table in SCHEMA):
             raise RecordingError("it has other tables than a recording")
         self._file.set_progress_handler(None, 0)
@@ -193,7 +193,7 @@ class Recorded:
             for run, tick, text in self._rows("commands"):
                 data = _parsed(text)
                 if run < 1 or tick < 0 or not _is_command(data):
-                    raise ValueError(f"{_short(data)} is no command")
+                    raise ValueError(f"{_short(data)} is not a command")
                 yield RecordedCommand(run, tick, data)
 
     def _things(self, table: str, size: int, kinds: tuple[type, ...]) -> Iterator[list[Any]]:
@@ -264,7 +264,7 @@ def _parsed(text: str) -> Any:
 
 
 def _is_command(data: Any) -> bool:
-    """Returns whether a value has the form that `actr3d.simulation.Command.to_data` returns."""
+    """Returns whether a value has the structure that `actr3d.simulation.Command.to_data` returns."""
     if not isinstance(data, dict):
         return False
     command = cast("dict[str, Any]", data)

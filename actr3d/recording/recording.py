@@ -13,7 +13,7 @@ from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.forks import detach_in_copies
 from actr3d.recording.facts import check_fact
-from actr3d.recording.schema import FORM, LEFT, versions
+from actr3d.recording.schema import FORMAT, LEFT, versions
 from actr3d.recording.writer import Answer, CommandRow, NoWriter, State, Writer
 from actr3d.trace import TraceEvent
 
@@ -41,7 +41,7 @@ class Recording:
     """
 
     def __init__(self, path: Path | str, facts: Mapping[str, Any]) -> None:
-        all_facts: dict[str, Any] = {"form": FORM, "versions": versions(), **facts}
+        all_facts: dict[str, Any] = {"form": FORMAT, "versions": versions(), **facts}
         self._writer: Writer | NoWriter = Writer(Path(path), [(name, _plain(name, value)) for name, value in all_facts.items()])
         self._append = self._writer.events.append
         self._time = 0

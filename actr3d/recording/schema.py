@@ -6,8 +6,8 @@ import platform
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
-FORM = "actr3d recording 3"
-"""The value of the fact `form`; a file without it is not a recording."""
+FORMAT = "actr3d recording 3"
+"""The version of the file format: the value of the fact `form`, without which a file is not a recording."""
 
 OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
 """Facts that every recording writes itself."""

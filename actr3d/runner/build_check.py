@@ -108,7 +108,7 @@ def _wrong_arguments(head: str, args: ast.arguments, tree: ast.Module) -> str | 
     if kind in ("int", "float", "str", "bool", "dict", "list", "tuple", "object", "Any") or (
         defined is not None and not (isinstance(defined, ast.ClassDef) and (defined.decorator_list or defined.bases))
     ):
-        return f"{head} takes {kind}, which is no dataclass"
+        return f"{head} takes {kind}, which is not a dataclass"
     return None
 
 

@@ -11,7 +11,7 @@ SHOWN = 200
 END = ("failed", "ended", "whole")
 """The facts of how a run ended."""
 CHECKED_BEFORE = frozenset({"form", "versions"})
-"""Facts that are not compared here: a file of another form is not opened, and other versions are refused or allowed before the run."""
+"""Facts that are not compared here: a file of another format is not opened, and other versions are refused or allowed before the run."""
 UNCHECKED = frozenset({"branched"})
 """Facts that running a recording again cannot show: `branched` says that a user of the workbench kept the run as a branch."""
 PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended"}) | CHECKED_BEFORE

@@ -39,7 +39,7 @@ class Blueprint:
         self._place = f"{filename}:{code.co_firstlineno if code is not None else line_of_build(source)}"
         if not callable(self._build):
             found = f"it is {self._build!r}" if hasattr(self._module, "build") else "there is none"
-            raise ModelFileError(f"{self._place}: build is no function when the file has run ({found}); write {RIGHT}")
+            raise ModelFileError(f"{self._place}: build is not a function when the file has run ({found}); write {RIGHT}")
         try:
             names = list(inspect.signature(self._build).parameters)
         except (TypeError, ValueError) as error:

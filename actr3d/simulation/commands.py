@@ -73,7 +73,7 @@ def _parameter(agents: Agents, path: str, value: Any) -> None:
 
 
 ON_AGENTS: dict[str, Carry] = {"parameter": _parameter}
-"""Commands to the agents by word."""
+"""Commands to the agents by name."""
 
 
 def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, world: World) -> Command:

@@ -56,7 +56,7 @@ class Simulation:
         trace: The level of the trace; see `actr3d.trace.LEVELS`.
 
     Raises:
-        SimulationError: If the period is no whole multiple of the physics step, an agent's body does not exist, the world is not
+        SimulationError: If the period is not a whole multiple of the physics step, an agent's body does not exist, the world is not
             at its start, or a value has the wrong type.
         ParameterError: If the trace's level is unknown.
     """
@@ -184,7 +184,7 @@ class Simulation:
         """Runs a number of ticks, each with its tock.
 
         Raises:
-            SimulationError: If the number is no whole one, or negative; and as `tick` does.
+            SimulationError: If the number is not a whole number, or is negative; and as `tick` does.
             Exception: As `tick` and `tock` do.
         """
         with self._random:
@@ -210,7 +210,7 @@ class Simulation:
             What ended the run, its speed, and its delays if it could not keep up with real time.
 
         Raises:
-            SimulationError: If the time is no whole number of ticks, the factor is not above 0, or `until` is no function; and
+            SimulationError: If the time is not a whole number of ticks, the factor is not > 0, or `until` is not a function; and
                 as `tick` does.
             EndOfRun: If the limits of the program leave no time for any tick.
             Exception: As `tick` and `tock` do.
@@ -327,7 +327,7 @@ class Simulation:
             time: When [s]; a whole number of ticks.
 
         Raises:
-            SimulationError: If the time is after the end of the run, or the time is no whole number of ticks.
+            SimulationError: If the time is after the end of the run, or is not a whole number of ticks.
         """
         self._enter()
         to = whole_ticks(time, self._period, "seek")

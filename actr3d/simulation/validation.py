@@ -44,9 +44,9 @@ def count_of(n: Any, what: str) -> int:
     """Returns a count as an integer.
 
     Raises:
-        SimulationError: If it is no whole number, or negative.
+        SimulationError: If it is not a whole number, or is negative.
     """
-    message = f"{what}: must be a whole number, at least 0"
+    message = f"{what}: must be a whole number >= 0"
     count = _whole(n, message)
     if count < 0:
         raise SimulationError(f"{message} (got {n!r})")
@@ -57,12 +57,12 @@ def factor_of(factor: Any, what: str) -> float | None:
     """Returns a factor of real time; None for as fast as possible.
 
     Raises:
-        SimulationError: If it is no finite number above 0.
+        SimulationError: If it is not a finite number > 0.
     """
     if factor is None:
         return None
     if not isinstance(factor, Real) or not 0 < cast("Any", factor) < float("inf"):
-        raise SimulationError(f"{what}: must be a finite number above 0 (got {factor!r})")
+        raise SimulationError(f"{what}: must be a finite number > 0 (got {factor!r})")
     return float(factor)
 
 
@@ -80,7 +80,7 @@ def steps_of(period: float, world: World) -> int:
     """Returns the number of physics steps in a period.
 
     Raises:
-        SimulationError: If it is no whole number of them.
+        SimulationError: If it is not a whole number of them.
     """
     step = world.scene.timestep_us
     steps, rest = divmod(microseconds(period, "Simulation.period"), step)
@@ -93,11 +93,11 @@ def whole_ticks(time: float, period: int, what: str) -> int:
     """Returns the number of ticks of a period [us] in a time [s].
 
     Raises:
-        SimulationError: If it is no whole number of them, or negative.
+        SimulationError: If it is not a whole number of them, or is negative.
     """
     ticks, rest = divmod(microseconds(time, f"the time of {what}"), period)
     if rest or ticks < 0:
-        raise SimulationError(f"{what}: must be a whole number of ticks of {seconds(period):g} s, at least 0 (got {time!r})")
+        raise SimulationError(f"{what}: must be a whole number of ticks of {seconds(period):g} s, >= 0 (got {time!r})")
     return ticks
 
 
@@ -108,7 +108,7 @@ def named_factories(given: Any, what: str) -> dict[str, Any]:
     """Returns the factories of agents by name.
 
     Raises:
-        SimulationError: If it is no mapping, or a name is invalid.
+        SimulationError: If it is not a mapping, or a name is invalid.
     """
     if given is None:
         return {}

@@ -103,7 +103,8 @@ def sound(feature: Any, kind: type[Feature]) -> Feature:
     """Returns a feature of a modeller's detector with plain numbers: no text and no object may enter a chunk this way.
 
     Raises:
-        VisionError: If it is no feature of a kind, or a field is neither a number nor True or False, or is no distance or direction.
+        VisionError: If it is not a feature of the kind, or a field is neither a number nor True or False, or the distance is
+            negative.
     """
     name = kind.called()
     if not isinstance(feature, kind):
@@ -114,8 +115,8 @@ def sound(feature: Any, kind: type[Feature]) -> Feature:
         if value is None and slot not in ("distance", "direction"):
             continue
         if not isinstance(value, (Real, np.bool_)) or value != value or (slot == "distance" and value < 0):
-            least = " from 0 on" if slot == "distance" else ""
-            raise VisionError(f"detector '{name}': {slot} must be a number{least} (got {value!r})")
+            least = " >= 0" if slot == "distance" else ""
+            raise VisionError(f"detector '{name}': {slot}: must be a number{least} (got {value!r})")
         if units_of(kind)[slot].measures:
             changed[slot] = float(cast("Any", value))
         elif isinstance(value, np.generic):

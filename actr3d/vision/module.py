@@ -197,11 +197,11 @@ class Vision(WithParameters, Searching):
             up: Above it [degrees].
 
         Raises:
-            WorldError: If one of them is no number.
+            WorldError: If one of them is not a number.
             SimulationError: If the agent has no body.
         """
         angles = (number(value, f"vision '{self._path}': gaze: {name}") for name, value in (("left", left), ("up", up)))
-        self._tell("gaze", *map(math.radians, angles))
+        self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:
         """Begins a bottom-up search, or makes it wait; it replaces an earlier one."""
@@ -228,8 +228,8 @@ class Vision(WithParameters, Searching):
         self._ask_for_view(search)
         return search
 
-    def _kept_private(self, word: str) -> str | None:
-        return "Vision(private_view=False)" if word == "view" and self.private_view else None
+    def _kept_private(self, sensor: str) -> str | None:
+        return "Vision(private_view=False)" if sensor == "view" and self.private_view else None
 
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")
@@ -316,7 +316,7 @@ class Vision(WithParameters, Searching):
     def _turn_eye(self, search: Search, begun: int, left: float, up: float) -> None:
         """Turns the eye to the feature of a search, unless another search has replaced it."""
         if search is self._top_down and search.begun == begun:
-            self._tell("saccade", left, up)
+            self._send_command("saccade", left, up)
 
     # -- results
 

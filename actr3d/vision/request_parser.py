@@ -16,7 +16,7 @@ from actr3d.vision.feature import Feature, slot_names
 from actr3d.vision.units import FLAG, LABEL, PLAIN, Unit, units_of
 
 _PIECE = re.compile(r"(>=|<=|>|<|!)?(\?\w+|[\w.+-]+)$")
-SAYS = {">": "above ", ">=": "at least ", "<": "below ", "<=": "at most ", "is": "", "!": "other than "}
+SIGN_TEXTS = {">": "above ", ">=": "at least ", "<": "below ", "<=": "at most ", "is": "", "!": "other than "}
 
 
 class Test(NamedTuple):
@@ -65,7 +65,7 @@ def refusal(test: Test, feature: Feature) -> str:
     value = feature.shown(test.slot)
     if value is None:
         return f"its {test.slot} is not known"
-    return f"its {test.slot} is {as_text(value)}, not {SAYS[test.sign]}{as_text(test.value)}"
+    return f"its {test.slot} is {as_text(value)}, not {SIGN_TEXTS[test.sign]}{as_text(test.value)}"
 
 
 def _holds(sign: str, value: float, wanted: float) -> bool:

@@ -76,7 +76,7 @@ class Search(Reading):
         """Divides features into those that pass all tests, with their salience, and the others.
 
         Raises:
-            VisionError: If a salience is no number from 0 on.
+            VisionError: If a salience is not a number >= 0.
         """
         noticed: list[Feature] = []
         for feature in features:

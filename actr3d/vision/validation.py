@@ -35,20 +35,20 @@ def check_numbers(given: Mapping[str, Any]) -> None:
             continue
         number = _number(value)
         if number < 0:
-            raise ParameterError(f"Vision.{name}: must be at least 0 (got {value!r})")
+            raise ParameterError(f"Vision.{name}: must be >= 0 (got {value!r})")
         if number > MOST:
-            raise ParameterError(f"Vision.{name}: must be at most {MOST:g} (got {value!r})")
+            raise ParameterError(f"Vision.{name}: must be <= {MOST:g} (got {value!r})")
     for name in ("saccades", "private_view"):
         if not isinstance(given[name], bool):
             raise ParameterError(f"Vision.{name}: must be True or False (got {given[name]!r})")
     if not 0 <= _number(given["error_rate"]) <= 1:
-        raise ParameterError(f"Vision.error_rate: must be a probability, 0 to 1 (got {given['error_rate']!r})")
+        raise ParameterError(f"Vision.error_rate: must be a probability, >= 0 and <= 1 (got {given['error_rate']!r})")
     if not isinstance(given["rule"], str) or given["rule"] not in RULES:
         raise ParameterError(f"Vision.rule: must be one of {', '.join(RULES)} (got {given['rule']!r})")
 
 
 def _number(value: Any) -> float:
-    """Returns a number; infinity if it is too large for a float, -1 if it is no number."""
+    """Returns a number; infinity if it is too large for a float, -1 if it is not a number."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return -1.0
     try:
@@ -105,4 +105,4 @@ def encoding_of(given: Any) -> Emma | float:
         return Emma()
     if 0 <= _number(given) <= MOST:
         return _number(given)
-    raise ParameterError(f"Vision.encoding: must be a time from 0 on [s], 'emma' or an Emma (got {given!r})")
+    raise ParameterError(f"Vision.encoding: must be a time >= 0 [s], 'emma' or an Emma (got {given!r})")

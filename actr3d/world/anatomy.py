@@ -81,10 +81,10 @@ class Anatomy:
     """Its named movements."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Noise of sensors: the word and the standard deviation of every number of the reading, in its unit."""
+    """Noise of sensors: the name and the standard deviation of every number of the reading, in its unit."""
 
     steering: Steering | None = None
-    """How it is driven; None if it is no vehicle."""
+    """How it is driven; None if it is not a vehicle."""
 
     shoulders: float | None = None
     """Width across its shoulders [m]; None for a body without shoulders."""

@@ -110,7 +110,7 @@ def resolved(path: Path, error: type[WorldError]) -> Path:
     try:
         return path.resolve()
     except (OSError, ValueError, RuntimeError) as failure:
-        raise error(f"{str(path)!r} is no readable path: {failure}") from failure
+        raise error(f"{str(path)!r} is not a readable path: {failure}") from failure
 
 
 def digest(files: Files) -> str:

@@ -40,7 +40,7 @@ class BodyState:
     """Commanded speeds and held places, from `PostureHold.state`."""
 
     noise: tuple[tuple[str, int, int], ...]
-    """Sensors with noise: the word and the state of its random numbers."""
+    """Sensors with noise: the name and the state of its random numbers."""
 
     held: tuple[tuple[str, Held], ...]
     """What each hand holds and how."""
@@ -122,9 +122,9 @@ class Body:
         self.actuators: tuple[str, ...] = ACTUATORS.of(self)
         self.sensors: tuple[str, ...] = SENSORS.of(self)
         self._noise: Mapping[str, float] = dict(self.anatomy.noise)
-        for word, sd in self._noise.items():
-            known(word, self.sensors, self.name, "sensor")
-            number(sd, f"{self.name}: noise of {word}", 0)
+        for name, sd in self._noise.items():
+            known(name, self.sensors, self.name, "sensor")
+            number(sd, f"{self.name}: noise of {name}", 0)
 
     # -- commands and sensors
 
@@ -132,7 +132,7 @@ class Body:
         """Gives a command, which holds at once and until another one replaces it.
 
         Args:
-            word: One of `actuators`; see the functions in `actr3d.world.actuators`.
+            word: Its name, one of `actuators`; see the functions in `actr3d.world.actuators`.
             values: Its values.
             named: The same, by name.
 
@@ -152,7 +152,7 @@ class Body:
         simulation, and a condition of `Simulation.run`, nothing changes.
 
         Args:
-            word: One of `sensors`; see the functions in the `sensors` package.
+            word: Its name, one of `sensors`; see the functions in the `sensors` package.
             values: Its values.
             noise: The standard deviation of noise on every number of the reading, in its unit, or by field; None uses that of
                 the body's description, if any.
@@ -369,7 +369,7 @@ class Body:
 
 
 ACTUATORS = actuator = CommandRegistry[Body]()
-"""The commands of bodies by word; also the decorator `@actuator` that registers one. See `actr3d.world.actuators`."""
+"""The actuators of bodies by name; also the decorator `@actuator` that registers one. See `actr3d.world.actuators`."""
 
 SENSORS = sensor = CommandRegistry[Body]()
-"""The sensors of bodies by word; also the decorator `@sensor` that registers one. See `actr3d.world.sensors`."""
+"""The sensors of bodies by name; also the decorator `@sensor` that registers one. See `actr3d.world.sensors`."""

@@ -1,4 +1,4 @@
-"""Registries of what bodies can do and sense: words, each with the function that carries it out."""
+"""Registries of what bodies can do and sense: the functions of actuators and sensors by name."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from typing import Any, Generic, TypeVar
 from actr3d.errors import WorldError, did_you_mean
 
 B = TypeVar("B")
-"""What the words are for: `Body`."""
+"""The type that the functions are for: `Body`."""
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-class BodyWord(Generic[B]):
+class BodyFunction(Generic[B]):
     """One actuator or sensor of a body.
 
     Args:
-        name: The word.
+        name: Its name.
         function: Carries it out, with the body as its first argument.
         available: Returns whether a body has it.
     """
@@ -58,10 +58,10 @@ class BodyWord(Generic[B]):
         return re.split(r"(?<=\.)\s", inspect.getdoc(self._function) or "")[0]
 
 
-class CommandRegistry(dict[str, BodyWord[B]], Generic[B]):
-    """All words of one kind, by name; a decorator that registers a function under its own name.
+class CommandRegistry(dict[str, BodyFunction[B]], Generic[B]):
+    """All actuators, or all sensors, by name; a decorator that registers a function under its own name.
 
-    Use it as `@sensor`, or as `@sensor.if_body(condition)` for a word that only some bodies have.
+    Use it as `@sensor`, or as `@sensor.if_body(condition)` for a sensor that only some bodies have.
     """
 
     def __call__(self, function: F) -> F:
@@ -72,40 +72,40 @@ class CommandRegistry(dict[str, BodyWord[B]], Generic[B]):
         """Returns a decorator that registers a function for the bodies that fulfil a condition."""
 
         def register(function: F) -> F:
-            self[function.__name__] = BodyWord(function.__name__, function, available)
+            self[function.__name__] = BodyFunction(function.__name__, function, available)
             return function
 
         return register
 
     def of(self, body: B) -> tuple[str, ...]:
-        """Returns the words that a body has, in the order of their registration."""
-        return tuple(name for name, word in self.items() if word.available(body))
+        """Returns the names of those that a body has, in the order of their registration."""
+        return tuple(name for name, function in self.items() if function.available(body))
 
 
 # -- checks of values
 
 
-def known(word: Any, words: Collection[str], whose: str, kind: str) -> str:
-    """Returns a word if it is one of those that exist; the agent's code chooses it, so it may be anything.
+def known(name: Any, names: Collection[str], whose: str, kind: str) -> str:
+    """Returns a name if it is one of those that exist; the agent's code chooses it, so it may be anything.
 
     Args:
-        word: The given word.
-        words: Those that exist.
-        whose: The owner of the words, for the message.
-        kind: What they are called, for the message.
+        name: The given name.
+        names: Those that exist.
+        whose: The owner of what they name, for the message.
+        kind: The kind of what they name, for the message.
 
     Raises:
         WorldError: If it is none of them; with a list of them.
     """
-    if isinstance(word, str) and word in words:
-        return word
-    has = f"it has {', '.join(words)}" if words else f"it has no {kind}s"
-    near = did_you_mean(word, words) if isinstance(word, str) else ""
-    raise WorldError(f"{whose} has no {kind} {_quoted(word)}{near}; {has}")
+    if isinstance(name, str) and name in names:
+        return name
+    has = f"it has {', '.join(names)}" if names else f"it has no {kind}s"
+    near = did_you_mean(name, names) if isinstance(name, str) else ""
+    raise WorldError(f"{whose} has no {kind} {_quoted(name)}{near}; {has}")
 
 
-def _quoted(word: Any) -> str:
-    return f"'{word}'" if isinstance(word, str) else repr(word)
+def _quoted(name: Any) -> str:
+    return f"'{name}'" if isinstance(name, str) else repr(name)
 
 
 def number(value: Any, what: str, least: float = -math.inf, most: float = math.inf) -> float:
@@ -125,8 +125,8 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
     if not math.isfinite(given):
         raise WorldError(f"{what}: must be a finite number (got {value!r})")
     if not least <= given <= most:
-        bounds = f"{least:g} to {most:g}" if most < math.inf else f"at least {least:g}"
-        raise WorldError(f"{what}: must be {bounds} (got {value!r})")
+        bound = f">= {least:g}" if given < least else f"<= {most:g}"
+        raise WorldError(f"{what}: must be {bound} (got {value!r})")
     return given
 
 

@@ -19,8 +19,12 @@ def heading_of(matrix: NDArray[np.float64]) -> float:
     return math.atan2(matrix[3], matrix[0])
 
 
+def upright_axes(heading: float) -> NDArray[np.float64]:
+    """Returns the axes (3, 3), as columns, of a frame rotated about the vertical to a heading [rad]."""
+    c, s = math.cos(heading), math.sin(heading)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
 def upright_frame(data: Any, body: int) -> Frame:
     """Returns a frame at a MuJoCo body's origin, along its heading, with z up."""
-    heading = heading_of(data.xmat[body])
-    c, s = math.cos(heading), math.sin(heading)
-    return (data.xpos[body], np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]))
+    return (data.xpos[body], upright_axes(heading_of(data.xmat[body])))

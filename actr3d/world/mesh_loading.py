@@ -144,7 +144,7 @@ def _check_readable(kind: str, name: str) -> None:
     if kind in NEEDS and kind not in formats:
         raise MeshError(f"'{name}': trimesh reads {kind.upper()} only with {NEEDS[kind]}; install actr3d[formats]")
     if kind not in formats:
-        raise MeshError(f"'{name}': '.{kind}' is no mesh format; known are {', '.join(sorted(formats))}{did_you_mean(kind, formats)}")
+        raise MeshError(f"'{name}': '.{kind}' is not a mesh format; known are {', '.join(sorted(formats))}{did_you_mean(kind, formats)}")
 
 
 def _stl_size(content: bytes) -> int:
@@ -210,7 +210,7 @@ def _check_archive(content: bytes, name: str) -> None:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             size = sum(entry.file_size for entry in archive.infolist())
     except zipfile.BadZipFile as error:
-        raise MeshError(f"'{name}' is no whole archive: {error}") from error
+        raise MeshError(f"'{name}' is not a complete archive: {error}") from error
     if size > MAX_BYTES:
         raise MeshError(f"'{name}' unpacks to {size:,} bytes; the limit is {MAX_BYTES:,}")
 

@@ -38,7 +38,7 @@ class MotionCommands:
         base: The base of the body.
         joints: The joints of the body by name.
         hold: Keeps the speeds that these commands choose.
-        steering: How it is driven; None if it is no vehicle.
+        steering: How it is driven; None if it is not a vehicle.
         brake_control: Where the brake's control is in MuJoCo's `ctrl`; None without a brake.
     """
 

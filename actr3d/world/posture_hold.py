@@ -228,7 +228,7 @@ class PostureHold:
             self._follow_loop()
         ways, off = self.held - self._dofs.places, self._dofs.speeds - self._dofs.controls
         wanted = self._wanted(duration) if self._moves else self.commanded
-        # NaN, of what moves, is no deviation.
+        # NaN stands for degrees of freedom that move; it does not count as a deviation.
         if wanted is not self.commanded or (np.abs(ways) > SLIGHT_WAY).any() or (np.abs(off) > SLIGHT_SPEED).any():
             self._correct(ways, off, wanted)
         else:

@@ -28,35 +28,35 @@ class SensorNoise:
         self._name = name
         self._generators: dict[str, Generator] = {}
 
-    def added(self, word: str, reading: Any, sd: float | Mapping[str, float]) -> Any:
+    def added(self, sensor: str, reading: Any, sd: float | Mapping[str, float]) -> Any:
         """Returns the reading with noise on every number that is not a count.
 
         Args:
-            word: The sensor.
+            sensor: The name of the sensor.
             reading: Its reading; None, text and integers stay unchanged.
             sd: The standard deviation in the reading's unit, or one for each field named.
 
         Raises:
-            WorldError: If a standard deviation is not a number from 0 on, or is for a field that the reading does not have.
+            WorldError: If a standard deviation is not a number >= 0, or is for a field that the reading does not have.
         """
-        of = f"{self._name}: noise of {word}"
+        of = f"{self._name}: noise of {sensor}"
         checked = {_field(name, of): number(value, of, 0) for name, value in sd.items()} if isinstance(sd, Mapping) else number(sd, of, 0)
-        if word not in self._generators:
-            self._generators[word] = Generator(PCG64(SeedSequence([self._seed, *f"{self._name} {word}".encode()])))
-        return _noisy(word, reading, checked, self._generators[word])
+        if sensor not in self._generators:
+            self._generators[sensor] = Generator(PCG64(SeedSequence([self._seed, *f"{self._name} {sensor}".encode()])))
+        return _noisy(sensor, reading, checked, self._generators[sensor])
 
     def state(self) -> tuple[tuple[str, int, int], ...]:
         """Returns the state of the random numbers of each sensor."""
-        states = {word: dict(generator.bit_generator.state["state"]) for word, generator in self._generators.items()}
-        return tuple((word, int(state["state"]), int(state["inc"])) for word, state in states.items())
+        states = {sensor: dict(generator.bit_generator.state["state"]) for sensor, generator in self._generators.items()}
+        return tuple((sensor, int(state["state"]), int(state["inc"])) for sensor, state in states.items())
 
     def restore(self, state: tuple[tuple[str, int, int], ...]) -> None:
         """Restores a state that `state` returned."""
         self._generators.clear()
-        for word, at, increment in state:
+        for sensor, at, increment in state:
             bits = PCG64()
             bits.state = {"bit_generator": "PCG64", "state": {"state": at, "inc": increment}, "has_uint32": 0, "uinteger": 0}
-            self._generators[word] = Generator(bits)
+            self._generators[sensor] = Generator(bits)
 
 
 def _field(name: Any, of: str) -> str:
@@ -65,27 +65,27 @@ def _field(name: Any, of: str) -> str:
     return name
 
 
-def _noisy(word: str, value: Any, sd: Any, random: Generator) -> Any:
+def _noisy(sensor: str, value: Any, sd: Any, random: Generator) -> Any:
     if isinstance(value, float):
         if isinstance(sd, Mapping):
-            raise WorldError(f"noise of {word}: its readings have no fields; give one number")
+            raise WorldError(f"noise of {sensor}: its readings have no fields; give one number")
         return value + sd * random.standard_normal()
     if hasattr(value, "with_noise"):
         return value.with_noise(sd, random)
     if isinstance(value, tuple):
-        return tuple(_noisy(word, item, sd, random) for item in value)  # pyright: ignore[reportUnknownVariableType]
+        return tuple(_noisy(sensor, item, sd, random) for item in value)  # pyright: ignore[reportUnknownVariableType]
     if isinstance(value, dict):
-        return {key: _noisy(word, item, sd, random) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType]
+        return {key: _noisy(sensor, item, sd, random) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType]
     if is_dataclass(value) and not isinstance(value, type):
-        return type(value)(**_fields(word, value, sd, random))
+        return type(value)(**_fields(sensor, value, sd, random))
     return value
 
 
-def _fields(word: str, value: Any, sd: float | dict[str, float], random: Generator) -> dict[str, Any]:
+def _fields(sensor: str, value: Any, sd: float | dict[str, float], random: Generator) -> dict[str, Any]:
     old = {field.name: getattr(value, field.name) for field in fields(value)}
     if not isinstance(sd, dict):
-        return {name: _noisy(word, item, sd, random) for name, item in old.items()}
+        return {name: _noisy(sensor, item, sd, random) for name, item in old.items()}
     for name in sd:
         if name not in old:
-            raise WorldError(f"noise of {word}: its readings have no '{name}'{did_you_mean(name, old)}; they have {', '.join(old)}")
-    return {name: _noisy(word, item, sd[name], random) if name in sd else item for name, item in old.items()}
+            raise WorldError(f"noise of {sensor}: its readings have no '{name}'{did_you_mean(name, old)}; they have {', '.join(old)}")
+    return {name: _noisy(sensor, item, sd[name], random) if name in sd else item for name, item in old.items()}

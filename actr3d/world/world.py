@@ -69,13 +69,13 @@ class World:
         seed: The seed of sensor noise.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is no `Scene`, or if the seed is
-            not a whole number from 0 on.
+        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, or if the seed is
+            not a whole number >= 0.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
         if not isinstance(seed, int) or seed < 0:  # pyright: ignore[reportUnnecessaryIsInstance] # it may come from a file
-            raise WorldError(f"the seed of a world must be a whole number from 0 on (got {seed!r})")
+            raise WorldError(f"World.seed: must be a whole number >= 0 (got {seed!r})")
         if not isinstance(scene, Scene):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"a world is made of a Scene (got {scene!r})")
         self.scene = scene
@@ -117,7 +117,7 @@ class World:
             WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is none.
         """
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise WorldError(f"World.step: must be a whole number of steps (got {steps!r})")
+            raise WorldError(f"World.step: must be a whole number of steps, >= 0 (got {steps!r})")
         commands = [body.motion for body in self.bodies.values() if body.motion]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
         parts = self._with_commands(steps, commands) if commands else self._substepping.steps(steps)

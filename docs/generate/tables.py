@@ -19,7 +19,7 @@ from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
 from actr3d.world import Car, ImportedBody, Mannequin, Scene, World
 from actr3d.world.body import ACTUATORS, SENSORS
-from actr3d.world.command_registry import BodyWord
+from actr3d.world.command_registry import BodyFunction
 
 ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
@@ -57,7 +57,7 @@ def _rows(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _cell(text: str) -> str:
-    """Returns a text for a cell of a table: bars do not end it, and units in brackets are no links."""
+    """Returns a text for a cell of a table: bars do not end it, and units in brackets are not links."""
     text = text.replace("|", "\\|")
     return text if text.startswith("`") else text.replace("[", "\\[")
 
@@ -70,26 +70,26 @@ def _first_sentence(of: Callable[..., object]) -> str:
     return (inspect.getdoc(of) or "").partition("\n\n")[0].replace("\n", " ").partition(". ")[0].rstrip(".") + "."
 
 
-def _words(words: Mapping[str, BodyWord[Any]]) -> str:
+def _body_functions(functions: Mapping[str, BodyFunction[Any]]) -> str:
     parts = (Mannequin(), Car(position=(9, 0)), ImportedBody(name="imported", text=ROBOT, eye="eye", position=(0, 9, 0)))
     bodies = World(Scene(parts=parts)).bodies
     rows: list[Sequence[str]] = []
-    for name, word in words.items():
-        has = [kind for kind, body in bodies.items() if word.available(body)]
-        rows.append((_code(name), _code(word.takes), "any" if len(has) == len(bodies) else ", ".join(has), word.meaning))
+    for name, function in functions.items():
+        has = [kind for kind, body in bodies.items() if function.available(body)]
+        rows.append((_code(name), _code(function.takes), "any" if len(has) == len(bodies) else ", ".join(has), function.meaning))
     return _rows(("Name", "Arguments", "Bodies", "Meaning"), rows)
 
 
 @_registered
 def actuators() -> str:
     """Returns the table of all actuators."""
-    return _words(ACTUATORS)
+    return _body_functions(ACTUATORS)
 
 
 @_registered
 def sensors() -> str:
     """Returns the table of all sensors."""
-    return _words(SENSORS)
+    return _body_functions(SENSORS)
 
 
 @_registered

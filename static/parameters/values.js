@@ -5,13 +5,13 @@ export function written(value) {
   return value === null || value === undefined ? "" : String(value);
 }
 
-/** Returns the bounds of a parameter as text: "above 0, at most 3". */
+/** Returns the bounds of a parameter as text: "> 0, <= 3". */
 export function boundsText({ above, least, below, most, optional }) {
   const parts = [
-    above === null ? null : `above ${above}`,
-    least === null ? null : `at least ${least}`,
-    below === null ? null : `below ${below}`,
-    most === null ? null : `at most ${most}`,
+    above === null ? null : `> ${above}`,
+    least === null ? null : `>= ${least}`,
+    below === null ? null : `< ${below}`,
+    most === null ? null : `<= ${most}`,
     optional ? "may be empty" : null,
   ];
   return parts.filter(Boolean).join(", ");

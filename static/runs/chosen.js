@@ -10,19 +10,19 @@ import { download, Downloads } from "./downloads.js";
 import { present } from "./list.js";
 import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./wording.js";
 
-const FORMS = [
+const FORMATS = [
   ["sqlite", "SQLite", "The recording file, unchanged"],
   ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
   ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
   ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick; columns have the names of joints"],
 ];
 
-function Forms({ run }) {
-  const forms = run.problem ? FORMS.slice(0, 1) : FORMS.filter(([form]) => (form !== "replay.html" || run.kind === "simulation") && (form !== "states.csv" || run.states > 0));
-  const get = (event, form, text) => (event.preventDefault(), download(run, form, text));
+function DownloadLinks({ run }) {
+  const formats = run.problem ? FORMATS.slice(0, 1) : FORMATS.filter(([format]) => (format !== "replay.html" || run.kind === "simulation") && (format !== "states.csv" || run.states > 0));
+  const get = (event, format, text) => (event.preventDefault(), download(run, format, text));
   return html`<span class="downloads">
     <${Icon} name="download" />
-    ${forms.map(([form, text, title]) => html`<a key=${form} href=${`/api/recordings/${run.id}/file?form=${form}`} download title=${title} onClick=${(event) => get(event, form, text)}>${text}</a>`)}
+    ${formats.map(([format, text, title]) => html`<a key=${format} href=${`/api/recordings/${run.id}/file?form=${format}`} download title=${title} onClick=${(event) => get(event, format, text)}>${text}</a>`)}
   </span>`;
 }
 
@@ -87,7 +87,7 @@ function One({ run }) {
       <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>
     </div>
     <div class="files">
-      <${Forms} run=${run} />
+      <${DownloadLinks} run=${run} />
       ${run.problem ? null : html`<button class="bare" aria-expanded=${withFacts.value} title="Result, parameters, seed, events and file" onClick=${() => (withFacts.value = !withFacts.value)}>Details ${withFacts.value ? "▾" : "▸"}</button>`}
     </div>
     <${Replayed} run=${run} key=${run.id} />

@@ -15,15 +15,15 @@ function note(key, change) {
 }
 
 /** Fetches a file of a recording and saves it on the user's computer. Errors are shown as messages. */
-export async function download(run, form, title) {
-  const key = `${run.id}.${form}`;
+export async function download(run, format, title) {
+  const key = `${run.id}.${format}`;
   if (cancels.has(key)) return; // it is already being downloaded
   const cancel = new AbortController();
   cancels.set(key, cancel);
   const text = `${title} of ${nameOf(run)}`;
   downloads.value = [...downloads.value, { key, text, since: Date.now(), come: 0, all: 0 }];
   try {
-    const blob = await fetchFile(`/api/recordings/${run.id}/file?form=${form}`, cancel.signal, (come, all) => note(key, { come, all }));
+    const blob = await fetchFile(`/api/recordings/${run.id}/file?form=${format}`, cancel.signal, (come, all) => note(key, { come, all }));
     saveFile(key, blob);
   } catch (error) {
     if (!cancel.signal.aborted) complain(`Not downloaded: ${text}: ${error.message}`);

@@ -21,7 +21,7 @@ from tests.helpers.warnings_of_models import HEAD, warned
         ("def p(goal='?x!?x'): pass", "can never match: goal's slot '0' must and must not be ?x", 10),
         ("def p(goal=[None, 'a']): pass", "can never match: 'goal' must be empty and hold a chunk at once", 10),
         ("def p(goal='a b', retrieval=['a', 'b']): pass", "retrieval's slot '0' must be 'a' and 'b' at once", 10),
-        ("def p(goal=5): pass", "goal=5 is no pattern and matches anything; write text, such as goal='5'", 10),
+        ("def p(goal=5): pass", "goal=5 is not a pattern and matches anything; write text, such as goal='5'", 10),
         (
             "def init(): goal.set('count:1')\ndef p(goal='cuont:1'): pass",
             "no chunk is ever given a slot 'cuont'; did you mean 'count'?",
@@ -41,7 +41,7 @@ from tests.helpers.warnings_of_models import HEAD, warned
         ("def init(): goal.set('?x')", "nothing binds '?x'", 10),
         ("def p(goal='a ?x'):\n    goal.modify(a='?x')", "a='?x' stores this text literally; the variable's value is a=x", 11),
         ("def p(goal='a'): pass\ndef p(goal='b'): pass", "class Agent has two methods 'p', in lines 10 and 11; only the second counts", 11),
-        ("production_tme = 0.1", "has an attribute 'production_tme', which is no parameter; did you mean 'production_time'?", 10),
+        ("production_tme = 0.1", "has an attribute 'production_tme', which is not a parameter; did you mean 'production_time'?", 10),
         ("def init(): memory.treshold = 3", "Memory has no parameter 'treshold'; did you mean 'threshold'?", 10),
     ],
 )

@@ -69,7 +69,7 @@ def test_methods_that_may_be_meant_are_let_be(body: str) -> None:
         ("def init(): self.production_tim = 0.1", "Agent has no parameter 'production_tim'; did you mean 'production_time'?", 10),
         (
             "production_tresholds = 1\nproduction_treshold = 3",
-            "class Agent has an attribute 'production_treshold', which is no parameter",
+            "class Agent has an attribute 'production_treshold', which is not a parameter",
             11,
         ),
         (

@@ -54,7 +54,7 @@ def test_a_world_may_be_larger_than_its_map_but_not_smaller() -> None:
     world = World(map="##\n#", width=4, height=3)
     assert (world.width, world.height) == (4, 3)
     assert [cell.wall for cell in world.cells] == [True, True, False, False, True] + [False] * 7
-    with pytest.raises(GridError, match=r"World.width: must be at least 2 \(got 1\)"):
+    with pytest.raises(GridError, match=r"World.width: must be >= 2 \(got 1\)"):
         World(map="##", width=1)
 
 
@@ -65,7 +65,7 @@ def test_a_world_may_be_larger_than_its_map_but_not_smaller() -> None:
         ({"map": "\n  \n"}, "the map is empty"),
         ({}, "give a map, or a width and a height"),
         ({"width": 3}, "give a map, or a width and a height"),
-        ({"width": 0, "height": 2}, r"World.width: must be at least 1 \(got 0\)"),
+        ({"width": 0, "height": 2}, r"World.width: must be >= 1 \(got 0\)"),
         ({"width": 2.5, "height": 2}, r"World.width must be a whole number \(got 2.5\)"),
         ({"map": "#", "directions": 6}, r"World.directions: must be 4 or 8 \(got 6\)"),
         ({"map": "#", "cell": int}, "must be a class derived from grid.Cell"),
@@ -94,7 +94,7 @@ def test_unknown_places_are_refused() -> None:
             world.add(Agent(), *place)
     with pytest.raises(GridError, match="give both x and y"):
         world.add(Agent(), x=1)
-    with pytest.raises(GridError, match="is no cell of this world"):
+    with pytest.raises(GridError, match="is not a cell of this world"):
         world.add(Agent(), cell=World(map=ROOM).grid[1][1])
     with pytest.raises(GridError, match="an agent must be a model"):
         world.add("robot", 1, 1)

@@ -15,10 +15,10 @@ from tests.helpers.scheduler_models import Part, seen
 @pytest.mark.parametrize(
     ("what", "message"),
     [
-        (-0.5, r"a delay must not be negative \(got -0\.5 s\)"),
-        (float("nan"), r"a delay must be a finite number of seconds \(got nan\)"),
-        (float("inf"), r"a delay must be a finite number of seconds \(got inf\)"),
-        ({"delay": "soon"}, r"a delay must be a finite number of seconds \(got 'soon'\)"),
+        (-0.5, r"a delay: must be >= 0 \(got -0\.5 s\)"),
+        (float("nan"), r"a delay: must be a finite number of seconds \(got nan\)"),
+        (float("inf"), r"a delay: must be a finite number of seconds \(got inf\)"),
+        ({"delay": "soon"}, r"a delay: must be a finite number of seconds \(got 'soon'\)"),
         ({"dealy": 1}, r"cannot wait for \{'dealy': 1\}: no 'dealy'; did you mean 'delay'\?"),
         ({"priority": "high"}, r"a priority must be a number \(got 'high'\)"),
         (object, r"cannot wait for <class 'object'>; yield a number of seconds, a trigger or its name, a method"),
@@ -53,7 +53,7 @@ def test_yield_none_ends_the_generator_and_says_so() -> None:
 
 @pytest.mark.parametrize("limit", [-1, float("nan"), float("inf"), "1"])
 def test_a_limit_that_is_no_time(limit: Any) -> None:
-    with pytest.raises(SchedulerError, match=r"the limit of a run must (be a finite number of seconds|not be negative) \(got"):
+    with pytest.raises(SchedulerError, match=r"the limit of a run: must be (a finite number of seconds|>= 0) \(got"):
         Model().run(limit)
 
 

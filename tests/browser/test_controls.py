@@ -86,7 +86,7 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     open_tab(page, "Parameters")
     speed = page.locator("#parameter-speed")
     speed.fill("0")
-    expect(page.get_by_role("alert")).to_have_text(re.compile("must be above 0"))
+    expect(page.get_by_role("alert")).to_have_text(re.compile("must be > 0"))
     expect(page.get_by_role("button", name="Restart with these")).to_be_disabled()
     speed.fill("1.1")
     expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))

@@ -58,13 +58,13 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     banner.get_by_role("button", name="Back to the run of counting.py").click()
     shows(page, "#time", "t = 0.05 s")
     assert sessions(workbench) == before
-    page.get_by_label("Model", exact=True).select_option("doorway.py")  # which is no recording
+    page.get_by_label("Model", exact=True).select_option("doorway.py")  # which is not a recording
     shows(page, "#status", "at its start")
     expect(banner).to_have_count(0)
     page.goto(f"{workbench.url}/?recording={name}")
     expect(banner).to_contain_text(name)
     shows(page, "#time", "t = 6.80 s")
-    page.click("#restart")  # a new run of the model is no recording, and has the address of the model
+    page.click("#restart")  # a new run of the model is not a recording, and has the address of the model
     expect(banner).to_have_count(0)
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
 

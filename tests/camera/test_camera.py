@@ -235,10 +235,10 @@ def test_poses_must_be_there_and_be_numbers() -> None:
     with pytest.raises(CameraError, match=r"the pose of the site 'eye' was not computed; call mujoco\.mj_forward"):
         camera.look(mujoco.MjData(mj_model))
     mj_data.geom_xpos[0, 1] = math.nan
-    with pytest.raises(CameraError, match="the pose of geom 'ball' is no number"):
+    with pytest.raises(CameraError, match="the pose of geom 'ball' is not a number"):
         camera.look(mj_data)
     mj_data.site_xpos[0, 1] = math.inf
-    with pytest.raises(CameraError, match="the pose of the site 'eye' is no number"):
+    with pytest.raises(CameraError, match="the pose of the site 'eye' is not a number"):
         camera.look(mj_data)
     _, other = compiled(BALL + '<geom size=".1"/>')
     with pytest.raises(CameraError, match="mj_data belongs to another model: 2 geoms, not 1"):

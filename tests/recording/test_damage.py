@@ -145,7 +145,7 @@ FACTS = [
     ),
     ("UPDATE facts SET value = '7' WHERE name = 'kind'", "must be 'simulation' or 'program' (got 7)"),
     ("UPDATE facts SET value = '[[]]' WHERE name = 'seed'", "must be a whole number or a text"),
-    ("UPDATE facts SET value = 'NaN' WHERE name = 'until'", "must be a number above 0, or null"),
+    ("UPDATE facts SET value = 'NaN' WHERE name = 'until'", "must be a number > 0, or null"),
     ("INSERT OR REPLACE INTO facts VALUES ('helpers', '{\"a\": [1, 2]}')", "must be a file and a text by the names of modules"),
     (
         r"""UPDATE facts SET value = '"a\u0000b"' WHERE name = 'file'""",
@@ -160,20 +160,20 @@ FACTS = [
     ("UPDATE facts SET value = '\"now\"' WHERE name = 'ended'", "the fact 'ended' of a recording must be"),
     (
         "INSERT INTO facts VALUES ('period_us', '\"soon\"')",
-        "the fact 'period_us' of a recording must be a whole number above 0 (got 'soon')",
+        "the fact 'period_us' of a recording must be a whole number > 0 (got 'soon')",
     ),
     (f"UPDATE facts SET value = '{'[' * 200_000}' WHERE name = 'seed'", "nested too deeply"),
     (f"UPDATE events SET data = '{'[' * 200_000}'", "is damaged: something in it is nested too deeply"),
     ("UPDATE events SET data = '[[0, 1, 2, 3]]', count = 1", "is damaged: "),
     ("UPDATE events SET data = '{}', count = 1", "is damaged: "),
     ("UPDATE events SET data = '7', count = 1", "is damaged: "),
-    ("INSERT INTO commands VALUES (0, 1, 0, '{}', x'')", "is damaged: {} is no command"),
-    ('INSERT INTO commands VALUES (0, 1, 0, \'{"command": "x", "data": {"values": [], "named": {}}}\', x\'\')', "is no command"),
-    ('INSERT INTO commands VALUES (0, 1, 0, \'{"command": 1, "data": {"values": 1, "named": 2, "body": 3}}\', x\'\')', "is no command"),
+    ("INSERT INTO commands VALUES (0, 1, 0, '{}', x'')", "is damaged: {} is not a command"),
+    ('INSERT INTO commands VALUES (0, 1, 0, \'{"command": "x", "data": {"values": [], "named": {}}}\', x\'\')', "is not a command"),
+    ('INSERT INTO commands VALUES (0, 1, 0, \'{"command": 1, "data": {"values": 1, "named": 2, "body": 3}}\', x\'\')', "is not a command"),
     ("INSERT INTO states VALUES (0, 1, x'00', x'00', x'')", "is damaged: "),
     ("CREATE VIEW more AS SELECT 1", "it has other tables than a recording"),
     ("DROP TABLE answers", "it has other tables than a recording"),
-    ("UPDATE facts SET value = '\"actr3d recording 2\"' WHERE name = 'form'", "it has another form: it says 'actr3d recording 2'"),
+    ("UPDATE facts SET value = '\"actr3d recording 2\"' WHERE name = 'form'", "it has another format: it says 'actr3d recording 2'"),
 ]
 
 

@@ -16,7 +16,7 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded, Recording, opening
 from actr3d.recording.opening import opened
 from actr3d.trace import TraceEvent
-from workbench.forms import FORMS
+from workbench.exports import EXPORTS
 
 ENDLESS = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)"
 
@@ -58,7 +58,7 @@ def test_what_has_other_tables_is_no_recording(path: Path, script: str) -> None:
 def test_no_value_is_larger_than_can_be_read(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     altered(path, f"INSERT INTO facts VALUES ('large', '{'x' * 2_000_000}')")
     monkeypatch.setattr(opening, "LARGEST_VALUE", 1_000_000)
-    with pytest.raises(RecordingError, match="is no recording: string or blob too big"):
+    with pytest.raises(RecordingError, match="is not a recording: string or blob too big"):
         Recorded(path)
 
 
@@ -98,7 +98,7 @@ def test_a_journal_that_names_another_file_does_not_delete_it(path: Path, tmp_pa
     victim = tmp_path / "thesis.txt"
     victim.write_text("four years")
     monkeypatch.setattr(opening, "PATIENCE", 0.1)
-    readers: list[Callable[[Path], Any]] = [opened, Recorded, lambda there: FORMS["sqlite"](there, tmp_path / "copy")]
+    readers: list[Callable[[Path], Any]] = [opened, Recorded, lambda there: EXPORTS["sqlite"](there, tmp_path / "copy")]
     for read in readers:
         with_journal_of(victim, path)
         with pytest.raises(RecordingError, match="lies beside it"):

@@ -263,8 +263,8 @@ def test_a_recording_begins_with_its_run(tmp_path: Path) -> None:
     ("content", "message"),
     [
         (None, "no recording"),
-        (b"no database at all", "is no recording: file is not a database"),
-        (b"", "is no recording: it has other tables"),
+        (b"no database at all", "is not a recording: file is not a database"),
+        (b"", "is not a recording: it has other tables"),
     ],
 )
 def test_what_is_no_recording_is_called_that(content: bytes | None, message: str, tmp_path: Path) -> None:
@@ -275,7 +275,7 @@ def test_what_is_no_recording_is_called_that(content: bytes | None, message: str
         Recorded(path)
 
 
-def test_a_recording_of_another_form_is_refused(tmp_path: Path) -> None:
+def test_a_recording_of_another_format_is_refused(tmp_path: Path) -> None:
     with Recording(tmp_path / "run", {"form": "actr3d recording 9"}):
         pass
     with pytest.raises(RecordingError, match="says 'actr3d recording 9', this version reads"):
@@ -338,7 +338,7 @@ def test_facts_without_a_value_are_damage(tmp_path: Path) -> None:
     with sqlite3.connect(tmp_path / "run") as file:
         file.executescript("CREATE TABLE facts (name TEXT, value TEXT); INSERT INTO facts VALUES ('form', NULL)")
     file.close()
-    with pytest.raises(RecordingError, match="is no recording"):
+    with pytest.raises(RecordingError, match="is not a recording"):
         Recorded(tmp_path / "run")
 
 

@@ -270,7 +270,7 @@ def test_a_recording_without_its_facts_is_told(file: Path, capsys: pytest.Captur
     forge(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
-    assert "is no recording: it does not say its kind and versions" in capsys.readouterr().err
+    assert "is not a recording: it does not say its kind and versions" in capsys.readouterr().err
 
 
 def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -396,7 +396,7 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
     with pytest.raises(ParameterError, match=r"a recording holds every event: trace 'all', or none \(got 'production'\)"):
         run_model(file, RunLimits(trace=Trace("production")), record=tmp_path / "run")
     assert main(["replay", str(file)]) == 2
-    assert "is no recording" in capsys.readouterr().err
+    assert "is not a recording" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -407,8 +407,8 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("def build(*, a: int) -> Simulation: pass", r":2: build\(\*, a: int\) takes arguments by name only"),
         ("def build(*a) -> Simulation: pass", "any number of them"),
         ("def build(a) -> Simulation: pass", r":2: build\(a\) does not say which dataclass its parameters are of"),
-        ("def build(a: int) -> Simulation: pass", "takes int, which is no dataclass"),
-        ("class P: pass\ndef build(a: P) -> Simulation: pass", ":3: .* takes P, which is no dataclass"),
+        ("def build(a: int) -> Simulation: pass", "takes int, which is not a dataclass"),
+        ("class P: pass\ndef build(a: P) -> Simulation: pass", ":3: .* takes P, which is not a dataclass"),
         (
             "from enum import Enum\nclass P(Enum): pass\ndef build(a: P) -> Simulation: pass",
             r":4: build\(a: P\): its parameter must be a dataclass",
@@ -427,8 +427,8 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("from elsewhere import build", ":2: build is imported"),
         ("try:\n    def build(a) -> Simulation: pass\nexcept ImportError: pass", r":3: build\(a\) does not say which dataclass"),
         ("(build, x) = (1, 2)", ":2: build is a value"),
-        ("def build() -> Simulation: pass\ndel build", r":2: build is no function when the file has run \(there is none\); write"),
-        ("@lambda _: None\ndef build() -> Simulation: pass", r":3: build is no function when the file has run \(it is None\)"),
+        ("def build() -> Simulation: pass\ndel build", r":2: build is not a function when the file has run \(there is none\); write"),
+        ("@lambda _: None\ndef build() -> Simulation: pass", r":3: build is not a function when the file has run \(it is None\)"),
         (
             "from dataclasses import dataclass\n@dataclass\nclass P: pass\ndef build(a: P | None) -> Simulation: pass",
             r":5: build\(a: P \| None\): its parameter must be a dataclass",

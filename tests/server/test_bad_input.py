@@ -108,7 +108,7 @@ def test_what_is_wrong_is_told_with_its_place_and_not_echoed(server: Served) -> 
         ("/api/sessions", '{"model": "counting.py", "seed": 1e400}', 422, "body.seed: Input should be a finite number"),
         ("/api/sessions", f'{{"model": {HALF}}}', 422, "body.model: Input should be a valid string"),
         ("/api/sessions", f'{{"model": "counting.py", {HALF}: 1}}', 422, "body: Input should be a valid string"),
-        ("/api/sessions", '{"model": "counting.py", }', 400, "the body is no JSON: "),
+        ("/api/sessions", '{"model": "counting.py", }', 400, "the body is not JSON: "),
         ("/api/compare", '{"first": "secret"}', 422, "body.second: Field required"),
         ("/api/sessions/x/command", '{"command": {"type": "secret"}}', 422, "body.command: 'type' must be one of 'explain', 'memory', "),
         ("/api/sessions", f'{{"{"x" * 200}secret": 1}}', 422, "body.model: Field required"),

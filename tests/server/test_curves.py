@@ -12,7 +12,7 @@ from actr3d.recording import Recorded
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, ended, recording
 from workbench.curves import NOTHING
-from workbench.forms import curves_of
+from workbench.exports import curves_of
 from workbench.worker.state_history import Past
 
 PUSHED = """from actr3d.actr import *

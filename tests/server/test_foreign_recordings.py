@@ -97,7 +97,7 @@ def test_whatever_is_among_the_recordings_all_are_listed(desk: Desk, hostile: Pa
     problems = {summary.id: summary.problem for summary in found}
     assert problems.pop("good") is None
     assert all(problems.values()), problems
-    assert problems["endless"] == problems["computed"] == problems["trigger"] == "no recording: it has other tables than a recording"
+    assert problems["endless"] == problems["computed"] == problems["trigger"] == "not a recording: it has other tables than a recording"
     assert problems["long"] == "the description of its run is too long to be listed"
 
 

@@ -15,7 +15,7 @@ from actr3d.values import plain, to_json
 from tests.helpers.sessions import PATIENCE, Desk
 from tests.server.test_worker import gone, of, runs_again
 from workbench.worker.memory import TOO_MUCH_MEMORY
-from workbench.worker.messages import whole
+from workbench.worker.messages import shortened
 from workbench.worker.spawn import Zygote
 from workbench.worker.truncation import LARGEST, bounded_json, cut
 
@@ -249,5 +249,5 @@ def test_what_is_cut_says_so() -> None:
     assert cut(list(range(202)))[-1] == "… (2 more)"
     assert cut(dict.fromkeys(range(203), 0))["…"] == "3 more"
     assert cut((1, "a", None)) == [1, "a", None]
-    assert whole("a" * 6000 + "b" * 6000).count("b") == 5000
-    assert whole("short") == "short"
+    assert shortened("a" * 6000 + "b" * 6000).count("b") == 5000
+    assert shortened("short") == "short"

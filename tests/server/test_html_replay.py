@@ -144,5 +144,5 @@ def test_it_is_made_aside_and_what_goes_wrong_is_told(desk: Desk, walked: Path, 
         assert inside(made.read().decode())["model"] == "model.py"
     broken = tmp_path / "broken.sqlite"
     broken.write_bytes(b"nothing")
-    with pytest.raises(ReadingError, match=r"^'broken' is no recording: file is not a database$"):
+    with pytest.raises(ReadingError, match=r"^'broken' is not a recording: file is not a database$"):
         desk.do(Readers(desk.workers).make("replay.html", broken))

@@ -106,7 +106,7 @@ def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) ->
     path = tmp_path / "x.sqlite"
     path.write_bytes(b"nothing" * 1000)
     told = desk.do(Reruns(desk.workers).run(path, waits))
-    assert told == {"agrees": None, "text": "it is no recording: file is not a database"}
+    assert told == {"agrees": None, "text": "it is not a recording: file is not a database"}
 
 
 def test_it_ends_when_nobody_waits_any_more_and_when_it_comes_no_further(

@@ -130,7 +130,7 @@ def test_what_memory_cannot_be_told_of_a_chain() -> None:
 
 
 def test_a_misspelt_option_is_warned_of() -> None:
-    with pytest.warns(ModelWarning, match="'resum_at', which is no parameter; did you mean 'resume_at'"):
+    with pytest.warns(ModelWarning, match="'resum_at', which is not a parameter; did you mean 'resume_at'"):
         cooking("class Agent(Base):\n    resum_at = 'method'\n")
 
 

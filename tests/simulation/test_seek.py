@@ -174,9 +174,9 @@ def test_listeners_hear_nothing_of_the_way_back() -> None:
 
 def test_a_time_between_ticks_is_refused() -> None:
     simulation, _ = first_run(10)
-    with pytest.raises(SimulationError, match=r"seek: must be a whole number of ticks of 0\.01 s, at least 0 \(got 0\.055\)"):
+    with pytest.raises(SimulationError, match=r"seek: must be a whole number of ticks of 0\.01 s, >= 0 \(got 0\.055\)"):
         simulation.seek(0.055)
-    with pytest.raises(SimulationError, match="at least 0"):
+    with pytest.raises(SimulationError, match=">= 0"):
         simulation.seek(-0.01)
 
 

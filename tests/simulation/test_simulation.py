@@ -312,7 +312,7 @@ def test_real_time_is_kept_and_measured_and_lateness_told() -> None:
     late = simulation.run(0.05, real_time=100)
     assert (late.ticks, late.late_ticks) == (5, 5)  # none is skipped
     assert late.latest > 0.02
-    with pytest.raises(SimulationError, match=r"real_time\): must be a finite number above 0"):
+    with pytest.raises(SimulationError, match=r"real_time\): must be a finite number > 0"):
         simulation.run(1, real_time=0)
 
 
@@ -348,10 +348,10 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: s.command(5), r"command and body must be text \(got 5\)"),
     (lambda s: s.command("stop", body=7), r"must be text \(got 7\)"),
     (lambda s: s.command("parameter", 5, 1), r"a parameter is named by a text such as 'walker\.memory\.latency' \(got 5\)"),
-    (lambda s: s.step(-1), r"step\(n\): must be a whole number, at least 0 \(got -1\)"),
-    (lambda s: s.step(1.5), r"step\(n\): must be a whole number, at least 0 \(got 1\.5\)"),
-    (lambda s: s.run(1, real_time="2"), r"run\(real_time\): must be a finite number above 0 \(got '2'\)"),
-    (lambda s: s.run(1, real_time=float("inf")), r"run\(real_time\): must be a finite number above 0 \(got inf\)"),
+    (lambda s: s.step(-1), r"step\(n\): must be a whole number >= 0 \(got -1\)"),
+    (lambda s: s.step(1.5), r"step\(n\): must be a whole number >= 0 \(got 1\.5\)"),
+    (lambda s: s.run(1, real_time="2"), r"run\(real_time\): must be a finite number > 0 \(got '2'\)"),
+    (lambda s: s.run(1, real_time=float("inf")), r"run\(real_time\): must be a finite number > 0 \(got inf\)"),
     (lambda s: s.run(until=True), r"run\(until\): must be a function that takes a Glimpse \(got True\)"),
     (lambda s: Simulation(odd("room")), r"Simulation\.scene: must be a Scene or a World \(got 'room'\)"),
     (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the agents are \(it has come to 0\.02 s\)"),

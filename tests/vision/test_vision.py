@@ -188,7 +188,7 @@ def test_parameters_that_are_none_are_told() -> None:
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"dely": 1}, "Vision has no parameter 'dely'; did you mean 'delay'"),
         ({"horizontal_fof": 1}, "did you mean 'horizontal_fov'"),
-        ({"delay": -1}, r"Vision\.delay: must be at least 0"),
+        ({"delay": -1}, r"Vision\.delay: must be >= 0"),
         ({"delay": "soon"}, r"Vision\.delay: must be a number"),
         ({"error_rate": 2}, r"Vision\.error_rate: must be a probability"),
         ({"rule": "luck"}, r"Vision\.rule: must be one of share, sos"),
@@ -201,7 +201,7 @@ def test_parameters_that_are_none_are_told() -> None:
             Vision(None, **options)
     with pytest.raises(ParameterError):
         Vision()  # type: ignore[call-arg]
-    with pytest.raises(VisionError, match=r"must give a number from 0 on for a feature \(gave -1"):
+    with pytest.raises(VisionError, match=r"must give a number >= 0 for a feature \(gave -1"):
         Mindful(room(), asking("vision.request('feature:opening')", ", salience=lambda feature: -1")).tick(11)
 
 

@@ -199,7 +199,7 @@ class Agent(Model):
 
 def test_an_encoding_that_is_none_is_told() -> None:
     for wrong in ("ema", -1, None, True):
-        with pytest.raises(ParameterError, match=r"Vision\.encoding: must be a time from 0 on \[s\], 'emma' or an Emma"):
+        with pytest.raises(ParameterError, match=r"Vision\.encoding: must be a time >= 0 \[s\], 'emma' or an Emma"):
             Vision(None, encoding=wrong)
 
 

@@ -30,7 +30,7 @@ def only(openings: tuple[Any, ...]) -> Opening:
 
 
 def high(openings: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Returns those that are no slits between the ground and the foot of something."""
+    """Returns those that are not slits between the ground and the foot of something."""
     return tuple(opening for opening in openings if opening.height > 0.5)
 
 

@@ -369,16 +369,16 @@ def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way()
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"eye_height": 1.0}, r"Mannequin\.eye_height: must be in the head, 1\.52 to 1\.73 m here \(got 1\.0\)"),
-        ({"shoulder_width": 0.2}, r"Mannequin\.shoulder_width: must be at least 0\.15 of the height"),
+        ({"eye_height": 1.0}, r"Mannequin\.eye_height: must be in the head, here >= 1\.52 and <= 1\.73 m \(got 1\.0\)"),
+        ({"shoulder_width": 0.2}, r"Mannequin\.shoulder_width: must be >= 0\.15 of the height"),
         ({"arm_length": 1.5}, r"Mannequin\.arm_length: hands would touch the floor"),
-        ({"shoulder_width": 1.8}, r"Mannequin\.shoulder_width: must be at most the height \(got 1\.8\)"),
-        ({"depth": 2}, r"Mannequin\.depth: must be at most the height \(got 2\.0\)"),
+        ({"shoulder_width": 1.8}, r"Mannequin\.shoulder_width: must be <= the height \(got 1\.8\)"),
+        ({"depth": 2}, r"Mannequin\.depth: must be <= the height \(got 2\.0\)"),
         ({"load": Load(shape="box", size=(0.3, 0.4, 2.3))}, r"Mannequin\.load: would touch the floor; it can be 2\.21 m high \(got 2\.3\)"),
         ({"trunk": "bx"}, r"must be one of 'ellipsoid', 'box' \(got 'bx'\); did you mean 'box'"),
         ({"mass": -1}, r"Mannequin\.mass: must be > 0"),
         ({"noise": (("poze", 1.0),)}, r"walker has no sensor 'poze'; did you mean 'pose'"),
-        ({"noise": (("pose", -1.0),)}, r"walker: noise of pose: must be at least 0 \(got -1\.0\)"),
+        ({"noise": (("pose", -1.0),)}, r"walker: noise of pose: must be >= 0 \(got -1\.0\)"),
     ],
 )
 def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], message: str) -> None:
@@ -390,7 +390,7 @@ def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], messa
     ("wrong", "message"),
     [
         ({"size": (1.0, 0.2, 0.1)}, "Load.size: a bar takes length and thickness"),
-        ({"size": (0.1, 0.2)}, "the length of a bar must be at least its thickness"),
+        ({"size": (0.1, 0.2)}, "the length of a bar must be >= its thickness"),
         ({"shape": "box"}, "a box takes depth, width and height"),
         ({"mass": 0}, "Load.mass: must be > 0"),
     ],

@@ -303,10 +303,10 @@ BROKEN: list[tuple[str, Callable[[], str | bytes], str]] = [
     ),
     ("mesh.gltf", lambda: gltf(buffers=[{"uri": "../secret.bin", "byteLength": 36}]), r"'\.\./secret\.bin' lies outside the folder"),
     ("mesh.3mf", bomb, r"'mesh\.3mf' unpacks to 314,572,800 bytes; the limit is 268,435,456"),
-    ("mesh.3mf", lambda: b"PK\x03\x04 and no more", r"'mesh\.3mf' is no whole archive"),
+    ("mesh.3mf", lambda: b"PK\x03\x04 and no more", r"'mesh\.3mf' is not a complete archive"),
     ("mesh.zip", bomb, r"'mesh\.zip' is an archive, not a mesh: unpack it"),
-    ("mesh.step", lambda: "ISO-10303-21;", r"'\.step' is no mesh format; known are .*glb"),
-    ("mesh.stk", lambda: "solid", r"'\.stk' is no mesh format; .*did you mean 'stl'\?"),
+    ("mesh.step", lambda: "ISO-10303-21;", r"'\.step' is not a mesh format; known are .*glb"),
+    ("mesh.stk", lambda: "solid", r"'\.stk' is not a mesh format; .*did you mean 'stl'\?"),
     ("mesh.dae", lambda: "<COLLADA>", r"'mesh\.dae' cannot be read as dae"),
     ("mesh.xyz", lambda: "0 0 0\n1 0 0\n0 1 0\n", r"'mesh\.xyz' has no triangles: only 3 points or lines"),
 ]
@@ -435,7 +435,7 @@ def test_instances_are_counted_before_they_are_made(tmp_path: Path) -> None:
         ({"path": "one.stl", "files": (("two.stl", b""),)}, r"'two\.stl' is empty"),
         ({"path": "link.stl"}, r"'link\.stl' lies outside the folder 'here'"),
         ({"path": "loop.stl"}, r"'loop\.stl' cannot be read: Symlink loop|no file 'loop\.stl'"),
-        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is no readable path: Symlink loop|no file 'one\.stl'"),
+        ({"path": "loop.stl/one.stl"}, r"loop\.stl' is not a readable path: Symlink loop|no file 'one\.stl'"),
     ],
 )
 def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,15 +5,15 @@ const ROW = 22;
 const KINDS = { fire: "fires", output: "prints" };
 // Many a tick, or how a run is set up; shown where they are asked for.
 const DETAILS = new Set(["answer", "conflict", "select", "state", "start", "productions", "initialize", "observe", "run", "added"]);
-const isDetail = ([time, , kind, told]) => DETAILS.has(kind) || (time === 0 && (kind === "add" || (kind === "buffer" && told === "empty")));
+const isDetail = ([time, , kind, text]) => DETAILS.has(kind) || (time === 0 && (kind === "add" || (kind === "buffer" && text === "empty")));
 
 class Events {
-  constructor(told, seek) {
-    this.rows = told.rows;
+  constructor(events, seek) {
+    this.rows = events.rows;
     this.seek = seek;
     this.list = document.getElementById("events");
     this.now = -1;
-    this.more = told.more;
+    this.more = events.more;
     this.filter();
     this.list.addEventListener("scroll", () => this.show());
     new ResizeObserver(() => this.show()).observe(this.list);
@@ -27,14 +27,14 @@ class Events {
   filter() {
     const words = document.getElementById("filter").value.toLowerCase().split(/\s+/).filter(Boolean);
     const details = document.getElementById("details").checked;
-    const fits = ([, source, kind, told]) => words.every((word) => `${source} ${kind} ${KINDS[kind] || ""} ${told}`.toLowerCase().includes(word));
+    const fits = ([, source, kind, text]) => words.every((word) => `${source} ${kind} ${KINDS[kind] || ""} ${text}`.toLowerCase().includes(word));
     this.shown = this.rows.filter((row) => (details || !isDetail(row)) && fits(row));
     document.getElementById("height").style.height = `${this.shown.length * ROW}px`;
-    this.tell();
+    this.showCount();
     this.show();
   }
 
-  tell() {
+  showCount() {
     const left = this.more ? `; ${this.more} more are left out` : "";
     document.getElementById("count").textContent = `${this.shown.length} of ${this.rows.length} events${left}`;
   }
@@ -65,7 +65,7 @@ class Events {
   }
 
   row(number) {
-    const [time, source, kind, told] = this.shown[number];
+    const [time, source, kind, text] = this.shown[number];
     const row = document.createElement("button");
     row.type = "button";
     row.className = `event${kind === "fire" ? " fire" : ""}${number > this.now ? " ahead" : time === this.present ? " now" : ""}`;
@@ -73,9 +73,9 @@ class Events {
     const when = document.createElement("time"), who = document.createElement("span"), what = document.createElement("b");
     when.textContent = time.toFixed(3);
     who.textContent = `${source} ${KINDS[kind] || kind} `;
-    what.textContent = told;
+    what.textContent = text;
     row.append(when, who, what);
-    row.title = `${source} ${kind}: ${told}`;
+    row.title = `${source} ${kind}: ${text}`;
     row.addEventListener("click", () => this.seek(time));
     return row;
   }

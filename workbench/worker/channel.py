@@ -36,7 +36,7 @@ from workbench.worker.messages import (
     State,
     Where,
     framed,
-    whole,
+    shortened,
 )
 
 WIRE_LOST = 88
@@ -47,7 +47,7 @@ MOST_BYTES = 50_000_000
 """The maximum size of these events [bytes]."""
 AT_ONCE = 2_000
 """The maximum number of events in one message."""
-MOST_TOLD = 1_000
+MOST_MESSAGES = 1_000
 """The maximum number of messages that wait to be sent; beyond it warnings are left out."""
 
 
@@ -137,7 +137,9 @@ class Channel:
         lines: list[traceback.FrameSummary] = [] if frame is None else list(traceback.extract_stack(frame))
         folder = self.start.folder + os.sep
         own = [line for line in lines if line.filename == self.start.path or line.filename.startswith(folder)]
-        return At(file=whole(own[-1].filename), line=own[-1].lineno, function=whole(own[-1].name)) if own else At(file=None, line=None)
+        return (
+            At(file=shortened(own[-1].filename), line=own[-1].lineno, function=shortened(own[-1].name)) if own else At(file=None, line=None)
+        )
 
     def _check_wire(self) -> None:
         """Ends the process if the model has closed the connection: its number may belong to another file of the model by now."""
@@ -151,7 +153,7 @@ class Channel:
         if isinstance(message, Notice) and self.events is not None:
             message = msgspec.structs.replace(message, events=self.events())
         with self._something:
-            if isinstance(message, Notice) and len(self._messages) >= MOST_TOLD and message.level != "error":
+            if isinstance(message, Notice) and len(self._messages) >= MOST_MESSAGES and message.level != "error":
                 return
             if isinstance(message, (Reply, At, Facts)) and self._state is not None:
                 self._flush_events()

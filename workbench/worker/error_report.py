@@ -7,7 +7,7 @@ from pathlib import Path
 from actr3d.errors import Actr3dError
 from actr3d.runner.traceback_report import traceback_report
 from workbench.worker.memory import relieve
-from workbench.worker.messages import Notice, notice, whole
+from workbench.worker.messages import Notice, notice, shortened
 
 _HERE = str(Path(__file__).parents[1])
 
@@ -15,7 +15,7 @@ UNFORESEEN = (Exception, SystemExit, KeyboardInterrupt)
 """All exceptions that a model may raise and that are reported to its author, but not those that end a run from outside."""
 
 
-def told_of(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Returns a short description of an error."""
     if isinstance(error, MemoryError):
         return "the model used more memory than it may"
@@ -23,7 +23,7 @@ def told_of(error: BaseException) -> str:
         return f"the model ended its process (SystemExit: {error.code})"
     try:
         text = str(error) if isinstance(error, Actr3dError) else traceback_report(error, _HERE).message
-        return whole(text) or type(error).__name__
+        return shortened(text) or type(error).__name__
     except MemoryError:
         return f"{type(error).__name__}, and not enough memory is left to say more"
 
@@ -34,7 +34,7 @@ def notice_of(error: BaseException) -> Notice:
         relieve()
     try:
         report = traceback_report(error, _HERE)
-        text = told_of(error).removeprefix(f"{report.file}:{report.line}: ")  # the notice has the position in separate fields
+        text = describe_error(error).removeprefix(f"{report.file}:{report.line}: ")  # the notice has the position in separate fields
         return notice("error", text, report.file, report.line, report.text)
     except MemoryError:
-        return notice("error", told_of(error))
+        return notice("error", describe_error(error))

@@ -12,7 +12,7 @@ from workbench.worker.channel import Channel
 from workbench.worker.messages import Loaded, digest_of
 
 
-class ToldHelpers(HelperTexts):
+class ReportedHelpers(HelperTexts):
     """Keeps the texts of helper modules, and reports each to the server.
 
     Args:
@@ -40,7 +40,7 @@ def helpers_of(channel: Channel, known: Mapping[str, Sequence[str]]) -> Generato
     """
     start = channel.start
     if start.recorded is None:
-        yield ToldHelpers(channel, known)
+        yield ReportedHelpers(channel, known)
     else:
         with sealed(start.path, start.source, known) as texts:
             yield texts

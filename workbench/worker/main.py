@@ -47,9 +47,9 @@ def main(wire: socket.socket, output: int, memory: int) -> None:
     errors = controller.errors = sys.stderr = sys.__stderr__ = _errors(channel, controller)  # type: ignore[misc]
     os.register_at_fork(after_in_child=errors.lines.forget)
     warnings.simplefilter("default")
-    warnings.showwarning = _told_to(channel)
+    warnings.showwarning = _warning_sender(channel)
     try:
-        with before_the_end(controller.say_all):
+        with before_the_end(controller.send_all):
             _run(channel, controller)
     except EndOfRun:
         pass
@@ -74,7 +74,7 @@ def _errors(channel: Channel, controller: RunController) -> ModelOutput:
         if channel.left:  # a forked copy of the process sends nothing; its output goes the way of other processes
             with suppress(OSError):
                 os.write(2, f"{line}\n".encode(errors="replace"))
-        elif line.strip() and not controller.repeats:
+        elif line.strip() and not controller.catches_up:
             count += 1
             if count <= MOST_PRINTED:
                 channel.post(notice("info", line.rstrip()))
@@ -160,7 +160,7 @@ class _PastPrint(io.RawIOBase):
         if self._rest is not None:
             lines, end, rest = bytes(data).rpartition(b"\n")
             if end:
-                self._tell(self._rest + lines + end)
+                self._pass_on(self._rest + lines + end)
                 self._rest = rest
             else:
                 self._rest += rest
@@ -169,9 +169,9 @@ class _PastPrint(io.RawIOBase):
     def flush(self) -> None:
         if self._rest:
             rest, self._rest = self._rest, b""
-            self._tell(rest + b"\n")  # passed on as a line, whatever follows
+            self._pass_on(rest + b"\n")  # passed on as a line, whatever follows
 
-    def _tell(self, data: bytes) -> None:
+    def _pass_on(self, data: bytes) -> None:
         with suppress(OSError):  # the model may have closed the file
             while data:
                 data = data[os.write(1, data) :]
@@ -180,7 +180,7 @@ class _PastPrint(io.RawIOBase):
 _PAST_PRINT = _PastPrint()
 
 
-def _told_to(channel: Channel) -> Any:
+def _warning_sender(channel: Channel) -> Any:
     """Returns a replacement for `warnings.showwarning` that sends warnings to the server."""
 
     def show(message: Any, _: Any, filename: str, lineno: int, *__: Any) -> None:

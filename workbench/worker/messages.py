@@ -7,6 +7,8 @@ from typing import Any, Literal
 
 import msgspec
 
+from actr3d.values import escape_surrogates
+
 Status = Literal["loading", "paused", "running", "ended", "failed"]
 
 
@@ -14,12 +16,12 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_fiel
     """Base of all messages."""
 
 
-def whole(text: str, most: int = 10_000) -> str:
+def shortened(text: str, most: int = 10_000) -> str:
     """Returns a text that can be sent: unpaired surrogates are escaped, and the middle of a long text is removed."""
-    kept = str(text)
+    kept = str.__str__(text)  # without code of a model's own kind of text
     if len(kept) > most:
         kept = f"{kept[: most // 2]}\n… ({len(kept) - most:,} more characters) …\n{kept[-(most // 2) :]}"
-    return kept.encode("utf-8", "backslashreplace").decode("utf-8")
+    return escape_surrogates(kept)
 
 
 def digest_of(text: str) -> str:
@@ -43,8 +45,8 @@ class Start(Message, frozen=True, kw_only=True):
     folder: str = ""
     recordings: tuple[str, ...] = ()
     """The recordings to read."""
-    form: str = ""
-    """The kind of file to make: one of `workbench.forms`."""
+    export: str = ""
+    """The kind of file to make: one of `workbench.exports`."""
     to: str = ""
     """The path of the file to make."""
     settings: dict[str, Any] = {}
@@ -196,7 +198,9 @@ def notice(
     level: Literal["info", "warning", "error"], text: str, file: str | None = None, line: int | None = None, detail: str = ""
 ) -> Notice:
     """Returns a notice; the texts may be of any length and content, as models make them."""
-    return Notice(level=level, text=whole(text), file=None if file is None else whole(file), line=line, detail=whole(detail, 100_000))
+    return Notice(
+        level=level, text=shortened(text), file=None if file is None else shortened(file), line=line, detail=shortened(detail, 100_000)
+    )
 
 
 class Reply(Message, frozen=True, kw_only=True):

@@ -16,7 +16,7 @@ from workbench.loader import ModelListing
 from workbench.worker.messages import Notice, notice
 from workbench.worker.top_models import Top
 
-MOST_TOLD = 12
+MOST_NAMES = 12
 """Maximum number of known names in an error message about an unknown one."""
 
 
@@ -45,7 +45,7 @@ class Names:
         """
         found = [name] if name in self.buffers else sorted(path for path in self.buffers if path.endswith(f".{name}"))
         if len(found) > 1:
-            raise Actr3dError(f"there are several buffers '{name}': {', '.join(found[:MOST_TOLD])}; name one of these")
+            raise Actr3dError(f"there are several buffers '{name}': {', '.join(found[:MOST_NAMES])}; name one of these")
         if not found:
             self.check("buffer", name)
         return found[0] if found else name
@@ -67,7 +67,7 @@ class Names:
             return
         near = did_you_mean(name, short) or did_you_mean(name, known)
         if near or what not in self.growing:
-            raise Actr3dError(f"no {what} '{name}'{near or _there_are(short if len(short) == len(known) else known)}")
+            raise Actr3dError(f"no {what} '{name}'{near or there_are(short if len(short) == len(known) else known)}")
 
     def check_new(self, productions: Iterable[str], before: Iterable[str]) -> None:
         """Checks that productions of these names exist, except those that were named before.
@@ -99,10 +99,11 @@ def _numbered(name: str, known: frozenset[str]) -> bool:
     return re.sub(r"#\d+", "", name) in known
 
 
-def _there_are(known: Iterable[str]) -> str:
+def there_are(known: Iterable[str]) -> str:
+    """Returns the end of an error message about an unknown name: the first of the known ones, and how many more there are."""
     names = sorted(known)
-    more = f" and {len(names) - MOST_TOLD} more" if len(names) > MOST_TOLD else ""
-    return f"; there are: {', '.join(names[:MOST_TOLD]) or 'none'}{more}"
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return f"; there are: {', '.join(names[:MOST_NAMES]) or 'none'}{more}"
 
 
 def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:

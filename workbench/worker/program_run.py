@@ -26,7 +26,7 @@ from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
-from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
+from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
@@ -113,28 +113,28 @@ class ProgramRun:
                     self._recording.leave()
                 self._recording.close()
 
-    def _foresee(self) -> None:
+    def _show_recorded(self) -> None:
         """Shows the whole timeline of a recorded run that is run again."""
         recorded = self._controller.channel.start.recorded
         if recorded is not None:
             known_run = KnownRun(Path(recorded))
             self._furthest = max(self._furthest, known_run.time)
-            self._controller.know(known_run)
+            self._controller.repeat_recorded(known_run)
 
     def _introduce(self) -> None:
         """Informs the server that the run has begun; for a program that makes a simulation, once this simulation is at its start."""
         if not self._introduced:
             self._introduced = True
-            self._tell_facts()
-            self._controller.conduct(self)
+            self._send_facts()
+            self._controller.set_run(self)
             if self._shown is not None and self._shown.simulation.world.bodies:
                 self._controller.embodied()
-            self._foresee()
+            self._show_recorded()
             if self._listing.simulates:
                 self._controller.show()
                 self._controller.channel.flush()  # whatever the program does next, that it has begun is known
 
-    def _tell_facts(self) -> None:
+    def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world = self._scene_now()
@@ -179,7 +179,7 @@ class ProgramRun:
             controller.channel.post(notice_of(error))
             if self._recording is not None:
                 self._recording.fact("failed", failure(error))
-            self._end("failed", told_of(error))
+            self._end("failed", describe_error(error))
             return
         if self._left:
             return
@@ -190,7 +190,7 @@ class ProgramRun:
         else:
             self._introduce()
             controller.channel.post(notice_of(exited))
-            self._end("failed", told_of(exited))
+            self._end("failed", describe_error(exited))
 
     def _hold_at_start(self) -> None:
         """Waits before the program begins, where nothing says that it is to go on."""
@@ -400,7 +400,7 @@ class ProgramRun:
         if self._shown is not self._scene_of:
             self._scene_of = self._shown
             if self._scene_now() != self._scene:
-                self._tell_facts()
+                self._send_facts()
         return (None, {}) if self._shown is None else self._shown.scene()
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:

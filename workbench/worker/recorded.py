@@ -11,11 +11,11 @@ from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from actr3d.values import to_json
-from workbench.forms import FORMS
+from workbench.exports import EXPORTS
 from workbench.recording_index import summary_json, without_path
 from workbench.worker.channel import Channel
 from workbench.worker.memory import relieve
-from workbench.worker.messages import Reply, Share, whole
+from workbench.worker.messages import Reply, Share, shortened
 
 STEP = 0.001
 """Progress is reported in steps of this share."""
@@ -41,9 +41,9 @@ def replay_again(channel: Channel) -> None:
     try:
         with Recorded(path) as recorded:
             comparison = replay(recorded, trust=True, progress=progress, within=Path(channel.start.to))  # the server has checked the trust
-        found: dict[str, Any] = {"agrees": comparison.difference is None, "text": whole(str(comparison), MOST_TEXT)}
+        found: dict[str, Any] = {"agrees": comparison.difference is None, "text": shortened(str(comparison), MOST_TEXT)}
     except Actr3dError as error:
-        found = {"agrees": None, "text": without_path(whole(str(error), MOST_TEXT), path)}
+        found = {"agrees": None, "text": without_path(shortened(str(error), MOST_TEXT), path)}
     channel.post(Reply(id=0, result=to_json(found).encode()))
 
 
@@ -56,7 +56,7 @@ def make(channel: Channel) -> None:
         room = max(LEAST_ROOM, ROOM * sum(path.stat().st_size for path in paths))
         soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (room if soft == resource.RLIM_INFINITY else min(room, soft), hard))
-        FORMS[start.form](*paths, to, **start.settings)
+        EXPORTS[start.export](*paths, to, **start.settings)
         return str(to.stat().st_size).encode()
 
     channel.post(_answer(0, made, paths))
@@ -84,4 +84,4 @@ def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:
         problem = f"{which} is damaged: {type(error).__name__}: {error}"
     for path in paths:
         problem = problem.replace(str(path), path.stem)
-    return Reply(id=number, error=whole(problem, 2_000))
+    return Reply(id=number, error=shortened(problem, 2_000))

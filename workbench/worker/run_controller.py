@@ -19,9 +19,9 @@ from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
-from workbench.worker.error_report import told_of
+from workbench.worker.error_report import describe_error
 from workbench.worker.known_run import KnownRun, difference_notice
-from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, whole
+from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, shortened
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
@@ -75,7 +75,7 @@ class RunController:
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
-    def conduct(self, run: ControlledRun) -> None:
+    def set_run(self, run: ControlledRun) -> None:
         """Sets the run to control; its names are known by now."""
         self.run = run
         self.channel.events = self._count
@@ -83,8 +83,8 @@ class RunController:
             for lost in lost_breakpoints(self.watch.breakpoints, run.names()):
                 self.channel.post(lost)
 
-    def know(self, known_run: KnownRun) -> None:
-        """Sends all events of a recorded run before this run, which repeats it, has reached them."""
+    def repeat_recorded(self, known_run: KnownRun) -> None:
+        """Sends all events of a recorded run, which this run repeats, before this run has reached them."""
         with self._sending:
             self._known_run = known_run
             self._sent = known_run.count
@@ -92,12 +92,12 @@ class RunController:
             known_run.events = []
 
     @property
-    def relives(self) -> bool:
+    def repeats_recording(self) -> bool:
         """Whether the run repeats a recorded one and still agrees with it."""
         return self._known_run is not None
 
     @property
-    def repeats(self) -> bool:
+    def catches_up(self) -> bool:
         """Whether the run, after going back, is still before the furthest time that it had reached."""
         return self._reached > 0 and self.run.clock < self._reached
 
@@ -152,7 +152,7 @@ class RunController:
 
     def pause(self, reason: str) -> None:
         """Pauses the run."""
-        self.status, self.reason = "paused", whole(reason)
+        self.status, self.reason = "paused", shortened(reason)
         self._halt()
 
     def end(self, status: Status, reason: str) -> None:
@@ -161,7 +161,7 @@ class RunController:
         trace = self.run.trace
         news = trace.since(self._seen) if trace is not None and self.watch.of_events else []
         missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # the condition may be met at the very end
-        self.status, self.reason = status, whole(f"{reason}; {missed}" if missed else reason)
+        self.status, self.reason = status, shortened(f"{reason}; {missed}" if missed else reason)
         self._halt()
 
     def _finish_errors(self) -> None:
@@ -211,7 +211,7 @@ class RunController:
             self.channel.post(Reply(id=message.id))
             raise
         except Exception as error:  # noqa: BLE001 - any error is reported to the sender
-            self.channel.post(Reply(id=message.id, error=told_of(error)))
+            self.channel.post(Reply(id=message.id, error=describe_error(error)))
             return
         self.channel.post(Reply(id=message.id, result=to_json(result).encode()))
 
@@ -297,7 +297,7 @@ class RunController:
             drawn=run.drawn(self._drawn) if self._drawn else {},
         )
         with self._sending:
-            self._tell(state, trace)
+            self._send(state, trace)
 
     def show_busy(self) -> None:
         """Sends what happened before the model became busy, for example in an endless loop; the thread that listens to the server calls it.
@@ -311,9 +311,9 @@ class RunController:
                 return
             clock = self.run.clock
             time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
-            self._tell(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
+            self._send(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
-    def say_all(self, ends: bool) -> None:
+    def send_all(self, ends: bool) -> None:
         """Records and sends all events so far, from any thread of the model, as it may be about to end its process.
 
         Args:
@@ -328,7 +328,7 @@ class RunController:
             self.show_busy()
             self.channel.flush()
 
-    def _tell(self, state: State, trace: Trace | None) -> None:
+    def _send(self, state: State, trace: Trace | None) -> None:
         """Sends the server a state, and the events up to it that it does not have yet."""
         count = state.events
         on_its_thread = threading.current_thread() is threading.main_thread()  # otherwise the run may be in the middle of a tick

@@ -27,7 +27,7 @@ from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import ModelListing
-from workbench.worker.error_report import UNFORESEEN, notice_of, told_of
+from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Branched, Facts
@@ -62,7 +62,7 @@ class SimulationRun:
         """At which tick the run is over, and why, once that is known."""
         self._failed = False
         self._known_run: KnownRun | None = None
-        """The recorded run that is lived through again."""
+        """The recorded run that is repeated."""
         self._simulation: Simulation
         self._shown: Shown
 
@@ -84,9 +84,9 @@ class SimulationRun:
                 self._controller.embodied()
             try:
                 self._controller.channel.post(self._facts(limits, parameters))
-                self._controller.conduct(self)
+                self._controller.set_run(self)
                 if self._known_run is not None:
-                    self._controller.know(self._known_run)
+                    self._controller.repeat_recorded(self._known_run)
                 self._controller.show()
                 self._controller.channel.flush()  # whatever the model does next, that it was built is known
                 while True:
@@ -137,8 +137,8 @@ class SimulationRun:
             if controller.channel.left:
                 raise  # in a copy of the process that the model has made, which ends with it
             controller.channel.post(notice_of(error))
-            self._tell_failure(failure(error))
-            controller.end("failed", told_of(error))
+            self._record_failure(failure(error))
+            controller.end("failed", describe_error(error))
             return
         self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
         controller.passed()
@@ -240,20 +240,20 @@ class SimulationRun:
         before = 0 if trace is None else len(trace)
         ahead = self.furthest > self.clock
         at, until = seconds(self.clock), seconds(self.furthest)
-        relived = Path(self._start.recorded) if self._start.recorded is not None and self._controller.relives else None
-        branch = self._keep_branch(at, until, drop=drop) if ahead and relived is None else None
+        repeated = Path(self._start.recorded) if self._start.recorded is not None and self._controller.repeats_recording else None
+        branch = self._keep_branch(at, until, drop=drop) if ahead and repeated is None else None
         try:
             self._simulation.command(word, *values, body=body, **named)
         except BaseException:
             if branch is not None:
                 branch.unlink(missing_ok=True)  # nothing has changed
             raise
-        kept = branch or (relived if ahead else None)  # what is lived through again is kept by its own recording
+        kept = branch or (repeated if ahead else None)  # a repeated run is kept by its own recording
         if branch is not None:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
         if self._failed:
-            self._tell_failure(None)
+            self._record_failure(None)
         if self._end is not None:
             self._end = None
             if self._recording is not None:
@@ -285,7 +285,7 @@ class SimulationRun:
             raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
         return path
 
-    def _tell_failure(self, text: str | None) -> None:
+    def _record_failure(self, text: str | None) -> None:
         """Records the exception of the model; None if the run continues differently now."""
         self._failed = text is not None
         if self._recording is not None:

@@ -15,12 +15,12 @@ from actr3d.actr.chunks.pattern import parse
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.lint.slot_names import Vocabulary
 from actr3d.errors import Actr3dError, did_you_mean
+from workbench.worker.names import there_are
 
 LIBRARY = "actr3d."
 """The prefix of the library's module names; chunks of its modules may have any slot that is named in the text of their package."""
 _WORD = re.compile(r"[^\W\d]\w*")
 _SLOT = re.compile(r"(?<![\w?])([^\W\d]\w*):(?=\S)")
-MOST_TOLD = 12
 STATES = {"busy", "error"}
 """States of modules, which patterns match too; no chunk of the library has such slots."""
 
@@ -48,8 +48,7 @@ def check_slots(pattern: str, sources: Iterable[str], modules: Iterable[str], fo
     own = sorted({slot for text, words in zip(sources, given, strict=True) for slot in _slots(text) if slot in words})
     all_slots = sorted({*own, *(slot for text in library for slot in _slots(text))} - STATES)
     for slot in sorted(unknown):
-        more = f" and {len(own) - MOST_TOLD} more" if len(own) > MOST_TOLD else ""
-        there = f"; there are: {', '.join(own[:MOST_TOLD])}{more}" if own else "; its chunks have no named slots"
+        there = there_are(own) if own else "; its chunks have no named slots"
         near = did_you_mean(slot, own) or did_you_mean(slot, all_slots)
         raise Actr3dError(f"no chunk of this model can have a slot '{slot}'{near or there}")
 

@@ -26,7 +26,7 @@ def bounded_json(value: Any, most: int = LARGEST, *, whole: Callable[[Any], str]
     if len(text) > most:
         size, text = len(text), to_json(cut(value))
         if len(text) > most:
-            text = to_json(_told(value, f"too long to be shown: {size:,} characters"))
+            text = to_json(_placeholder(value, f"too long to be shown: {size:,} characters"))
     return text.encode()
 
 
@@ -51,7 +51,7 @@ def cut(value: Any) -> Any:
     return value
 
 
-def _told(value: Any, reason: str) -> Any:
+def _placeholder(value: Any, reason: str) -> Any:
     """Returns a placeholder for a value that is too long even after cutting; for an event, with its time, source and kind."""
     if isinstance(value, list):
         entries: list[Any] = list(value)  # pyright: ignore[reportUnknownArgumentType]

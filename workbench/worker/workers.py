@@ -214,7 +214,7 @@ class Workers:
             self._ready.clear()
             self._born.put_nowait(-1)
         else:  # a process that failed to load would fail again
-            self._say_ended()
+            self._report_end()
         workers = list(self._alive.values())
         self._alive.clear()
         for worker in workers:
@@ -226,7 +226,7 @@ class Workers:
             self._zygote = None
             self.begin()
 
-    def _say_ended(self) -> None:
+    def _report_end(self) -> None:
         """Reports to all callers that wait for a worker that none can be started."""
         self._control = None
         self._ready.set()
@@ -239,7 +239,7 @@ class Workers:
                 task.cancel()
         for worker in list(self._alive.values()):
             worker.kill()
-        self._say_ended()
+        self._report_end()
         if self._zygote is not None:
             await asyncio.to_thread(self._zygote.end)
 

@@ -293,7 +293,7 @@ class Pattern:
     def _forgives(self, obj: Any, key: Slot, wanted: Any, found: str, negated: bool) -> bool:
         """Adds the penalty of a mismatch to `obj.penalty`, and returns whether partial matching allows it.
 
-        A modeller's own `match` may not know the values (a KeyError, or None): that is no match.
+        A modeller's own `match` may not know the values (a KeyError, or None); then they do not match.
         """
         ask = getattr(self.partial, "negated", None) if negated else self.partial.match
         if ask is None:

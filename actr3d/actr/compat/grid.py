@@ -466,7 +466,7 @@ class World(Model):
         if cell is None:
             return self._free_cell()
         if cell.world is not self:
-            raise GridError(f"World.add: {cell!r} is no cell of this world")
+            raise GridError(f"World.add: {cell!r} is not a cell of this world")
         return cell
 
     def _free_cell(self) -> Cell:
@@ -512,7 +512,7 @@ def _rows(map: str | None, width: int | None, height: int | None) -> list[str]:
     columns = max(map_width := max((len(line.rstrip()) for line in lines), default=0), 1)
     for name, wanted, least in (("width", width, map_width), ("height", height, len(lines))):
         if wanted is not None and _whole(wanted, f"World.{name}") < max(least, 1):
-            raise GridError(f"World.{name}: must be at least {max(least, 1)} (got {wanted})")
+            raise GridError(f"World.{name}: must be >= {max(least, 1)} (got {wanted})")
     columns = columns if width is None else width
     lines += [""] * ((height or 0) - len(lines))
     return [line[:columns].ljust(columns) for line in lines]

@@ -202,7 +202,7 @@ class Scheduler:
     def _checked(delay: float, what: str) -> int:
         later = microseconds(delay, what)
         if later < 0:
-            raise SchedulerError(f"{what} must not be negative (got {delay!r} s)")
+            raise SchedulerError(f"{what}: must be >= 0 (got {delay!r} s)")
         return later
 
     def trigger(self, key: Trigger | str, priority: float | None = None) -> None:

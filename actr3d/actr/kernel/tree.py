@@ -102,7 +102,7 @@ def path_of(part: TreeNode) -> str:
 
 
 def path_within(part: TreeNode, name: str) -> str:
-    """Returns the path of something below a part that is no part itself."""
+    """Returns the path of something below a part that is not a part itself."""
     path = path_of(part)
     return name if path == "top" else f"{path}.{name}"
 

@@ -91,7 +91,7 @@ def check_parameters(system: ProductionSystem) -> None:
             hint = "" if inspect.isfunction(value) or isinstance(value, Model) else slip_hint(name, settable_of(system))
             if hint:
                 filename, line = _place_of_attribute(klass, name)
-                message = f"class {klass.__name__} has an attribute '{name}', which is no parameter{hint}"
+                message = f"class {klass.__name__} has an attribute '{name}', which is not a parameter{hint}"
                 warnings.warn_explicit(message, ModelWarning, filename, line, registry={})
 
 

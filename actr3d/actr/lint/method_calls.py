@@ -46,7 +46,7 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
 
 
 def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
-    """Warns about likely mistakes in a part's method that is no production."""
+    """Warns about likely mistakes in a part's method that is not a production."""
     node = function_node(func)
     if node is None or not node.args.args or len(node.args.args) == len(node.args.defaults):
         return

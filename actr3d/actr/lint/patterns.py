@@ -21,12 +21,12 @@ SURE = 0.74
 
 
 def check_patterns(production: Production) -> None:
-    """Warns about objects that are no patterns, and therefore match anything."""
+    """Warns about objects that are not patterns, and therefore match anything."""
     for name, pattern in production.pattern_specs.items():
         parts = cast("list[Any]", pattern) if isinstance(pattern, (list, tuple)) else (pattern,)
         for part in parts:
             if part is not None and not isinstance(part, (str, Mapping)) and not callable(part):
-                _say(production, f"{name}={part!r} is no pattern and matches anything; write text, such as {name}='{part}'")
+                _warn_likely(production, f"{name}={part!r} is not a pattern and matches anything; write text, such as {name}='{part}'")
 
 
 def check_variables(production: Production) -> None:
@@ -41,7 +41,7 @@ def check_variables(production: Production) -> None:
         for name in needed:
             if name not in bound:
                 hint = did_you_mean(name, production.variables)
-                _never(production, f"nothing binds '?{name}' before {condition.name}'s '{condition}' needs it{hint}")
+                _warn_never(production, f"nothing binds '?{name}' before {condition.name}'s '{condition}' needs it{hint}")
                 return
         if condition.op == "bind":
             bound.add(condition.value)
@@ -59,7 +59,7 @@ def check_slots(production: Production) -> None:
         elif isinstance(key, str):
             missing, hint = _missing_attribute(target, key)
             if hint:
-                _say(production, f"'{condition.name}' has no attribute '{missing}'{hint}")
+                _warn_likely(production, f"'{condition.name}' has no attribute '{missing}'{hint}")
             _check_state(production, condition, target)
 
 
@@ -72,9 +72,9 @@ def _check_slot(production: Production, key: int | str) -> None:
     if (hint or (known is not None and key not in known)) and key not in slots_held(production.context.values()):
         what = f"no chunk is ever given a slot '{key}'"
         if hint:
-            _say(production, f"{what}{hint}")
+            _warn_likely(production, f"{what}{hint}")
         else:
-            _never(production, what)
+            _warn_never(production, what)
 
 
 def slots_held(parts: Iterable[object]) -> set[Any]:
@@ -118,13 +118,13 @@ def _check_state(production: Production, condition: Condition, target: object) -
     if isinstance(plain_value(target, condition.key), bool):
         sign = "!" if condition.op == "not" else ""
         what = f"'{condition.name}' has True or False in '{condition.key}', with capital letters, and never '{wanted}'"
-        say = _say if sign else _never
-        say(production, f"{what}; did you mean '{condition.key}:{sign}{meant[0]}'?")
+        warn = _warn_likely if sign else _warn_never
+        warn(production, f"{what}; did you mean '{condition.key}:{sign}{meant[0]}'?")
 
 
-def _never(production: Production, why: str) -> None:
+def _warn_never(production: Production, why: str) -> None:
     warn_at(f"production '{production.name}' can never match: {why}", production.original_func)
 
 
-def _say(production: Production, what: str) -> None:
+def _warn_likely(production: Production, what: str) -> None:
     warn_at(f"production '{production.name}': {what}", production.original_func)

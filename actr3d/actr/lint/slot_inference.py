@@ -24,7 +24,7 @@ from actr3d.actr.procedural.utility import ProceduralSubModule
 _LIBRARIES = frozenset({"actr3d", "python_actr", "ccm", "__future__"})
 _PLAIN = (Buffer, Memory, ImaginalModule, Motor, ProceduralSubModule, TextOutput, Timer)
 """Modules that put only chunks from the program's texts into buffers."""
-_UNTOLD = frozenset(
+_UNPREDICTABLE = frozenset(
     {
         "SOSVision",
         "Vision",
@@ -83,7 +83,7 @@ def _literal_slots(text: str) -> frozenset[Slot] | None:
                 found.update(_slots(str(arg.value)))
     for node in ast.walk(tree):
         name = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else None
-        if name in _UNTOLD or (name in (*GIVERS, "modify") and isinstance(node, ast.Attribute) and id(node) not in called):
+        if name in _UNPREDICTABLE or (name in (*GIVERS, "modify") and isinstance(node, ast.Attribute) and id(node) not in called):
             return None
         if isinstance(node, ast.FunctionDef) and node.name in (*GIVERS, "modify", "request") and not is_production(node):
             return None

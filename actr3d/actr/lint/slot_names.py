@@ -113,7 +113,7 @@ def is_production(node: ast.FunctionDef) -> bool:
 
 
 def text_of(node: ast.AST) -> str | None:
-    """Returns a text as written in the source, with a mark for each computed value; None if the node is no text."""
+    """Returns a text as written in the source, with a mark for each computed value; None if the node is not text."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         return node.value
     if isinstance(node, ast.JoinedStr):

@@ -11,14 +11,14 @@ from actr3d.actr.chunks.chunk import PLAIN_TYPES
 
 
 @cache
-def _told_fields(kind: type[Any]) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind) if "untold" not in field.metadata)
+def _traced_fields(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind) if "not_traced" not in field.metadata)
 
 
 def plain_answer(answer: Any) -> Any:
     """Returns an answer as plain values, lists and dicts.
 
-    A frozen dataclass becomes a dict of its fields except those marked `UNTOLD`; an object with a `summary()`, such as a view,
+    A frozen dataclass becomes a dict of its fields except those marked `NOT_TRACED`; an object with a `summary()`, such as a view,
     becomes that.
     """
     kind = cast("type[Any]", type(answer))
@@ -27,7 +27,7 @@ def plain_answer(answer: Any) -> Any:
     if hasattr(answer, "summary"):
         return plain_answer(answer.summary())
     if is_dataclass(answer):
-        return {name: plain_answer(getattr(answer, name)) for name in _told_fields(kind)}
+        return {name: plain_answer(getattr(answer, name)) for name in _traced_fields(kind)}
     if isinstance(answer, Mapping):
         items = cast("Mapping[Any, Any]", answer).items()
         return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}
@@ -36,9 +36,9 @@ def plain_answer(answer: Any) -> Any:
     return answer.tolist() if hasattr(answer, "tolist") else repr(answer)
 
 
-def answer_slots(word: str, answer: Any) -> dict[str | int, Any]:
-    """Returns the slots of a chunk made from an answer: the word first, then the sensed values, by name or in order."""
-    slots: dict[str | int, Any] = {0: word}
+def answer_slots(sensor: str, answer: Any) -> dict[str | int, Any]:
+    """Returns the slots of a chunk made from an answer: the sensor's name first, then the sensed values, by name or in order."""
+    slots: dict[str | int, Any] = {0: sensor}
     if hasattr(answer, "summary"):  # such an object is too large for slots
         slots["seen"] = answer
     elif is_dataclass(answer):

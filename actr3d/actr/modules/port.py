@@ -17,7 +17,7 @@ from actr3d.errors import SimulationError
 
 _LIBRARY = str(Path(__file__).parents[2])
 RAW_VISION = ("view",)
-"""Words that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
+"""Sensors that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
 
 
 class Reading(Event):
@@ -89,27 +89,27 @@ class Embodiment:
 class Port(Model):
     """A part of an agent that sends requests to the body and receives its answers."""
 
-    def _tell(self, word: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
+    def _send_command(self, command: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
         """Sends a command to the body, on behalf of the modeller's line at `place`, or of the one that is running."""
         named = {} if named is None else named
-        embodiment = self._joined(word)
-        self._trace_request("set", word=word, **_given(values, named))
-        embodiment.outbox.append(Request(embodiment.body, word, values, named, place or place_of_caller(), self))
+        embodiment = self._joined(command)
+        self._trace_request("set", word=command, **_given(values, named))
+        embodiment.outbox.append(Request(embodiment.body, command, values, named, place or place_of_caller(), self))
 
     def _inquire(
-        self, word: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, place: str | None = None, **how: bool
+        self, sensor: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, place: str | None = None, **how: bool
     ) -> Reading:
         """Asks the body for what it senses."""
-        embodiment = self._joined(word)
-        reading = Reading(word)
-        embodiment.outbox.append(Request(embodiment.body, word, values, options or {}, place or place_of_caller(), self, reading, **how))
+        embodiment = self._joined(sensor)
+        reading = Reading(sensor)
+        embodiment.outbox.append(Request(embodiment.body, sensor, values, options or {}, place or place_of_caller(), self, reading, **how))
         return reading
 
-    def _kept_private(self, word: str) -> str | None:
-        """Returns the option that permits other parts to ask for a word that this part keeps private; None if it is not private."""
+    def _kept_private(self, sensor: str) -> str | None:
+        """Returns the option that permits other parts to read a sensor that this part keeps private; None if it is not private."""
         return None
 
-    def _joined(self, word: str) -> Embodiment:
+    def _joined(self, name: str) -> Embodiment:
         """Returns the connection to the body.
 
         Raises:
@@ -117,7 +117,7 @@ class Port(Model):
         """
         if not self._converted:
             raise SimulationError(
-                f"'{word}' is sent to a body before the agent runs; send it while its Simulation runs: in `init`, `start`, a production"
+                f"'{name}' is sent to a body before the agent runs; send it while its Simulation runs: in `init`, `start`, a production"
             )
         embodiment = self._find_embodiment()
         if embodiment is None:
@@ -185,21 +185,21 @@ class BodyPort(Port):
         Raises:
             SimulationError: If the agent has no body, or is not converted yet.
         """
-        self._tell(word, *values, named=named)
+        self._send_command(word, *values, named=named)
 
     def get(self, word: str, *values: Any, **options: Any) -> Reading:
         """Asks the body for what it senses: `reading = self.body.get("pose")`, then `yield reading`, then `reading.value`.
 
         Raises:
-            SimulationError: If the agent has no body, is not converted yet, or keeps the word private to one of its modules.
+            SimulationError: If the agent has no body, is not converted yet, or keeps the sensor private to one of its modules.
         """
         return self._ask("get", word, values, options)
 
     def request(self, word: str, *values: Any, **options: Any) -> Reading:
-        """Asks the body for what it senses; the answer is a chunk: the word, then the sensed values, by name or in order.
+        """Asks the body for what it senses; the answer is a chunk: the sensor's name, then the sensed values, by name or in order.
 
         Raises:
-            SimulationError: If the agent has no body, is not converted yet, or keeps the word private to one of its modules; or
+            SimulationError: If the agent has no body, is not converted yet, or keeps the sensor private to one of its modules; or
                 if the port has no buffer.
         """
         self._joined(word)
@@ -207,28 +207,28 @@ class BodyPort(Port):
             raise SimulationError(f"port '{self._path}' has no buffer to put the answer to '{word}' into; give it one: BodyPort(buffer)")
         return self._ask("request", word, values, options)
 
-    def _ask(self, call: str, word: str, values: tuple[Any, ...], options: Mapping[str, Any]) -> Reading:
-        embodiment = self._joined(word)
+    def _ask(self, call: str, sensor: str, values: tuple[Any, ...], options: Mapping[str, Any]) -> Reading:
+        embodiment = self._joined(sensor)
         outside = {}
-        if word in RAW_VISION:
-            self._check_private(word, embodiment)
+        if sensor in RAW_VISION:
+            self._check_private(sensor, embodiment)
             outside = {"outside_vision": True}
-        self._trace_request(call, word=word, **_given(values, options), **outside)
+        self._trace_request(call, word=sensor, **_given(values, options), **outside)
         if call == "request":
             self.error = False
-        reading = self._inquire(word, values, options, to_buffer=call == "request")
+        reading = self._inquire(sensor, values, options, to_buffer=call == "request")
         self._outstanding += 1
         self.busy = True
         return reading
 
-    def _check_private(self, word: str, embodiment: Embodiment) -> None:
-        """Raises an error for a word that another part of the agent keeps private."""
+    def _check_private(self, sensor: str, embodiment: Embodiment) -> None:
+        """Raises an error for a sensor that another part of the agent keeps private."""
         agent = next(part for part in lineage(self) if part.__dict__.get("_embodiment") is embodiment)
         for part in subtree(agent):
-            option = part._kept_private(word) if isinstance(part, Port) else None  # of this class, and extended by subclasses
+            option = part._kept_private(sensor) if isinstance(part, Port) else None  # of this class, and extended by subclasses
             if option is not None:
                 raise SimulationError(
-                    f"port '{self._path}' cannot ask body '{embodiment.body}' for '{word}': agent '{path_of(agent)}' "
+                    f"port '{self._path}' cannot ask body '{embodiment.body}' for '{sensor}': agent '{path_of(agent)}' "
                     f"({type(agent).__name__}) keeps it private to its module '{path_of(part)}'; make that with {option} to let other "
                     "ports of the agent have it too"
                 )
@@ -247,7 +247,7 @@ class BodyPort(Port):
 
 
 def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the arguments of a word as the trace records them."""
+    """Returns the arguments of a command or a sensor as the trace records them."""
     return {**({"values": values} if values else {}), **({"named": named} if named else {})}
 
 

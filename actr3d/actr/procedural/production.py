@@ -158,7 +158,7 @@ class Production:
 
 
 def defaults_of(func: Callable[..., Any]) -> dict[str, Any] | None:
-    """Returns the parameters of a function with their defaults, or None if one has none, so that it is no production."""
+    """Returns the parameters of a function with their defaults, or None if one has none, so that it is not a production."""
     spec = inspect.getfullargspec(func)
     if spec.varargs is not None or spec.varkw is not None or len(spec.args) != len(spec.defaults or ()):
         return None

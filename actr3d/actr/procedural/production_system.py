@@ -235,7 +235,7 @@ class ProductionSystem(WithParameters, Model):
             at: A past time of a traced run [s]; None for now.
 
         Raises:
-            ParameterError: If `at` is no time or in the future, or the run was not traced (level «all») or had no such agent then.
+            ParameterError: If `at` is not a time or is in the future, or the run was not traced (level «all») or had no such agent then.
         """
         return EXPLAINERS[-1](self, at)
 

@@ -75,7 +75,7 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         finds: The kind of features.
 
     Raises:
-        VisionError: If it is no kind of features or has a field that requests cannot name, if the library has a detector of that
+        VisionError: If it is not a kind of features or has a field that requests cannot name, if the library has a detector of that
             name, or if the function does not take a view and parameters by keyword with defaults.
     """
     if not (isinstance(finds, type) and issubclass(finds, Feature)):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
@@ -84,7 +84,7 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
     slots = slot_names(finds)
     unknown = [field for field, kind in get_type_hints(finds).items() if field not in slots and get_origin(kind) is not ClassVar]
     if unknown:
-        raise VisionError(f"detector '{name}': '{unknown[0]}' is no field; write @dataclass(frozen=True, kw_only=True) above the class")
+        raise VisionError(f"detector '{name}': '{unknown[0]}' is not a field; write @dataclass(frozen=True, kw_only=True) above the class")
 
     def add(detect: D) -> D:
         builtin = detect.__module__.startswith("actr3d.")

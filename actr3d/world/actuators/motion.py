@@ -53,7 +53,7 @@ def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body to a heading [rad, in the world's frame] at a speed [rad/s], the shorter way round.
 
     Raises:
-        WorldError: If a value is not a number, or the speed is not above 0 or too fast.
+        WorldError: If a value is not a number, or the speed is not > 0 or is too fast.
     """
     angle, speed = number(angle, "heading: angle"), number(speed, "heading: speed", 1e-6, body.fastest()[1])
     body.motion.forget_course()
@@ -65,7 +65,7 @@ def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body by an angle [rad, left is positive] at a speed [rad/s], also while it walks.
 
     Raises:
-        WorldError: If a value is not a number, or the speed is not above 0 or too fast.
+        WorldError: If a value is not a number, or the speed is not > 0 or is too fast.
     """
     angle, speed = number(angle, "turn: angle"), number(speed, "turn: speed", 1e-6, body.fastest()[1])
     body.motion.forget_course()
@@ -77,7 +77,7 @@ def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = M
     """Turns to a point [m], walks to it at a speed [m/s], and stops there. Source of the speed: Warren & Whang (1987), normal walking.
 
     Raises:
-        WorldError: If a value is not a number, or a speed is not above 0 or too fast.
+        WorldError: If a value is not a number, or a speed is not > 0 or is too fast.
     """
     x, y = number(x, "waypoint: x"), number(y, "waypoint: y")
     fastest, spin, _ = body.fastest()
@@ -116,7 +116,7 @@ def position(body: Body, name: str, angle: float, speed: float = MODERATE) -> No
     """Turns a joint to an angle [rad], or to its limit where that is nearer, at a constant speed [rad/s], and holds it there.
 
     Raises:
-        WorldError: If there is no such joint, no servo moves it, the angle is not a number, or the speed is not above 0 or too fast.
+        WorldError: If there is no such joint, no servo moves it, the angle is not a number, or the speed is not > 0 or is too fast.
     """
     body.motion.targets[name] = _target(body, name, angle, speed)
 

@@ -84,7 +84,7 @@ class Car(Configuration):
     """The driver's eye relative to the rear axle's middle on the ground: forward, left, up [m]. Source: chosen, a left-hand drive."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Noise of its sensors: the word and the standard deviation, in the reading's unit; sensors that are not named are exact."""
+    """Noise of its sensors: the name and the standard deviation, in the reading's unit; sensors that are not named are exact."""
 
     colour: Colour = (0.70, 0.25, 0.22, 1.0)
     """Red, green, blue, alpha in 0 to 1."""
@@ -97,9 +97,9 @@ class Car(Configuration):
         """
         super().__post_init__()
         if self.rear >= self.wheelbase:
-            raise ConfigurationError(f"Car.rear: must be less than the wheelbase of {self.wheelbase:g} m (got {self.rear!r})")
+            raise ConfigurationError(f"Car.rear: must be < the wheelbase of {self.wheelbase:g} m (got {self.rear!r})")
         if WAIST * self.size[2] <= CLEARANCE:
-            raise ConfigurationError(f"Car.size: its height must be more than {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
+            raise ConfigurationError(f"Car.size: its height must be > {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
 
     def anatomy(self) -> Anatomy:
         """Returns its description for a `Body`."""

@@ -39,7 +39,7 @@ class Load(Configuration):
         if len(self.size) != sizes:
             raise ConfigurationError(f"Load.size: a {self.shape} takes {meaning} (got {self.size!r})")
         if self.shape == "bar" and self.size[0] < self.size[1]:
-            raise ConfigurationError(f"Load.size: the length of a bar must be at least its thickness (got {self.size!r})")
+            raise ConfigurationError(f"Load.size: the length of a bar must be >= its thickness (got {self.size!r})")
 
     @property
     def width(self) -> float:

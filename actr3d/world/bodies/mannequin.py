@@ -122,7 +122,7 @@ class Mannequin(Configuration):
     """Greatest force of the legs [N]. Source: chosen; pushing while walking, people reach 200 to 400 N."""
 
     noise: tuple[tuple[str, float], ...] = ()
-    """Noise of its sensors: the word and the standard deviation, in the reading's unit; sensors that are not named are exact."""
+    """Noise of its sensors: the name and the standard deviation, in the reading's unit; sensors that are not named are exact."""
 
     colour: Colour = (0.35, 0.47, 0.62, 1.0)
     """Of the clothes: red, green, blue, alpha in 0 to 1."""
@@ -136,12 +136,14 @@ class Mannequin(Configuration):
         super().__post_init__()
         if not 0.87 * self.height < self.eyes < 0.99 * self.height:
             low, high = 0.87 * self.height, 0.99 * self.height
-            raise ConfigurationError(f"Mannequin.eye_height: must be in the head, {low:.2f} to {high:.2f} m here (got {self.eyes!r})")
+            raise ConfigurationError(
+                f"Mannequin.eye_height: must be in the head, here >= {low:.2f} and <= {high:.2f} m (got {self.eyes!r})"
+            )
         if self.shoulder_width < 0.15 * self.height:
-            raise ConfigurationError(f"Mannequin.shoulder_width: must be at least 0.15 of the height (got {self.shoulder_width!r})")
+            raise ConfigurationError(f"Mannequin.shoulder_width: must be >= 0.15 of the height (got {self.shoulder_width!r})")
         for name in ("shoulder_width", "depth"):
             if getattr(self, name) > self.height:
-                raise ConfigurationError(f"Mannequin.{name}: must be at most the height (got {getattr(self, name)!r})")
+                raise ConfigurationError(f"Mannequin.{name}: must be <= the height (got {getattr(self, name)!r})")
         if self.load is not None and self.load.height / 2 >= self.grip_height:
             most = 2 * self.grip_height
             raise ConfigurationError(f"Mannequin.load: would touch the floor; it can be {most:.2f} m high (got {self.load.height!r})")

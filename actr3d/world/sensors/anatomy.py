@@ -51,7 +51,7 @@ class BodyPlan:
     movements: tuple[NamedMovement, ...]
     """Movements that have names."""
     actuators: tuple[str, ...]
-    """The words of its commands."""
+    """The names of its commands."""
     fastest: tuple[float, float, float] | None
     """The greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None without limits."""
 

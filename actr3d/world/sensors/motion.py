@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
 from actr3d.world.body import Body, sensor
+from actr3d.world.frames import heading_of
 from actr3d.world.joints import AT_LIMIT
 
 Vector = tuple[float, float, float]
@@ -75,8 +76,8 @@ def pose(body: Body, part: str | None = None) -> Pose:
     x, y, z = data.xpos[number].tolist()
     turn = data.xmat[number].reshape(3, 3)
     pitch = math.asin(max(-1.0, min(1.0, 0.0 - float(turn[2, 0]))))
-    heading, roll = math.atan2(turn[1, 0], turn[0, 0]), math.atan2(turn[2, 1], turn[2, 2])
-    return Pose(x=x, y=y, z=z, heading=heading, pitch=pitch, roll=roll)
+    roll = math.atan2(turn[2, 1], turn[2, 2])
+    return Pose(x=x, y=y, z=z, heading=heading_of(data.xmat[number]), pitch=pitch, roll=roll)
 
 
 @sensor

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from actr3d.errors import WorldError
-from actr3d.values import UNTOLD
+from actr3d.values import NOT_TRACED
 from actr3d.world.body import Body, sensor
 
 
@@ -26,8 +26,8 @@ class Size:
 class Proprioception:
     """Posture and movement of a body, in as few numbers as a motor module needs each tick."""
 
-    positions: tuple[float, ...] = field(metadata=UNTOLD)
-    """Of all joints, in the order of the word `anatomy` [rad] or [m]. A recording has them in the physics state of the same tick."""
+    positions: tuple[float, ...] = field(metadata=NOT_TRACED)
+    """Of all joints, in the order of the sensor `anatomy` [rad] or [m]. A recording has them in the physics state of the same tick."""
     moving: tuple[str, ...]
     """The joints that a command still moves, or tries to."""
     speed: tuple[float, float, float]

@@ -1,4 +1,4 @@
-"""Creates files from recordings: each form has one function that writes a file. They run in workers, never in the server.
+"""Creates files from recordings: each kind of file has one function that writes it. These functions run in workers, never in the server.
 
 A recording may come from anybody. Reading it or loading its compiled scene may take too long, use too much memory or crash, which
 must not harm the server.
@@ -20,21 +20,21 @@ from actr3d.values import to_json
 
 Maker = Callable[..., None]
 """Called with the path of each recording, the path of the new file, and options by name."""
-FORMS: dict[str, Maker] = {}
-"""The functions by the names of their forms."""
+EXPORTS: dict[str, Maker] = {}
+"""The functions by the kinds of files that they write."""
 
 
-def form(name: str) -> Callable[[Maker], Maker]:
-    """Registers a function as the maker of a form."""
+def export(kind: str) -> Callable[[Maker], Maker]:
+    """Registers a function that writes files of a kind."""
 
     def add(maker: Maker) -> Maker:
-        FORMS[name] = maker
+        EXPORTS[kind] = maker
         return maker
 
     return add
 
 
-@form("sqlite")
+@export("sqlite")
 def copy(path: Path, to: Path) -> None:
     """Copies a recording that may still be written, page by page including any damage, without blocking the run that writes it.
 
@@ -51,7 +51,7 @@ def copy(path: Path, to: Path) -> None:
         raise RecordingError(f"the recording cannot be copied: {reason}") from None
 
 
-@form("events.csv")
+@export("events.csv")
 def events_csv(path: Path, to: Path) -> None:
     """Writes a recording's events as CSV."""
     from workbench.csv_files import write_events_csv
@@ -59,7 +59,7 @@ def events_csv(path: Path, to: Path) -> None:
     write_events_csv(path, to)
 
 
-@form("states.csv")
+@export("states.csv")
 def states_csv(path: Path, to: Path) -> None:
     """Writes a recording's states as CSV."""
     from workbench.csv_files import write_states_csv
@@ -67,7 +67,7 @@ def states_csv(path: Path, to: Path) -> None:
     write_states_csv(path, to)
 
 
-@form("replay.html")
+@export("replay.html")
 def replay_html(path: Path, to: Path) -> None:
     """Writes one HTML file that plays a recording's scene beside its trace."""
     from workbench.html_replay.make import write_replay
@@ -75,7 +75,7 @@ def replay_html(path: Path, to: Path) -> None:
     write_replay(path, to)
 
 
-@form("curves")
+@export("curves")
 def curves(path: Path, to: Path, *, names: Sequence[str] | None, first: float, most: int, last: float | None) -> None:
     """Writes the curves of a recorded run over time as JSON, even if the run is still going on; see `protocol.Curves`.
 
@@ -112,7 +112,7 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
         return CurveReader(loaded(from_text(facts["compiled"])), facts["world"]).sampled(moments, names)
 
 
-@form("comparison")
+@export("comparison")
 def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -> None:
     """Writes the differences of two recordings as JSON; see `compare`."""
     from workbench.recording_diff import compare
@@ -120,7 +120,7 @@ def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -
     to.write_text(to_json(compare(first, second, kinds)), encoding="utf-8")
 
 
-@form("beginning")
+@export("beginning")
 def beginning(path: Path, to: Path) -> None:
     """Writes what a recorded run began with and the commands of users, as JSON; see `Beginning`."""
     from workbench.recorded_start import beginning_of, written
