@@ -203,10 +203,7 @@ class Fit:
         return FitResult(
             design=self._design,
             measure=self.measure,
-            parameters=tuple(
-                Fitted(name=one.name, value=values[one.name], low=_at(one, bounds[0]), high=_at(one, bounds[1]))
-                for one, bounds in zip(self._ranges, intervals, strict=True)
-            ),
+            parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
             fit=agreement(self._means[best], self.target),
             candidates=candidates,
             held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
@@ -266,10 +263,10 @@ class Fit:
             run_experiment(experiment, store, self._client, show=lambda progress: self._show(name, progress))
             return cells_of_rows(store.rows(), self.measure, [name for name, _ in next(iter(self.target))])
 
-    def _surface(self, target: Mapping[Cell, float]) -> Surface:
+    def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
         """Returns the surface of the sums of squares of all candidates so far."""
         points = [[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points]
-        return Surface(np.array(points), [len(target) * rmse(means, target) ** 2 for means in self._means], len(target))
+        return QuadraticSurface(np.array(points), [len(target) * rmse(means, target) ** 2 for means in self._means], len(target))
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
         parts = zip(self._ranges, point.tolist(), strict=True)
@@ -307,7 +304,7 @@ class Fit:
         return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
 
 
-class Surface:
+class QuadraticSurface:
     """A quadratic surface through the sums of squares of candidates near the best one.
 
     Args:
@@ -425,5 +422,12 @@ def to_json(result: FitResult) -> str:
     return json.dumps(asdict(result), indent=1, ensure_ascii=False)
 
 
-def _at(one: Range, part: float | None) -> float | None:
-    return None if part is None else round(one.low + part * (one.high - one.low), 6)
+def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:
+    """Returns a fitted parameter with its interval, which contains the best candidate even if the surface has its minimum elsewhere."""
+    bounds = [None if part is None else round(one.low + part * (one.high - one.low), 6) for part in (low, high)]
+    return Fitted(
+        name=one.name,
+        value=value,
+        low=None if bounds[0] is None else min(bounds[0], value),
+        high=None if bounds[1] is None else max(bounds[1], value),
+    )

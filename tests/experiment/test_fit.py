@@ -12,7 +12,7 @@ import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError
 from actr3d.experiment.cluster import local_cluster
-from actr3d.experiment.fit import Fit, Range, Surface, agreement, cells_of_target
+from actr3d.experiment.fit import Fit, QuadraticSurface, Range, agreement, cells_of_target
 from actr3d.experiment.human_data import PublishedMean
 
 LINE = """
@@ -144,7 +144,7 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     rng = np.random.default_rng(1)
     points = rng.uniform(size=(60, 2))
     squares = [1 + 30 * (x - 0.4) ** 2 for x, _ in points]
-    surface = Surface(points, squares, 10)
+    surface = QuadraticSurface(points, squares, 10)
     low, high = surface.interval(0)
     half = math.sqrt((math.exp(3.84 / 10) - 1) / 30)
     assert (low, high) == (pytest.approx(0.4 - half, abs=0.01), pytest.approx(0.4 + half, abs=0.01))
