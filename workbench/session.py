@@ -74,6 +74,7 @@ class Session:
         self._shown: LaunchedRun | None = None
         """The run on screen, even after its worker has ended."""
         self._loading: LaunchedRun | None = None
+        self._launching = False
         """The run that is being built."""
         self._attempt = 0
         """The number of the latest attempt to start a run."""
@@ -128,7 +129,14 @@ class Session:
             more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
             start = start_of(self.path, options, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
-            launched = LaunchedRun(start, await self._workers.launch())
+            # Without a process ready to fork, this takes until everything that models need is loaded.
+            self._launching = True
+            self._changed(facts=True)
+            try:
+                launched = LaunchedRun(start, await self._workers.launch())
+            finally:
+                self._launching = False
+                self._changed(facts=True)
             self.run_task(WorkerMonitor(launched.worker, start, self).serve())
             if start.attempt <= self._given_up:  # stopped in the meantime
                 self._asked.add(launched.worker)
@@ -238,9 +246,14 @@ class Session:
         self._changed(facts=True)
 
     @property
+    def is_loading(self) -> bool:
+        """Whether a run is being built, or its worker is being started."""
+        return self._launching or self._loading is not None
+
+    @property
     def is_over(self) -> bool:
         """Whether no run accepts commands and none is being built."""
-        return not self.alive and self._loading is None
+        return not self.alive and not self.is_loading
 
     def halt(self, worker: Worker, name: str) -> None:
         """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
@@ -437,7 +450,7 @@ class Session:
             "model": self.model,
             "run": self.run,
             "alive": self.alive,
-            "loading": self._loading is not None,
+            "loading": self.is_loading,
             "ending": self._ending,
             "status": None if self.state is None else self.state.status,
             "watching": [feed.name for feed in self.feeds],

@@ -141,3 +141,27 @@ def test_a_stop_ends_a_run_that_has_no_worker_yet(desk: Desk, tmp_path: Path, mo
     assert not talk.facts["alive"]
     assert not talk.facts["loading"]
     assert (talk.facts["run"], talk.facts["ending"]) == (1, "stopped")
+
+
+def test_a_run_is_loading_while_the_workbench_itself_starts(tmp_path: Path) -> None:
+    """Pages said that the model cannot be loaded until the first worker was there: after an installation, for a minute."""
+    (tmp_path / "model.py").write_text(DOORWAY, encoding="utf-8")
+    desk = Desk()
+    seen: list[tuple[bool, bool]] = []
+    try:
+        sessions = desk.sessions(tmp_path)
+
+        async def open_and_look() -> None:
+            opening = asyncio.create_task(sessions.open("model.py", {}, seed=1, record=False, run=False))
+            while not opening.done():
+                seen.extend((session.summary()["loading"], session.alive) for session in sessions.all())
+                await asyncio.sleep(0.01)
+            await opening
+            seen.extend((session.summary()["loading"], session.alive) for session in sessions.all())
+
+        desk.do(open_and_look())
+        desk.close_sessions()
+    finally:
+        desk.close()
+    assert seen
+    assert all(loading or alive for loading, alive in seen)
