@@ -55,6 +55,13 @@ CHECKS = {
         simulation.run(1)
         assert simulation.result().distance_m > 0.8
     """,
+    "actr3d/experiment/designs/careless.py": """
+        import shutil
+        from actr3d.experiment.specification import library_designs, specify
+        shutil.copytree(MODELS, "models", dirs_exist_ok=True)
+        assert "careless" in library_designs()
+        assert len(specify("careless").design) == 100
+    """,
     "workbench/page_commands/firings.py": """
         from types import SimpleNamespace
         from actr3d.trace import TraceEvent
@@ -118,6 +125,10 @@ def test_every_file_of_the_page_is_checked() -> None:
 def test_a_new_thing_is_one_file(file: str, copy: Path) -> None:
     lines = CHECKS[file].strip("\n").splitlines()
     text = "\n".join(line[8:] for line in lines)
-    (copy / "check.py").write_text(f"import actr3d\nassert actr3d.__path__[0] == {str(copy / 'actr3d')!r}\n{text}\n", encoding="utf-8")
+    head = f"MODELS = {str(ROOT / 'models')!r}\nimport actr3d\nassert actr3d.__path__[0] == {str(copy / 'actr3d')!r}\n"
+    (copy / "check.py").write_text(f"{head}{text}\n", encoding="utf-8")
+        f"MODELS = {str(ROOT / 'models')!r}\nimport actr3d\nassert actr3d.__path__[0] == {str(copy / 'actr3d')!r}\n{text}\n",
+        encoding="utf-8",
+    )
     done = subprocess.run([sys.executable, "check.py"], cwd=copy, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
