@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from functools import lru_cache
 
 
 class Actr3dError(Exception):
@@ -104,9 +105,14 @@ class ModelWarning(UserWarning):
 
 def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str:
     """Returns `"; did you mean 'x'?"` for the known name nearest to `word`, or an empty string."""
-    names = sorted({str(name) for name in known} - {word})
-    near = difflib.get_close_matches(word, names, n=1, cutoff=cutoff)
-    return f"; did you mean '{near[0]}'?" if near else ""
+    near = nearest(word, tuple(sorted({str(name) for name in known} - {word})), cutoff)
+    return f"; did you mean '{near}'?" if near is not None else ""
+
+
+@lru_cache(maxsize=1024)
+def nearest(word: str, names: tuple[str, ...], cutoff: float) -> str | None:
+    """Returns the name that is most similar to `word`; None if no similarity (0 to 1) is at least `cutoff`."""
+    return next(iter(difflib.get_close_matches(word, names, n=1, cutoff=cutoff)), None)
 
 
 def hint_for(error: Exception, names: Iterable[object] = ()) -> str:

@@ -9,16 +9,16 @@ import ast
 import inspect
 import math
 import re
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, replace
+from functools import lru_cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
 import annotated_types
 
-from actr3d.actr.kernel.source_code import parse
+from actr3d.actr.kernel.source_code import parse, source_of_module, syntax_tree
 from actr3d.configuration import Live
 from actr3d.errors import ConfigurationError
 from actr3d.values import escape_surrogates
@@ -171,17 +171,40 @@ def _docstrings(kind: type[Any]) -> Mapping[str, str]:
     """Returns the docstrings below the fields of a class and of its base classes, if their source is available."""
     words: dict[str, str] = {}
     for one in reversed(kind.__mro__):
-        with suppress(OSError, TypeError, SyntaxError):
-            (node,) = ast.parse(textwrap.dedent(inspect.getsource(one))).body
-            assert isinstance(node, ast.ClassDef)
-            for field, below in zip(node.body, node.body[1:], strict=False):
-                if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
-                    match below:
-                        case ast.Expr(value=ast.Constant(value=str(text))):
-                            words[field.target.id] = " ".join(inspect.cleandoc(text).split())
-                        case _:
-                            words.pop(field.target.id, None)
+        for name, below in _docstrings_in(source_of_module(one.__module__)).get(one.__qualname__, ()):
+            if below is None:
+                words.pop(name, None)
+            else:
+                words[name] = below
     return words
+
+
+@lru_cache(maxsize=64)
+def _docstrings_in(text: str) -> Mapping[str, Sequence[tuple[str, str | None]]]:
+    """Returns by qualified name of each class in a file's text its fields, with the docstrings below them; None for none."""
+    found: dict[str, Sequence[tuple[str, str | None]]] = {}
+
+    def collect(node: ast.AST, path: str) -> None:
+        if isinstance(node, ast.ClassDef):
+            found.setdefault(path + node.name, tuple(_fields_in(node)))
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            path += f"{node.name}." if isinstance(node, ast.ClassDef) else f"{node.name}.<locals>."
+        for child in ast.iter_child_nodes(node):
+            if not isinstance(child, ast.expr):
+                collect(child, path)
+
+    collect(syntax_tree(text), "")
+    return found
+
+
+def _fields_in(node: ast.ClassDef) -> Iterator[tuple[str, str | None]]:
+    for field, below in zip(node.body, node.body[1:], strict=False):
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
+            match below:
+                case ast.Expr(value=ast.Constant(value=str(text))):
+                    yield field.target.id, " ".join(inspect.cleandoc(text).split())
+                case _:
+                    yield field.target.id, None
 
 
 # -- from a text

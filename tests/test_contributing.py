@@ -127,8 +127,5 @@ def test_a_new_thing_is_one_file(file: str, copy: Path) -> None:
     text = "\n".join(line[8:] for line in lines)
     head = f"MODELS = {str(ROOT / 'models')!r}\nimport actr3d\nassert actr3d.__path__[0] == {str(copy / 'actr3d')!r}\n"
     (copy / "check.py").write_text(f"{head}{text}\n", encoding="utf-8")
-        f"MODELS = {str(ROOT / 'models')!r}\nimport actr3d\nassert actr3d.__path__[0] == {str(copy / 'actr3d')!r}\n{text}\n",
-        encoding="utf-8",
-    )
     done = subprocess.run([sys.executable, "check.py"], cwd=copy, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import radians
 
@@ -93,11 +94,12 @@ class Limbs:
         self.least: dict[str, float] = {}
         self.most: dict[str, float] = {}
 
-    def feel(self, joint: str, position: float) -> None:
-        """Updates the felt position of a joint [rad] or [m]."""
-        self.felt[joint] = position
-        self.least[joint] = min(position, self.least.get(joint, position))
-        self.most[joint] = max(position, self.most.get(joint, position))
+    def feel(self, positions: Mapping[str, float]) -> None:
+        """Updates the felt positions of some joints [rad] or [m]."""
+        self.felt.update(positions)
+        for joint, position in positions.items():
+            self.least[joint] = min(position, self.least.get(joint, position))
+            self.most[joint] = max(position, self.most.get(joint, position))
 
     def freedom(self, joint: str) -> Freedom:
         """Returns the present knowledge of a joint.

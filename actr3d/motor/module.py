@@ -509,18 +509,23 @@ class Motor(WithParameters, Port):
     def _update(self, limbs: Limbs, reading: Proprioception, joints: Sequence[str]) -> None:
         """Updates the felt positions of some joints, and the felt size of the body."""
         draw = self.random.gauss
-        for joint in joints:
-            noise = draw(0, self.angle_noise * limbs.unit[joint]) if self.angle_noise else 0.0
-            limbs.feel(joint, reading.positions[limbs.number[joint]] + noise)
+        felt = [reading.positions[limbs.number[joint]] for joint in joints]
+        if self.angle_noise:
+            felt = [at + draw(0, self.angle_noise * limbs.unit[joint]) for joint, at in zip(joints, felt, strict=True)]
         schema = self._schema
         if schema is None:
+            limbs.feel(dict(zip(joints, felt, strict=True)))
             schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
+        new = schema.feel(joints, felt)
+        own = self.__dict__
         for joint in joints:
-            self._become(limbs.shown_as[joint], schema.shown(joint, limbs.felt[joint]))
+            name, at = limbs.shown_as[joint], schema.at[joint]
+            if own.get(name, _NOTHING) != at:
+                self._become(name, at)
         for name in ("width", "depth", "height"):
             noise = draw(0, self.size_noise) if self.size_noise else 0.0
             self._become(name, schema.size(getattr(reading, name) + noise))
-        further = schema.extremes(joints)
+        further = schema.extremes(new)
         if further:
             schema.note(further)
             self._further = further[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from actr3d.motor.limbs import Limbs, on_grid
@@ -34,7 +34,33 @@ class BodySchema:
         self._always = [joint for joint in limbs.order if joint in named or not named]
         self._first = dict(limbs.felt)
         self._start = {joint: self.shown(joint, limbs.felt[joint]) for joint in limbs.order}
+        self.at = dict(self._start)
+        """By joint, its felt position on the grid."""
+        self._between = {joint: (at, at) for joint, at in limbs.felt.items()}
+        """By joint, the least and the greatest of its felt positions since the one on the grid last changed."""
         self._least, self._most = dict(limbs.felt), dict(limbs.felt)
+
+    def feel(self, joints: Sequence[str], positions: Sequence[float]) -> Sequence[str]:
+        """Updates the felt positions of some joints [rad] or [m], and their values on the grid.
+
+        Rounding keeps the order of numbers: a position between two others with one value has the same value, and is no new extreme.
+
+        Returns:
+            The joints whose positions are not between such others.
+        """
+        new: dict[str, float] = {}
+        for joint, position in zip(joints, positions, strict=True):
+            least, most = self._between[joint]
+            if not least <= position <= most:
+                new[joint] = position
+        self._limbs.felt.update(zip(joints, positions, strict=True))
+        self._limbs.feel(new)
+        for joint, position in new.items():
+            shown, (least, most) = self.shown(joint, position), self._between[joint]
+            same = shown == self.at[joint]
+            self._between[joint] = (min(least, position), max(most, position)) if same else (position, position)
+            self.at[joint] = shown
+        return tuple(new)
 
     def shown(self, joint: str, position: float) -> float:
         """Returns a joint's position on the grid: degrees, or metres for a slide."""
@@ -54,7 +80,7 @@ class BodySchema:
             box: The felt width, depth and height.
         """
         limbs = self._limbs
-        at = {of: self.shown(of, position) for of, position in limbs.felt.items()}
+        at = self.at
         extreme = "none"
         if joint is not None:
             ends = {"maximum": self.shown(joint, limbs.most[joint]), "minimum": self.shown(joint, limbs.least[joint])}

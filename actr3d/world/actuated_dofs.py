@@ -14,7 +14,6 @@ from actr3d.world.anatomy import Anatomy
 from actr3d.world.base import Base
 from actr3d.world.joints import Joint
 from actr3d.world.physics import Physics
-from actr3d.world.reach import reaches
 
 Row = NDArray[np.float64]
 
@@ -31,7 +30,7 @@ class ActuatedDofs:
         base: The base of the body.
         joints: The joints of the body.
         members: (nbody,) by MuJoCo body: whether it is part of the body.
-        geoms: The geoms of the body that can touch something.
+        farthest: (nv,) By degree of freedom: the greatest way of any point of the body per unit of it [m].
     """
 
     def __init__(
@@ -41,7 +40,7 @@ class ActuatedDofs:
         base: Base,
         joints: Iterable[Joint],
         members: NDArray[np.bool_],
-        geoms: NDArray[np.intp],
+        farthest: Row,
     ) -> None:
         data = physics.mj_data
         model: Any = physics.mj_model
@@ -65,7 +64,7 @@ class ActuatedDofs:
         """Difference between control and speed from which the servo applies its full force."""
         self.faces = base.faces
         """Heading of the base when the third number of its place is 0 [rad]."""
-        self._farthest: Row = reaches(model, members, geoms).max(axis=0, initial=0.0)
+        self._farthest = farthest
         self.looped: NDArray[np.bool_] = _in_loop(model, members, self.v)
         """Those in a closed loop (both hands hold one load), which cannot all move independently."""
 

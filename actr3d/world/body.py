@@ -25,6 +25,7 @@ from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import MotionCommands
 from actr3d.world.physics import Physics
 from actr3d.world.posture_hold import PostureHold
+from actr3d.world.reach import reaches
 from actr3d.world.sensor_noise import SensorNoise, StandardDeviation
 from actr3d.world.velocity_servo import moved_by
 
@@ -106,7 +107,9 @@ class Body:
         """Their names."""
         self.hands: dict[str, Hand] = {self._short(name).removesuffix("_hand"): Hand(physics, name) for name in self.anatomy.hands}
         self.contacts = BodyContacts(physics, self.members, skin, tuple(self.hands.values()))
-        dofs = ActuatedDofs(physics, self.anatomy, self.base, self.joints.values(), self.members, self.touch_geoms)
+        self.reaches = reaches(model, self.members, self.touch_geoms)
+        """By moving part and degree of freedom (n, nv): the greatest way of the part's farthest point per unit of it [m]."""
+        dofs = ActuatedDofs(physics, self.anatomy, self.base, self.joints.values(), self.members, self.reaches.max(axis=0, initial=0.0))
         self.hold = PostureHold(physics, self.members, dofs, self.base, self.contacts)
         self._driven = [(joint, self.hold.row(joint.name)) for joint in self.joints.values() if joint.driven]
         steering = self.anatomy.steering

@@ -87,37 +87,50 @@ class _Shapes:
         there = [int(geom) for geom in geoms if _there(model, int(geom))]
         clouds = {int(mjtGeom.mjGEOM_MESH), int(mjtGeom.mjGEOM_HFIELD), int(mjtGeom.mjGEOM_SDF)}
         self._model = model
-        self._plain = np.array([geom for geom in there if model.geom_type[geom] not in clouds], dtype=np.intp)
+        plain = np.array([geom for geom in there if model.geom_type[geom] not in clouds], dtype=np.intp)
+        self._some = len(plain) > 0
+        self._plain = together(plain)
         self._clouds = [(geom, _vertices(model, geom)) for geom in there if model.geom_type[geom] in clouds]
         self._sizes: bytes = b""
         self._formula: tuple[Any, Any, Any] = (0, 0, 0)
 
     def reach(self, data: Any, axes: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Returns the least and greatest coordinates (3,) along axes, from the world's origin [m]."""
-        lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
-        if len(self._plain):
+        if self._some:
             rounds, ellipses, boxes = self._numbers()
             turned = data.geom_xmat[self._plain].reshape(-1, 3, 3).transpose(0, 2, 1) @ axes
-            far = rounds + np.sqrt(np.einsum("ij,ijk->ik", ellipses, turned * turned)) + np.einsum("ij,ijk->ik", boxes, np.abs(turned))
+            far = rounds + np.sqrt(np.einsum("ij,ijk->ik", ellipses, turned * turned))
+            if boxes is not None:
+                far = far + np.einsum("ij,ijk->ik", boxes, np.abs(turned))
             centres = data.geom_xpos[self._plain] @ axes
-            lower, upper = (centres - far).min(axis=0), (centres + far).max(axis=0)
+            lower, upper = np.minimum.reduce(centres - far), np.maximum.reduce(centres + far)
+        else:
+            lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
         for geom, vertices in self._clouds:
             points = vertices @ (data.geom_xmat[geom].reshape(3, 3).T @ axes) + data.geom_xpos[geom] @ axes
             lower, upper = np.minimum(lower, points.min(axis=0)), np.maximum(upper, points.max(axis=0))
         return lower, upper
 
     def _numbers(self) -> tuple[Any, Any, Any]:
-        """Returns the numbers of the formula; computes them again after a geom was resized."""
+        """Returns the numbers of the formula, None for B if all of it is 0; computes them again after a geom was resized."""
         sizes = self._model.geom_size[self._plain]
         if sizes.tobytes() != self._sizes:
             self._sizes = sizes.tobytes()
             rows = [_formula(int(kind), size) for kind, size in zip(self._model.geom_type[self._plain], sizes, strict=True)]
+            boxes = np.array([row[2] for row in rows])
             self._formula = (
                 np.array([[row[0]] for row in rows]),
                 np.array([row[1] for row in rows]) ** 2,
-                np.array([row[2] for row in rows]),
+                boxes if boxes.any() else None,
             )
         return self._formula
+
+
+def together(numbers: NDArray[np.intp]) -> NDArray[np.intp] | slice:
+    """Returns numbers that follow one another as a slice, which selects rows without copying them; others as they are."""
+    if len(numbers) and (np.diff(numbers) == 1).all():
+        return slice(int(numbers[0]), int(numbers[-1]) + 1)
+    return numbers
 
 
 def _there(model: MjModel, geom: int) -> bool:

@@ -106,7 +106,7 @@ class PostureHold:
         self._moves = False
         """Whether any joint is commanded to move."""
         self._steady: SteadyState | None = None
-        """The state without deviations; None while anything moves, deviates or has a new command."""
+        """The state without deviations; None while a joint moves, and after a new command."""
         self._new = True
         """Whether there has been a command since the last tick began."""
 
@@ -233,7 +233,7 @@ class PostureHold:
             self._correct(ways, off, wanted)
         else:
             self._without_deviation()
-            if not (self._new or self._moves):
+            if self._steady is None and not (self._new or self._moves):
                 self._steady = SteadyState(self._physics, self._dofs, self.commanded, self.held)
             self._new = False
         return math.inf
@@ -252,7 +252,6 @@ class PostureHold:
     def _correct(self, ways: Row, off: Row, wanted: Row) -> None:
         """Corrects deviations of position and speed."""
         self._pulls = True
-        self._steady = None
         free = not self._struck and self._contacts.none()
         self.calm = free and (self.calm or float(np.abs(off[: self._rows]).max(initial=0.0)) <= SLIGHT_SPEED)
         self._struck = False
@@ -285,6 +284,7 @@ class PostureHold:
 
     def _yield(self, ways: Row) -> None:
         """Accepts the place to which the base was pushed, except for slight deviations."""
+        self._steady = None
         ways[: self._rows] = np.clip(ways[: self._rows], -YIELD, YIELD)
         self.held[: self._rows] = self._dofs.places[: self._rows] + ways[: self._rows]
 

@@ -15,7 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError
 from actr3d.world.body import Body
 from actr3d.world.physics import Physics
-from actr3d.world.reach import radius, reaches
+from actr3d.world.reach import radius
 
 STRIDE = 0.006
 """The most that any point of a body may move in one physics step when something is near [m]: walking at 3 m/s with steps of 2 ms.
@@ -45,7 +45,7 @@ class Substepping:
         self._whole = physics.timestep
         self._tick = max(1, round(TICK / self._whole))
         self._qvel = physics.mj_data.qvel
-        self._reaches = np.vstack([np.zeros((1, model.nv)), *(reaches(model, body.members, body.touch_geoms) for body in bodies)])
+        self._reaches = np.vstack([np.zeros((1, model.nv)), *(body.reaches for body in bodies)])
         """By moving part and degree of freedom: the greatest way of its farthest point per unit of the degree of freedom [m]."""
         self._farthest = self._reaches.max(axis=0)
         """The same for the part that moves farthest."""

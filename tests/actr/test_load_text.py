@@ -250,3 +250,52 @@ def test_a_file_in_a_copy_of_the_repository_gets_the_library_itself(tmp_path: Pa
         assert module.ACTR is ours.ACTR
         assert not hasattr(module.actr3d, "copy")
         assert not hasattr(module.clock, "copy")
+
+
+COUNTING = """
+from python_actr import ACTR, Buffer
+seen = []
+class Agent(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set('go 1')
+    def go(goal='go ?n'):
+        goal.clear()
+        seen.append(n)
+        later = lambda: 1 / fails
+        if fails == 0:
+            later()
+"""
+
+
+def test_a_text_that_is_loaded_again_shares_nothing_that_changes_with_the_first_module() -> None:
+    def load(fails: int) -> Any:
+        module: Any = load_text(COUNTING, "counting.py")
+        module.fails = fails
+        return module
+
+    first, second = load(1), load(1)
+    first.Agent().run(1)
+    assert (first.seen, second.seen) == (["1"], [])
+    second.Agent().run(1)
+    assert (first.seen, second.seen) == (["1"], ["1"])
+    gone = [weakref.ref(first), weakref.ref(second)]
+    del first, second
+    gc.collect()
+    assert [ref() for ref in gone] == [None, None]
+    third = load(0)
+    with pytest.raises(ZeroDivisionError) as raised:
+        third.Agent().run(1)
+    lines = [frame.line for frame in traceback.extract_tb(raised.value.__traceback__) if frame.filename == "counting.py"]
+    assert lines[-2:] == ["later()", "later = lambda: 1 / fails"]  # the lines of the first module do not exist any more
+
+
+def test_the_compiler_warns_about_a_text_each_time_it_is_loaded() -> None:
+    for _ in range(2):
+        with pytest.warns(SyntaxWarning, match='"is" with a literal'):
+            load_text("x = 1\ny = x is 1\n", "warns.py")
+    module: Any = load_text("x = 1\n", "quiet.py")
+    assert module.x == 1
+    for _ in range(2):
+        with pytest.raises(ModelFileError, match=r"wrong\.py:1: "):
+            load_text("x = (\n", "wrong.py")

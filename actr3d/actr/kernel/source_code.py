@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import dis
 import linecache
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
+from types import CodeType
 from typing import Any, Literal
 
 from actr3d.actr.kernel.log import LOG
@@ -101,6 +103,21 @@ def source_of(func: Callable[..., Any]) -> str:
     if SOURCE in names and names.get("__file__") == filename:
         return names[SOURCE]
     return "".join(linecache.getlines(filename, names))
+
+
+def source_of_module(name: str) -> str:
+    """Returns the text of a module's file as `source_of` does; empty if there is none."""
+    module = sys.modules.get(name)
+    names = {} if module is None else module.__dict__
+    return names.get(SOURCE) or "".join(linecache.getlines(names.get("__file__") or "", names))
+
+
+def with_filename(code: CodeType, filename: str) -> CodeType:
+    """Returns code with another file name, also in the functions and classes inside it: code is made once for all files of one text."""
+    if code.co_filename is filename:
+        return code
+    inner = tuple([with_filename(value, filename) if isinstance(value, CodeType) else value for value in code.co_consts])
+    return code.replace(co_filename=filename, co_consts=inner)
 
 
 def has_file(func: Callable[..., Any]) -> bool:

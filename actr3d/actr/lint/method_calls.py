@@ -6,6 +6,7 @@ import ast
 import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from actr3d.actr.chunks.chunk import parse_slots
@@ -58,9 +59,9 @@ def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
 
 def _check_brackets(node: ast.FunctionDef, func: Callable[..., Any], names: Mapping[str, Any]) -> None:
     """Finds statements that name a method without calling it."""
-    for part in ast.walk(node):
-        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute) and _is_method(part.value, names):
-            text = ast.unparse(part.value)
+    for part, path in _paths_and_calls(node)[0]:
+        if _is_method(path, names):
+            text = ast.unparse(path)
             warn_at(f"'{text}' without brackets does nothing; did you mean '{text}()'?", func, part.lineno)
 
 
@@ -86,11 +87,18 @@ def _resolve(node: ast.expr, names: Mapping[str, Any]) -> Any:
 
 def _calls(node: ast.FunctionDef, names: Mapping[str, Any]) -> Iterator[tuple[ast.Call, object, str]]:
     """Yields the calls of methods that make, change or search for chunks, with the owners and names of the methods."""
-    for part in ast.walk(node):
-        if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
-            owner = _resolve(part.func.value, names)
-            if isinstance(owner, (Buffer, Memory, ImaginalModule, Partial)):
-                yield part, owner, part.func.attr
+    for part, func in _paths_and_calls(node)[1]:
+        owner = _resolve(func.value, names)
+        if isinstance(owner, (Buffer, Memory, ImaginalModule, Partial)):
+            yield part, owner, func.attr
+
+
+@lru_cache(maxsize=1000)
+def _paths_and_calls(node: ast.FunctionDef) -> tuple[Sequence[tuple[ast.Expr, ast.Attribute]], Sequence[tuple[ast.Call, ast.Attribute]]]:
+    """Returns the statements of a function that are a dotted path only, and its calls of one; once for all files with its text."""
+    parts = tuple(ast.walk(node))
+    paths = [(part, part.value) for part in parts if isinstance(part, ast.Expr) and isinstance(part.value, ast.Attribute)]
+    return paths, [(part, part.func) for part in parts if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute)]
 
 
 def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[..., Any], where: str, names: Mapping[str, Any]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from typing import Any, cast
 
 from actr3d.actr.chunks.pattern import MISSING, Condition
@@ -13,7 +12,7 @@ from actr3d.actr.lint.slot_inference import all_slots
 from actr3d.actr.lint.slot_names import vocabulary
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.safe_reading import UNKNOWN, plain_value
-from actr3d.errors import did_you_mean
+from actr3d.errors import did_you_mean, nearest
 from actr3d.warnings import warn_at
 
 SURE = 0.74
@@ -112,14 +111,14 @@ def _check_state(production: Production, condition: Condition, target: object) -
     wanted = condition.value
     if condition.op not in ("is", "not"):
         return
-    meant = get_close_matches(str(wanted).capitalize(), ("True", "False"), n=1, cutoff=SURE)
-    if not meant or wanted in meant or wanted in vocabulary(production.original_func).mentioned:
+    meant = nearest(str(wanted).capitalize(), ("True", "False"), SURE)
+    if meant is None or wanted == meant or wanted in vocabulary(production.original_func).mentioned:
         return
     if isinstance(plain_value(target, condition.key), bool):
         sign = "!" if condition.op == "not" else ""
         what = f"'{condition.name}' has True or False in '{condition.key}', with capital letters, and never '{wanted}'"
         warn = _warn_likely if sign else _warn_never
-        warn(production, f"{what}; did you mean '{condition.key}:{sign}{meant[0]}'?")
+        warn(production, f"{what}; did you mean '{condition.key}:{sign}{meant}'?")
 
 
 def _warn_never(production: Production, why: str) -> None:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import io
 import re
 import tokenize
+import warnings
+from functools import lru_cache
 from pathlib import Path
 from types import CodeType
 
-from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.kernel.source_code import syntax_tree, with_filename
 from actr3d.actr.loading.python2 import print_to, python_2_reason
 from actr3d.errors import ModelFileError, did_you_mean
 
@@ -61,7 +63,8 @@ def compile_source(source: str, filename: str) -> CodeType:
         raise ModelFileError(f"{filename}:{line}: there is a NUL character; this is not Python source")
     reason: tuple[int, str] | None = None
     try:
-        code = compile(source, filename, "exec", dont_inherit=True)
+        known = _compiled(source)
+        code = compile(source, filename, "exec", dont_inherit=True) if known is None else with_filename(known, filename)
         if not re.search(r"\bprint\s*>>", source) or (number := print_to(syntax_tree(source))) is None:
             return code
         reason = number, "a print statement"
@@ -76,6 +79,19 @@ def compile_source(source: str, filename: str) -> CodeType:
     except ValueError as error:  # a text that no encoding can hold
         raise ModelFileError(f"'{filename}' is not Python source: {error}") from None
     raise ModelFileError(f"{filename}:{reason[0]}: this file is written for Python 2 ({reason[1]}); convert it to Python 3")
+
+
+@lru_cache(maxsize=64)
+def _compiled(source: str) -> CodeType | None:
+    """Compiles a text, once for all files with this text; returns None if the compiler warns about it, as it must for each file.
+
+    Raises:
+        SyntaxError: If it is not Python, and other errors as `compile` does.
+    """
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        code = compile(source, "<model>", "exec", dont_inherit=True)
+    return None if found else code
 
 
 def _longest_line(source: str) -> int:

@@ -5,15 +5,20 @@ from __future__ import annotations
 import ast
 import inspect
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, Protocol
 
 from actr3d.actr.chunks.pattern import Bindings, conditions
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.source_code import assigned_globals, function_node, has_file, place
-from actr3d.actr.procedural.production_body import Body, Scope, compile_body
+from actr3d.actr.procedural.production_body import MOST_CODES, Body, Scope, compile_body
 from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
+
+
+@lru_cache(maxsize=MOST_CODES)
+def _assigned_in(statements: tuple[ast.stmt, ...]) -> frozenset[str]:
+    return frozenset(stored_names(statements))
 
 
 class ProductionOwner(Protocol):
@@ -103,9 +108,9 @@ class Production:
         return self.more_bound or bool(self.assigned)
 
     @cached_property
-    def assigned(self) -> set[str]:
+    def assigned(self) -> frozenset[str]:
         """The names that the body assigns."""
-        return stored_names(self.node.body)
+        return _assigned_in(tuple(self.node.body))
 
     def body_of(self, statements: Sequence[ast.stmt]) -> Body:
         """Makes a function of some of the body's statements."""
@@ -159,10 +164,9 @@ class Production:
 
 def defaults_of(func: Callable[..., Any]) -> dict[str, Any] | None:
     """Returns the parameters of a function with their defaults, or None if one has none, so that it is not a production."""
-    spec = inspect.getfullargspec(func)
-    if spec.varargs is not None or spec.varkw is not None or len(spec.args) != len(spec.defaults or ()):
+    code, defaults, named = func.__code__, func.__defaults__ or (), func.__kwdefaults__ or {}
+    if code.co_flags & (inspect.CO_VARARGS | inspect.CO_VARKEYWORDS):
         return None
-    named = spec.kwonlydefaults or {}
-    if len(spec.kwonlyargs) != len(named):
+    if len(defaults) != code.co_argcount or len(named) != code.co_kwonlyargcount:
         return None
-    return {**dict(zip(spec.args, spec.defaults or (), strict=True)), **named}
+    return {**dict(zip(code.co_varnames, defaults, strict=False)), **named}

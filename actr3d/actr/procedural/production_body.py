@@ -16,7 +16,7 @@ from functools import lru_cache
 from types import CellType, CodeType, FunctionType
 from typing import Any
 
-from actr3d.actr.kernel.source_code import for_python_actr
+from actr3d.actr.kernel.source_code import for_python_actr, source_of, with_filename
 from actr3d.actr.procedural.rebinding import BOUND, Names, Rebinder, stored_names, used_names
 from actr3d.errors import ProductionException
 
@@ -126,16 +126,19 @@ def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
 def _code_of(
     statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: tuple[str, ...], seen: frozenset[str], more_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
-    """Returns the result of `_compile`, once for all agents of a class: their names have different values, but their code is equal."""
+    """Returns the result of `_compile`, once for all agents that are loaded from a text, also if it is loaded again: their names have
+    different values, but their code is equal except for the file's name."""
     places = tuple((statement.lineno, statement.col_offset) for statement in statements)
-    key = (func.__code__, func.__code__.co_filename, func.__qualname__, name, places, bound, seen, more_bound)
+    filename = func.__code__.co_filename
+    key = (source_of(func), func.__code__, func.__qualname__, name, places, bound, seen, more_bound)
     made = _CODES.get(key)
     if made is None:
-        _refuse_waiting(statements, name, func.__code__.co_filename)
+        _refuse_waiting(statements, name, filename)
         if len(_CODES) >= MOST_CODES:
             _CODES.clear()
         made = _CODES[key] = _compile(statements, func, name, bound, seen, more_bound)
-    return made
+    code, given = made
+    return with_filename(code, filename), given
 
 
 def _compile(

@@ -68,6 +68,10 @@ class PassageResult:
         return "\n".join(lines)
 
 
+_NONE = frozenset[tuple[str, str]]()
+"""No touches."""
+
+
 class _Sample(NamedTuple):
     """The beginning of a physics step on the way."""
 
@@ -110,7 +114,8 @@ class Passage:
             raise WorldError(f"no body '{body}' to measure{did_you_mean(body, world.bodies)}")
         self._world, self._body = world, world.bodies[body]
         data = world.mj_data
-        self._places, self._geoms, self._qpos, self._qvel = data.xpos, data.geom_xpos, data.qpos, data.qvel
+        self._data, self._options, self._contacts = data, world.mj_model.opt, self._body.contacts
+        self._axis, self._qpos, self._qvel = data.xpos[self._body.root], data.qpos, data.qvel
         wall = next((part for part in world.scene.parts if isinstance(part, Aperture) and part.name == aperture), None)
         if wall is None:
             raise WorldError(f"no aperture '{aperture}' in this scene to measure a passage through")
@@ -121,18 +126,18 @@ class Passage:
         geoms = {self._body.geom_name(geom): geom for geom in self._body.geoms.tolist()}
         if not geoms.keys() >= {*joints}:
             raise WorldError(f"body '{body}' has no shoulders to measure")
-        self._shoulders = [geoms[name] for name in joints]
+        self._shoulders = [data.geom_xpos[geoms[name]] for name in joints]
         self._clearance = Clearance(model, data, self._body.geoms, wall.gap_in(model))
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
         self._hinges = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
-        x, y, _ = self._places[self._body.root].tolist()
+        x, y, _ = self._axis.tolist()
         self._start = x, y
         self._reach = 2.0 + wall.thickness
 
     def look(self) -> None:
         """Stores a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
-        end, ago = self._world.mj_data.time, self._world.mj_model.opt.timestep
-        x, y, _ = self._places[self._body.root].tolist()
+        end, ago = self._data.time, self._options.timestep
+        x, y, _ = self._axis.tolist()
         number = len(self._times)
         if number and end <= self._times[-1] + TINY:  # the run has gone back
             number = bisect_right(self._times, end - ago + TINY)
@@ -153,15 +158,15 @@ class Passage:
         """
         forward, left = self._ahead
         before = (self._wall.position[0] - x) * forward + (self._wall.position[1] - y) * left
-        (x1, y1, _), (x2, y2, _) = self._geoms[self._shoulders].tolist()
+        (x1, y1, _), (x2, y2, _) = [shoulder.tolist() for shoulder in self._shoulders]
         dx, dy = x1 - x2, y1 - y2
         angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
         # The integrator has moved the joints on from the geometry, with these speeds.
         logged = sum([share * (self._qpos.item(q) - ago * self._qvel.item(v)) for q, v, share in self._hinges])
-        touches = self._body.contacts.touches()
+        touches = self._contacts.touches()
         force = max([touch.force for touch in touches], default=0.0)
-        pairs = frozenset([(touch.part, touch.other) for touch in touches])
-        room = self._clearance.rooms(self._body.contacts.held()) if abs(before) < self._reach else None
+        pairs = frozenset([(touch.part, touch.other) for touch in touches]) if touches else _NONE
+        room = self._clearance.rooms(self._contacts.held()) if abs(before) < self._reach else None
         return _Sample(time, before, angle, logged, room, pairs, force)
 
     def result(self, *, over: bool) -> PassageResult:
