@@ -1,0 +1,227 @@
+"""Human data: tables of trials of people, and published means, that reports show beside those of a model.
+
+Both are CSV files (UTF-8, a line of names, then one row a line). Lines that begin with `#` are notes, which the report shows. Factors,
+groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
+lists them with their units. An empty cell is a value that is missing.
+
+**Trials** have the columns
+
+- `participant`: a name or number, unique in its group;
+- `group`: the name of a group of the design; may be left out if the design has one group;
+- a column for each factor of the design, such as `aperture`, `ratio` or `condition`; without one, the data are means over its levels;
+- a column for each measure, such as `wall_angle_deg` or `speed_m_s`; at least one.
+
+**Published means** have the columns
+
+- `group`, and a column for each factor, as above; an empty cell is a mean over all groups or levels;
+- `measure`: the name of a measure;
+- `mean`, `sd` (between participants) and `n` (participants); `sd` and `n` may be empty;
+- `source`: where the mean is printed.
+
+The published means of the library's own designs are the files of the folder `human` beside this module; `Design.human` names one.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from actr3d.errors import ExperimentError, did_you_mean
+
+FOLDER = Path(__file__).parent / "human"
+"""The folder of the library's published means."""
+SHOWN = 20
+"""The maximum number of errors that are named at a time."""
+OF_MEANS = ("measure", "mean", "sd", "n", "source")
+"""The columns of published means that are not factors."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HumanData:
+    """Human data that were checked against a design."""
+
+    name: str
+    """The name of the file."""
+    published: bool
+    """Whether the rows are published means; else they are trials."""
+    rows: Sequence[Mapping[str, Any]]
+    """The rows: factors are numbers or texts as in the design, or None; numbers are floats or None."""
+    measures: Sequence[str]
+    """The measures that they have."""
+    notes: Sequence[str]
+    """The notes of the file."""
+
+    @property
+    def sources(self) -> list[str]:
+        """The sources of published means, each once."""
+        return list(dict.fromkeys(row["source"] for row in self.rows)) if self.published else []
+
+
+@dataclass(frozen=True, kw_only=True)
+class Schema:
+    """What the columns of human data may hold for an experiment."""
+
+    groups: Sequence[str]
+    factors: Mapping[str, Sequence[float] | Sequence[str]]
+    """The factors of the design, and their levels: all numbers, or all texts."""
+    measures: Sequence[str]
+
+
+def library_human_data() -> dict[str, Path]:
+    """Returns the files of the library's published means by name."""
+    return {path.stem: path for path in sorted(FOLDER.glob("*.csv"))}
+
+
+def read_human_data(path: Path | str, schema: Schema) -> HumanData:
+    """Reads and checks a file of human data.
+
+    Args:
+        path: The file.
+        schema: What its columns may hold.
+
+    Raises:
+        ExperimentError: If the file cannot be read, or does not follow the schema: each error names file, line and column, what was
+            given and what would be right.
+    """
+    file = Path(path)
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        raise ExperimentError(f"{path}: cannot be read as human data ({why})") from None
+    return _Reader(str(path), text, schema).read(file.name)
+
+
+class _Reader:
+    """Reads one file, and collects its errors."""
+
+    def __init__(self, path: str, text: str, schema: Schema) -> None:
+        self._path, self._schema = path, schema
+        self._errors: list[str] = []
+        self._notes: list[str] = []
+        self._lines: list[tuple[int, list[str]]] = []
+        reader = csv.reader(io.StringIO(text))
+        try:
+            for cells in reader:
+                if cells and cells[0].lstrip().startswith("#"):
+                    self._notes.append(",".join(cells).strip().lstrip("#").strip())
+                elif any(cell.strip() for cell in cells):
+                    self._lines.append((reader.line_num, [cell.strip() for cell in cells]))
+        except csv.Error as error:
+            raise ExperimentError(f"{path}:{reader.line_num}: is not CSV ({error})") from None
+
+    def read(self, name: str) -> HumanData:
+        """Returns the data.
+
+        Raises:
+            ExperimentError: If there are errors; names up to `SHOWN` of them.
+        """
+        if not self._lines:
+            raise ExperimentError(f"{self._path}: is empty; the first line must name the columns")
+        line, head = self._lines[0]
+        published = self._check_head(line, head)
+        rows = [row for number, cells in self._lines[1:] if (row := self._row(number, head, cells, published)) is not None]
+        if not self._errors and not rows:
+            # Published means that are not known stand in the notes of a file without rows.
+            if not (published and self._notes):
+                self._errors.append(f"{self._path}:{line}: no row follows the names of the columns")
+        if self._errors:
+            more = len(self._errors) - SHOWN
+            raise ExperimentError("\n".join([*self._errors[:SHOWN], *([f"... and {more} more errors"] if more > 0 else [])]))
+        measures = [one for one in self._schema.measures if (any(row["measure"] == one for row in rows) if published else one in head)]
+        return HumanData(name=name, published=published, rows=rows, measures=measures, notes=self._notes)
+
+    def _check_head(self, line: int, head: list[str]) -> bool:
+        """Checks the names of the columns; returns whether the rows are published means."""
+        schema, where = self._schema, f"{self._path}:{line}"
+        published = "measure" in head or "mean" in head
+        measures = [] if published else list(schema.measures)
+        known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures]
+        wrong = [f"{where}: column '{name}' stands there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
+        wrong += [
+            f"{where}: unknown column '{name}'{did_you_mean(name, known)}; there may be: {', '.join(known)}"
+            for name in head
+            if name not in known
+        ]
+        needed = ["measure", "mean", "source"] if published else ["participant"]
+        needed += ["group"] if not published and len(schema.groups) > 1 else []
+        wrong += [f"{where}: column '{name}' is missing; {self._form(published)}" for name in needed if name not in head]
+        if not published and not any(name in measures for name in head):
+            wrong.append(f"{where}: no column is a measure; there may be: {', '.join(measures)}")
+        if wrong:
+            raise ExperimentError("\n".join(wrong))
+        return published
+
+    @staticmethod
+    def _form(published: bool) -> str:
+        if published:
+            return "published means need: measure, mean, source, and may have group, factors, sd, n"
+        return "trials need: participant, group, factors and measures; published means: group, factors, measure, mean, sd, n, source"
+
+    def _row(self, line: int, head: list[str], cells: list[str], published: bool) -> dict[str, Any] | None:
+        if len(cells) != len(head):
+            self._errors.append(f"{self._path}:{line}: must have {len(head)} cells, as the first line has (got {len(cells)})")
+            return None
+        given, before = dict(zip(head, cells, strict=True)), len(self._errors)
+        row: dict[str, Any] = {"group": self._one_of(line, "group", given.get("group", ""), self._schema.groups)}
+        for name, levels in self._schema.factors.items():
+            row[name] = self._level(line, name, given.get(name, ""), levels)
+        if published:
+            row["measure"] = self._one_of(line, "measure", given["measure"], self._schema.measures, needed=True)
+            row["mean"] = self._number(line, "mean", given["mean"], needed=True)
+            row["sd"] = self._number(line, "sd", given.get("sd", ""), least=0)
+            row["n"] = self._number(line, "n", given.get("n", ""), least=1, whole=True)
+            row["source"] = self._given(line, "source", given["source"])
+        else:
+            row["participant"] = self._given(line, "participant", given["participant"])
+            if len(self._schema.groups) == 1:
+                row["group"] = row["group"] or self._schema.groups[0]
+            elif not row["group"] and len(self._errors) == before:
+                self._add(line, "group", "", f"one of: {', '.join(self._schema.groups)}")
+            row |= {name: self._number(line, name, given[name]) for name in self._schema.measures if name in given}
+        return row if len(self._errors) == before else None
+
+    # -- cells
+
+    def _add(self, line: int, column: str, given: str, right: str) -> None:
+        self._errors.append(f"{self._path}:{line}: column '{column}': must be {right} (got {given!r})")
+
+    def _given(self, line: int, column: str, text: str) -> str:
+        if not text:
+            self._add(line, column, text, "given")
+        return text
+
+    def _one_of(self, line: int, column: str, text: str, known: Sequence[str], *, needed: bool = False) -> str | None:
+        if text in known or (not text and not needed):
+            return text or None
+        self._errors.append(
+            f"{self._path}:{line}: column '{column}': must be one of: {', '.join(known)} (got {text!r}){did_you_mean(text, known)}"
+        )
+        return None
+
+    def _level(self, line: int, column: str, text: str, levels: Sequence[float] | Sequence[str]) -> float | str | None:
+        """Returns a level of a factor; a number need not be one of the levels of the design, because people can be drawn between them."""
+        texts = [level for level in levels if isinstance(level, str)]
+        return self._one_of(line, column, text, texts) if texts else self._number(line, column, text)
+
+    def _number(
+        self, line: int, column: str, text: str, *, needed: bool = False, least: float = -math.inf, whole: bool = False
+    ) -> float | None:
+        if not text and not needed:
+            return None
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value) or value < least or (whole and value != int(value)):
+            kind = "a whole number" if whole else "a number"
+            bound = "" if least == -math.inf else f" from {least:g} on"
+            point = "; write the decimal point as '.'" if "," in text else ""
+            self._add(line, column, text, f"{kind}{bound}{point}")
+            return None
+        return value
