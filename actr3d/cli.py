@@ -1,4 +1,4 @@
-"""The command `actr3d`: runs models, replays recordings, and measures how fast models run."""
+"""The command `actr3d`: runs models and experiments, replays recordings, writes reports, and measures how fast models run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
-from actr3d.errors import DesignError, SettingError, did_you_mean
+from actr3d.errors import DesignError, ExperimentError, SettingError, did_you_mean
 from actr3d.output import all_written, standard_output
 from actr3d.parameter_schema import Parameter
 from actr3d.printing import ModelOutput, printing_to
@@ -250,6 +250,17 @@ def _parser() -> argparse.ArgumentParser:
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
     experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
+    report = commands.add_parser(
+        "report",
+        help="write the report of an experiment",
+        description="Writes a page with figures, tables and statistics of an experiment into its folder: report/index.html, which needs no "
+        "network, with each figure as PNG and SVG and each table as CSV beside it.",
+        epilog="Exit codes: 0 the report is written; 1 it cannot be written, or the data are not valid; 2 a package is missing.",
+    )
+    report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
+    report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
+    report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
+    report.set_defaults(function=_report)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
@@ -305,6 +316,25 @@ def _experiment(options: argparse.Namespace) -> int:
         return 2
     except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
         return _complain(error)
+
+
+def _report(options: argparse.Namespace) -> int:
+    try:
+        from actr3d.experiment.report import command
+
+        page = command.write_report(options.folder, human=options.human, compare=options.compare)
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("actr3d"):
+            return _complain(error)
+        print(f"actr3d report: needs the package '{error.name}'; install: pip install 'actr3d[experiment]'", file=sys.stderr)
+        return 2
+    except ExperimentError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except Exception as error:  # noqa: BLE001 - every error of a design or of its analysis is shown to its author
+        return _complain(error)
+    print(page)
+    return 0
 
 
 def _soak(options: argparse.Namespace) -> int:

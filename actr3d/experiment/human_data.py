@@ -126,10 +126,9 @@ class _Reader:
         line, head = self._lines[0]
         published = self._check_head(line, head)
         rows = [row for number, cells in self._lines[1:] if (row := self._row(number, head, cells, published)) is not None]
-        if not self._errors and not rows:
-            # Published means that are not known stand in the notes of a file without rows.
-            if not (published and self._notes):
-                self._errors.append(f"{self._path}:{line}: no row follows the names of the columns")
+        # A file of published means without rows says in its notes that none are known.
+        if not self._errors and not rows and not (published and self._notes):
+            self._errors.append(f"{self._path}:{line}: no row follows the names of the columns")
         if self._errors:
             more = len(self._errors) - SHOWN
             raise ExperimentError("\n".join([*self._errors[:SHOWN], *([f"... and {more} more errors"] if more > 0 else [])]))

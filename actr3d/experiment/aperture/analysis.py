@@ -19,21 +19,24 @@ from actr3d.experiment.aperture.passing import Passing, baseline_angle
 from actr3d.experiment.aperture.trials import original_means
 from actr3d.experiment.report.analyses import analysis
 from actr3d.experiment.report.beside import Beside
-from actr3d.experiment.report.figures import Curve, Pane, curves_figure
+from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import noting_warnings, pandas, pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
-from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means
+from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means, in_order
 
 Parts = list[str | Table | Plot | Caution]
 ORIGINAL, GEOMETRY = "original ACT-R 3D", "geometry (baseline)"
 BASELINE = (
-    "Baseline: one line of geometry, which any model must beat: the angle at which an ellipse, as wide as the shoulders S and 0.563 S deep, "
-    "leaves the room 0.30 S."
+    "Baseline: one line of geometry, which any model must beat: the angle at which an ellipse, as wide as the shoulders S and 0.563 S "
+    "deep, leaves the room 0.30 S."
 )
 ANGLE = "shoulder angle at the wall [degrees]"
 OF_RATIO = "aperture / shoulder width (A/S)"
 PEOPLE_TURN = f"people turn below {CRITICAL[0]:g} to {CRITICAL[1]:g}"
+NEEDED = ("participant", "group", "condition", "aperture", "shoulder_width", "wall_angle_deg", "peak_angle_deg", "clearance_left_m")
+NEEDED = (*NEEDED, "clearance_right_m", "contacts", "outcome", "bar", "aside", "off")
+"""The columns that a `Passing` is made of."""
 SIDES_DIFFER = 0.001
 """Sides that differ by less than this in every trial are equal [m]."""
 
@@ -41,7 +44,7 @@ SIDES_DIFFER = 0.001
 def passings_of(results: Results) -> list[Passing]:
     """Returns the trials of an experiment with apertures."""
     found: list[Passing] = []
-    for row in results.rows.to_dict("records"):
+    for row in results.rows[[name for name in NEEDED if name in results.rows]].to_dict("records"):
         row = {name: None if isinstance(value, float) and math.isnan(value) else value for name, value in row.items()}
         if row["shoulder_width"] is None:
             continue
@@ -101,7 +104,7 @@ def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
     if bars := findings.bar_angles():
         sections.append(Section(title="Bars in the hands", parts=_bars(bars)))
     if (left := len(findings.passings) - len(findings.plain)) and len(findings.levels) > 1:
-        text = f"{left:,} trials with a wide bar, or with a start that is not in line with the doorway, are in no figure of rotation and margins."
+        text = f"{left:,} trials with a wide bar, or with a start beside the doorway or aslant, are in no figure of rotation and margins."
         sections[1] = Section(title=sections[1].title, parts=[Caution(text), *sections[1].parts])
     return sections
 
@@ -123,7 +126,9 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
     for group in results.groups:
         of = means[means["group"] == group]
         low, high = of["low"].tolist(), of["high"].tolist()
-        curves.append(Curve(label=group, source="model", look="model", x=of["ratio"].tolist(), y=of["mean"].tolist(), low=low, high=high))
+        x, y = of["ratio"].tolist(), of["mean"].tolist()
+        curves.append(Curve(label=group, source="this model", look="model", x=x, y=y, low=low, high=high))
+        curves += _curves_beside(others, "passable", {"group": group}, group, "ratio", 1.0)
     pane = Pane(title="", curves=curves, band=(*PASSABLE, "people judge from about 1.16"))
     figure = curves_figure([pane], OF_RATIO, "judged passable without turning [proportion]")
     parts: Parts = [
@@ -132,16 +137,21 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
             name="boundaries",
             title="Boundary of each participant",
             frame=people,
-            note="The ratio at which half of the judgements are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood.",
+            note="Half of the judgements there are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood.",
             digits={"boundary": 3, "low": 3, "high": 3},
         ),
     ]
     if of_all is not None:
         low, high = bootstrap_interval(people["boundary"].tolist())
         mean = people["boundary"].mean()
-        parts.append(f"Mean boundary {mean:.3f} (95 % interval over participants {low:.3f} to {high:.3f}); of all judgements {of_all.value:.3f}.")
+        parts.append(
+            f"Mean boundary {mean:.3f} (95 % interval over participants {low:.3f} to {high:.3f}); of all judgements {of_all.value:.3f}."
+        )
     parts.append("The boundary of the human variant is a parameter of the model (1.16): only its spread follows from the noise of vision.")
-    return [Section(title="Constraints on a model of people", parts=[_constraints(constraints)]), Section(title="Judged passability", parts=parts)]
+    return [
+        Section(title="Constraints on a model of people", parts=[_constraints(constraints)]),
+        Section(title="Judged passability", parts=parts),
+    ]
 
 
 def _constraints(constraints: Sequence[Constraint]) -> Table:
@@ -174,9 +184,9 @@ class Rotation:
     def parts(self) -> Parts:
         """Returns the parts of the section."""
         findings, several = self._findings, len(self._findings.conditions) > 1
-        note = f"Means of participants with 95 % bootstrap intervals. {BASELINE}"
+        note = "Means of participants with 95 % bootstrap intervals."
         panes = [self._pane(condition, [(group, group, condition) for group in findings.groups]) for condition in findings.conditions]
-        parts: Parts = []
+        parts: Parts = [BASELINE]
         figure = curves_figure(panes, self._x_label, ANGLE, from_zero=True)
         parts.append(Plot(name="rotation_by_aperture", title=f"Rotation by {self._x}", figure=figure, note=note))
         if several:
@@ -189,7 +199,9 @@ class Rotation:
             parts.append(Plot(name="rotation_by_ratio", title="Rotation by A/S", figure=figure, note=note))
         parts += [self._cells(), self._fit(), *self._equivalence(), *self._aic()]
         if not any(one.look == "human" and len(one.of("wall_angle_deg")) for one in self._others):
-            parts.append("Human mean angles for each aperture are not available in print, so none are drawn; give data of your own with --human.")
+            parts.append(
+                "Human mean angles for each aperture are not available in print, so none are drawn; give data of your own with --human."
+            )
         return parts
 
     @property
@@ -235,18 +247,8 @@ class Rotation:
 
     def _others_curves(self, label: str, group: str, condition: str, scale: float) -> list[Curve]:
         """Returns the curves of people and of another experiment, where they have angles by aperture."""
-        found: list[Curve] = []
-        for one in self._others:
-            rows = one.of("wall_angle_deg")
-            if self._findings.by not in rows or "condition" not in rows:
-                rows = rows.assign(condition=condition) if self._findings.by in rows else rows[:0]
-            rows = rows[((rows["group"] == group) | rows["group"].isna()) & ((rows["condition"] == condition) | rows["condition"].isna())]
-            rows = rows[rows[self._findings.by].notna()].sort_values(self._findings.by) if len(rows) else rows
-            if len(rows):
-                x, look = (rows[self._findings.by].astype(float) * scale).tolist(), "human" if one.look == "human" else "points"
-                low, high = rows["low"].tolist(), rows["high"].tolist()
-                found.append(Curve(label=label, source=one.label, look=look, x=x, y=rows["mean"].tolist(), low=low, high=high))
-        return found
+        cell = {"group": group, "condition": condition}
+        return _curves_beside(self._others, "wall_angle_deg", cell, label, self._findings.by, scale)
 
     def _cells(self) -> Table:
         frame = self._means.copy()
@@ -298,11 +300,17 @@ class Rotation:
         with noting_warnings() as notes:
             found = pingouin().tost(large, small, bound=SAME, paired=False, correction=True).iloc[0]
         difference = float(np.mean(large) - np.mean(small))
-        row = {"groups": f"{pair[1]} − {pair[0]}", "difference": difference, "bound": SAME, "df": float(found["dof"]), "p": float(found["pval"])}
+        row = {
+            "groups": f"{pair[1]} − {pair[0]}",
+            "difference": difference,
+            "bound": SAME,
+            "df": float(found["dof"]),
+            "p": float(found["pval"]),
+        }
         row["result"] = "equivalent" if row["p"] < 0.05 else "not shown to be equivalent"
         note = (
-            "Two one-sided Welch t tests on the mean angle of each participant at the common ratios from 1.0 to 1.4. A small p says that the "
-            "groups differ by less than the bound."
+            "Two one-sided Welch t tests on the mean angle of each participant at the common ratios from 1.0 to 1.4. A small p says that "
+            "the groups differ by less than the bound."
         )
         table = Table(
             name="equivalence",
@@ -327,8 +335,26 @@ class Rotation:
             if error <= 0:
                 return []
             rows.append({"angle_depends_on": name, "aic": len(y) * math.log(error / len(y)) + 2 * (design.shape[1] + 1)})
-        note = "Akaike's criterion of a quadratic regression of participants' mean angles on A/S, and on the aperture A alone; smaller is better."
+        note = "Akaike's criterion of a quadratic regression of participants' mean angles on A/S, or on the aperture A; smaller is better."
         return [Table(name="aic", title="Ratio or width?", frame=pandas().DataFrame(rows), note=note, digits={"aic": 1})]
+
+
+def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str], label: str, x: str, scale: float) -> list[Curve]:
+    """Returns the means of people and of other experiments in a cell; those of all groups or conditions count for each of them."""
+    found: list[Curve] = []
+    for one in others:
+        rows = one.of(measure)
+        if x not in rows:
+            continue
+        for name, level in cell.items():
+            rows = rows[(rows[name] == level) | rows[name].isna()] if name in rows else rows
+        rows = rows[rows[x].notna()].sort_values(x)
+        if len(rows):
+            look: Look = "human" if one.look == "human" else "points"
+            places, y = (rows[x].astype(float) * scale).tolist(), rows["mean"].tolist()
+            low, high = rows["low"].tolist(), rows["high"].tolist()
+            found.append(Curve(label=label, source=one.label, look=look, x=places, y=y, low=low, high=high))
+    return found
 
 
 def _model_curve(label: str, x: Sequence[float], of: Any) -> Curve:
@@ -344,15 +370,15 @@ def _critical_ratios(findings: Findings) -> Parts:
     for group in findings.groups:
         for condition in findings.conditions:
             for one in findings.people(group):
-                of = [p for p in findings.plain if (p.group, p.condition, p.participant) == (group, condition, one) and p.angle is not None]
-                rows.append({"group": group, "condition": condition, "participant": one, **_fits(of, findings.curve(group, condition, one))})
+                fits = _fits(findings.trials(group, condition, one), findings.curve(group, condition, one))
+                rows.append({"group": group, "condition": condition, "participant": one, **fits})
     pd = pandas()
     frame = pd.DataFrame(rows)
     digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3, "baseline_deg": 1}
     note = (
         f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
-        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood; it cannot be narrower than the step between two apertures. Bend: "
-        "piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
+        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood; it cannot be narrower than the step between two apertures. "
+        "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
     parts: Parts = []
     if (known := frame[frame["critical_ratio"].notna()]).size:
@@ -364,18 +390,22 @@ def _critical_ratios(findings: Findings) -> Parts:
         parts.append(Plot(name="critical_ratio", title=title, figure=figure, note="95 % intervals of the profile likelihood."))
     summary: list[dict[str, Any]] = []
     for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
-        values = of["critical_ratio"].dropna().tolist()
+        values: list[float] = of["critical_ratio"].dropna().tolist()
         low, high = bootstrap_interval(values)
-        bends = of["bend"].dropna()
+        bends: list[float] = of["bend"].dropna().tolist()
         row = {"group": group, "condition": condition, "mean": float(np.mean(values)) if values else math.nan, "low": low, "high": high}
-        summary.append({**row, "n": len(values), "mean_bend": float(bends.mean()) if len(bends) else math.nan})
+        summary.append({**row, "n": len(values), "mean_bend": float(np.mean(bends)) if bends else math.nan})
     note_of_all = "Means of participants with 95 % bootstrap intervals. People: 1.30 (1.28 to 1.31; Warren & Whang 1987)."
-    of_all = dict.fromkeys(("mean", "low", "high", "mean_bend"), 3)
-    parts.append(Table(name="critical_ratios_of_groups", title="Critical ratio", frame=pd.DataFrame(summary), note=note_of_all, digits=of_all))
+    of_all: dict[str, int] = dict.fromkeys(("mean", "low", "high", "mean_bend"), 3)
+    parts.append(
+        Table(name="critical_ratios_of_groups", title="Critical ratio", frame=pd.DataFrame(summary), note=note_of_all, digits=of_all)
+    )
     title = "Critical ratio of each participant"
     parts.append(Table(name="critical_ratios", title=title, frame=frame, note=note, digits=digits, folded=True))
     if len(known) < len(frame):
-        parts.append(Caution(f"{len(frame) - len(known)} of {len(frame)} curves have no critical ratio: all of their trials are turned, or none is."))
+        parts.append(
+            Caution(f"{len(frame) - len(known)} of {len(frame)} curves have no critical ratio: all of their trials are turned, or none is.")
+        )
     return parts
 
 
@@ -429,13 +459,13 @@ def _margins(findings: Findings, frame: Any) -> Parts:
     if len(there) and float((there["left"] - there["right"]).abs().max()) < 100 * SIDES_DIFFER:
         parts.append(Caution("Left and right are equal in every trial: this walker neither sways nor steers, which people do."))
     rows: list[dict[str, Any]] = []
-    for (group, condition, level), of in there.groupby(["group", "condition", "level"], observed=True):
+    for (group, condition, level), of in there.groupby(["group", "condition", "level"], sort=False, observed=True):
         row: dict[str, Any] = {"group": group, "condition": condition, by: level, "trials": len(of)}
         for side in ("left", "right"):
             sd = float(of[side].std(ddof=1)) if len(of) > 1 else math.nan
             row |= {f"{side}_mean": float(of[side].mean()), f"{side}_least": float(of[side].min()), f"{side}_sd": sd}
         rows.append({**row, "largest_difference": float((of["left"] - of["right"]).abs().max())})
-    table = pd.DataFrame(rows)
+    table = in_order(pd.DataFrame(rows), ["group", "condition", by], frame)
     of_sides = [name for name in table if name.startswith(("left", "right", "largest"))]
     units, digits = dict.fromkeys(of_sides, "cm"), dict.fromkeys(of_sides, 1) | {"aperture": 2, "ratio": 2}
     note = "sd: between trials; largest difference: between the sides of one trial."
@@ -449,9 +479,13 @@ def _contacts(frame: Any) -> Table:
     for (group, condition), of in frame.groupby(["group", "condition"], sort=False, observed=True):
         counts = {name: int((of["outcome"] == name).sum()) for name in ("passed", "stopped", "declined")}
         touched = int((of["contacts"] > 0).sum())
-        rows.append({"group": group, "condition": condition, "trials": len(of), **counts, "touched": touched, "max_force": of["force"].max()})
+        rows.append(
+            {"group": group, "condition": condition, "trials": len(of), **counts, "touched": touched, "max_force": of["force"].max()}
+        )
     note = "touched: trials with at least one contact; the force is the greatest of all."
-    return Table(name="contacts", title="Contacts", frame=pandas().DataFrame(rows), units={"max_force": "N"}, digits={"max_force": 1}, note=note)
+    return Table(
+        name="contacts", title="Contacts", frame=pandas().DataFrame(rows), units={"max_force": "N"}, digits={"max_force": 1}, note=note
+    )
 
 
 def _onset(findings: Findings, frame: Any, x_label: str, scale: float) -> Parts:
@@ -521,10 +555,10 @@ def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
     parts: Parts = [Plot(name="bars", title="Rotation with a bar", figure=figure, note=note)]
     both = frame[frame["original"].notna()]
     units = dict.fromkeys(("mean", "low", "high", "original", "baseline"), "degrees") | {"bar": "body widths"}
-    digits = dict.fromkeys(("mean", "low", "high", "original", "baseline"), 1)
+    digits: dict[str, int] = dict.fromkeys(("mean", "low", "high", "original", "baseline"), 1)
     parts.append(Table(name="bars", title="Rotation with a bar", frame=frame, units=units, digits=digits))
     if len(both) > 2:
-        rows = []
+        rows.clear()
         for what, other, one, two in (
             ("this model", ORIGINAL, "mean", "original"),
             (GEOMETRY, ORIGINAL, "baseline", "original"),

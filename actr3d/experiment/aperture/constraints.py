@@ -80,9 +80,11 @@ class Findings:
         """The trials without a bar that is wider than the body, which begin in line with the doorway."""
         self._people: defaultdict[tuple[str, str, str], defaultdict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
         self._margins: defaultdict[tuple[str, str, float], list[float]] = defaultdict(list)
+        self._trials: defaultdict[tuple[str, str, str], list[Passing]] = defaultdict(list)
         for one in self.plain:
             if one.angle is not None:
                 self._people[one.group, one.condition, one.participant][self.level(one)].append(one.angle)
+                self._trials[one.group, one.condition, one.participant].append(one)
             if (sides := margin(one)) is not None:
                 self._margins[one.group, one.condition, self.level(one)].append(mean(sides))
         self._shoulders = {(one.group, one.participant): one.shoulders for one in self.plain}
@@ -111,7 +113,11 @@ class Findings:
 
     def people(self, group: str) -> list[str]:
         """Returns the participants of a group."""
-        return sorted(one for of, one in self._shoulders if of == group)
+        return [one for of, one in self._shoulders if of == group]
+
+    def trials(self, group: str, condition: str, participant: str) -> list[Passing]:
+        """Returns a participant's trials with an angle."""
+        return self._trials[group, condition, participant]
 
     def curve(self, group: str, condition: str, participant: str) -> tuple[list[float], list[float]]:
         """Returns a participant's ratios of aperture to shoulders, and its mean angles at them [degrees]."""
@@ -201,10 +207,11 @@ class Findings:
     def critical(self) -> Constraint:
         """4: the critical ratio of each cell."""
         says = f"critical ratio {CRITICAL[0]} to {CRITICAL[1]} in each cell"
-        cells = {(group, condition): list[Passing]() for group in self.groups for condition in self.conditions}
-        for one in self.plain:
-            if one.angle is not None:
-                cells[one.group, one.condition].append(one)
+        cells = {
+            (group, condition): [one for who in self.people(group) for one in self.trials(group, condition, who)]
+            for group in self.groups
+            for condition in self.conditions
+        }
         if not cells or any(not of or not _spans([one.ratio for one in of], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
         found = {key: critical_ratio((one.ratio, (one.angle or 0.0) > TURNED) for one in of) for key, of in cells.items()}
@@ -241,11 +248,14 @@ class Findings:
             return _untested(6, says, "it needs apertures that can be passed, without a bar that is wider than the body")
         touched = sum(one.contacts > 0 for one in passable)
         passed = sum(one.passed for one in passable)
-        sides: defaultdict[float, list[tuple[float, float]]] = defaultdict(list)
+        sides: defaultdict[float, defaultdict[str, list[tuple[float, float]]]] = defaultdict(lambda: defaultdict(list))
         for one in passable:
             if (found := margin(one)) is not None:
-                sides[self.level(one)].append(found)
-        means = {level: (mean(left for left, _ in of), mean(right for _, right in of)) for level, of in sorted(sides.items())}
+                sides[self.level(one)][one.participant].append(found)
+        means = {
+            level: tuple(mean(mean(pair[side] for pair in pairs) for pairs in of.values()) for side in (0, 1))
+            for level, of in sorted(sides.items())
+        }
         scale, unit = (100, "cm") if self.by == "aperture" else (1, "A/S")
         text = f"{touched} of {len(passable)} touched, {passed} passed; mean margin of agents that turned "
         text += ", ".join(f"{_sides(left, right)} at {scale * level:.3g}" for level, (left, right) in means.items())

@@ -6,12 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from numpy.typing import NDArray
 
 STEEPEST = 200.0
 """The greatest slope of the logistic curve per unit of the ratio: steeper ones cannot be distinguished."""
 STEPS = 401
 """The number of ratios at which the likelihood is computed, between the smallest and the largest of the trials."""
+CHI_SQUARED = 3.841
+"""The 95 % quantile of the chi-squared distribution with one degree of freedom."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,17 +52,17 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
     total = np.bincount(inverse).astype(float)
     if not 0 < turned.sum() < total.sum():
         return None
-    centres = np.linspace(ratios[0], ratios[-1], STEPS)
+    centres: NDArray[np.float64] = np.linspace(ratios[0], ratios[-1], STEPS)
     slopes = np.geomspace(2.0, STEEPEST, 16)
     profile = np.full(STEPS, -np.inf)
     for slope in slopes:
-        signed = slope * (ratios[None, :] - centres[:, None])
+        signed: NDArray[np.float64] = slope * (ratios[None, :] - centres[:, None])
         likelihood = -(np.logaddexp(0.0, signed) @ turned) - np.logaddexp(0.0, -signed) @ (total - turned)
         profile = np.maximum(profile, likelihood)
     best = profile.max()
-    top = centres[profile >= best - 1e-3]
-    inside = centres[profile >= best - stats.chi2.ppf(0.95, 1) / 2]
-    return CriticalRatio(value=float((top[0] + top[-1]) / 2), low=float(inside[0]), high=float(inside[-1]))
+    top: list[float] = centres[profile >= best - 1e-3].tolist()
+    inside: list[float] = centres[profile >= best - CHI_SQUARED / 2].tolist()
+    return CriticalRatio(value=(top[0] + top[-1]) / 2, low=inside[0], high=inside[-1])
 
 
 def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
@@ -76,11 +78,12 @@ def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
     if len(np.unique(x)) < 4:
         return None
     best: tuple[float, Bend] | None = None
-    for at in np.linspace(x.min(), x.max(), STEPS)[1:]:
+    places: list[float] = np.linspace(x.min(), x.max(), STEPS)[1:].tolist()
+    for at in places:
         fall = np.maximum(0.0, at - x)
         design = np.column_stack([np.ones_like(x), fall])
         (base, slope), *_ = np.linalg.lstsq(design, y, rcond=None)
         error = float(np.sum((y - base - slope * fall) ** 2))
         if slope > 0 and (best is None or error < best[0] - 1e-9):
-            best = error, Bend(ratio=float(at), baseline=float(base), slope=float(slope))
+            best = error, Bend(ratio=at, baseline=float(base), slope=float(slope))
     return None if best is None else best[1]

@@ -14,7 +14,7 @@ ROOM = 0.30
 """The room on both sides together as a fraction of the shoulder width. Source: Warren & Whang (1987), critical ratio 1.30."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Passing:
     """One trial at an aperture."""
 
@@ -27,7 +27,8 @@ class Passing:
     shoulders: float
     """The shoulder width [m]."""
     angle: float | None
-    """The angle of the shoulders at the wall [degrees]; where the walker did not get there, its greatest one; None if it did not set out."""
+    """The angle of the shoulders at the wall [degrees]; if the walker did not get there, its greatest one; None if it did not set
+    out."""
     left: float | None
     """The smallest distance to the left segment of the wall while in the doorway [m]."""
     right: float | None

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from actr3d.experiment.human_data import HumanData, Schema, library_human_data, read_human_data
 from actr3d.experiment.report.figures import Look
@@ -75,7 +75,7 @@ def beside_people(data: HumanData, results: Results) -> Beside:
         for name in ("mean", "sd", "n"):
             frame[name] = frame[name].astype("float64")
         enough = frame["n"].where(frame["n"] > 1)
-        half = stats.t.ppf(0.975, enough - 1) * frame["sd"] / np.sqrt(enough)
+        half: Any = stdtrit(enough - 1, 0.975) * frame["sd"] / np.sqrt(enough)
         frame["low"], frame["high"] = frame["mean"] - half, frame["mean"] + half
         return Beside(label="people", look="human", frame=frame[columns])
     rows = pd.DataFrame([dict(row) for row in data.rows])

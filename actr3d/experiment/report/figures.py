@@ -48,7 +48,8 @@ STYLE: dict[str, Any] = {
     "svg.hashsalt": "actr3d",
 }
 Look = Literal["model", "points", "human", "other", "baseline"]
-"""`model`: the experiment of the report; `points`: the same without a line; `human`: people; `other`: another experiment or model; `baseline`: what any model must beat."""
+"""`model`: the experiment of the report; `points`: the same without a line; `human`: people;
+`other`: another experiment or model; `baseline`: what any model must beat."""
 LOOKS: dict[str, dict[str, Any]] = {
     "model": {"linestyle": "-", "linewidth": 1.8, "markersize": 5.5},
     "points": {"linestyle": "none", "markersize": 6},
@@ -176,8 +177,9 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
     bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
     handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]
     if handles:
-        longest = max(len(str(handle.get_label())) for handle in handles)
-        columns = max(1, min(len(handles), 3 if longest > 24 else 5))
+        wide = figure.get_figwidth() * 14  # characters in a row; a handle takes the place of six
+        rows = math.ceil(sum(len(str(handle.get_label())) + 6 for handle in handles) / wide)
+        columns = math.ceil(len(handles) / rows)
         figure.legend(handles=handles, loc="outside upper left", ncols=columns, borderaxespad=0.2, columnspacing=1.6, handlelength=2.2)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from actr3d.experiment.human_data import HumanData
 from actr3d.experiment.report.beside import Beside, fit_to, matched, missing
-from actr3d.experiment.report.figures import Curve, Pane, curves_figure
+from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results, plain_text
@@ -107,7 +107,9 @@ def comparison_section(results: Results, other: Results, beside: Beside | None) 
     different = [name for name in ("design", "model") if getattr(one, name) != getattr(two, name)]
     changed = [f"{name} = {two.values.get(name)!r} (here {one.values.get(name)!r})" for name in sorted({*one.values, *two.values})]
     changed = [text for name, text in zip(sorted({*one.values, *two.values}), changed, strict=True) if _differs(name, one, two)]
-    text = f"{other.label} ({two.name}, {len(other.rows):,} trials) differs in: {', '.join([*different, *changed]) or 'nothing that was set'}."
+    text = (
+        f"{other.label} ({two.name}, {len(other.rows):,} trials) differs in: {', '.join([*different, *changed]) or 'nothing that was set'}."
+    )
     fit = fit_to(results, beside, results.measures)
     parts: list[str | Table | Plot | Caution] = [text]
     if len(fit):
@@ -167,9 +169,11 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -
     figure, note = figure_of(results, measure, others)
     if figure is not None:
         parts.append(Plot(name=f"measure_{measure}", title=f"{results.name_with_unit(measure)} by cell", figure=figure, note=note))
-    units = {name: unit for name in ("mean", "sd", "low", "high")} | {name: results.unit(name) for name in by}
+    units = dict.fromkeys(("mean", "sd", "low", "high"), unit) | {name: results.unit(name) for name in by}
     note = "sd: between participants; low, high: 95 % interval; n: participants."
-    table = Table(name=f"means_{measure}", title="Means", frame=means, units=units, hidden=("measure", "unit"), note=note, folded=len(means) > 12)
+    table = Table(
+        name=f"means_{measure}", title="Means", frame=means, units=units, hidden=("measure", "unit"), note=note, folded=len(means) > 12
+    )
     parts += [table, *_participants(results, measure, unit), *test_parts(tests_of(results, measure), measure)]
     return Section(title=results.name_with_unit(measure), parts=parts, folded=True)
 
@@ -185,7 +189,7 @@ def test_parts(tests: Tests, measure: str) -> list[str | Table | Plot | Caution]
     parts: list[str | Table | Plot | Caution] = []
     if tests.anova is not None:
         note = (
-            "One factor within participants at a time, averaged over the others; p corrected: Greenhouse-Geisser. Differences: an effect on "
+            "One factor within participants at a time, averaged over others; p corrected: Greenhouse-Geisser. Differences: an effect on "
             "the difference between two levels is an interaction with them."
         )
         parts.append(Table(name=f"anova_{measure}", title="Analysis of variance", frame=tests.anova, note=note))
@@ -232,28 +236,16 @@ def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple
     layout = layout_of(results)
     if layout is None:
         return None, ""
-    levels: Mapping[str, Sequence[Any]] = {**results.all_factors, "group": results.groups}
+    levels: dict[str, Sequence[Any]] = {**results.all_factors, "group": results.groups}
     by = [name for name in (*layout.panes, layout.curves, layout.x) if name is not None]
-    means = cell_means(results.rows, measure, by)
-    texts = [level for level in levels[layout.x] if isinstance(level, str)]
-    places: dict[Any, float] = {level: float(n) for n, level in enumerate(texts)}
-    frames = [("model", "model", means), *((one.label, one.look, _averaged(one, measure, by, results)) for one in others)]
+    places: dict[Any, float] = {level: float(n) for n, level in enumerate(levels[layout.x]) if isinstance(level, str)}
+    sources: list[tuple[str, Look, Any]] = [("model", "model", cell_means(results.rows, measure, by))]
+    for one in others:
+        sources.append((one.label, one.look, _averaged(one, measure, by, results)))  # noqa: PERF401 - pyright infers other types
     panes: list[Pane] = []
     for cell in itertools.product(*(levels[name] for name in layout.panes)):
         here = dict(zip(layout.panes, cell, strict=True))
-        curves: list[Curve] = []
-        for source, look, frame in frames:
-            rows = [row for row in frame.to_dict("records") if all(missing(row[k]) or row[k] == v for k, v in here.items())]
-            rows = [row for row in rows if not missing(row[layout.x])]
-            names: Sequence[Any] = [*levels[layout.curves], None] if layout.curves else [None]
-            for name in names:
-                of = [row for row in rows if layout.curves is None or (missing(row[layout.curves]) if name is None else row[layout.curves] == name)]
-                of.sort(key=lambda row: places.get(row[layout.x], row[layout.x]))
-                if of:
-                    label = "" if name is None else name if layout.curves == "group" else f"{layout.curves.replace('_', ' ')} {plain_text(name)}"
-                    x, y = [places.get(row[layout.x], row[layout.x]) for row in of], [row["mean"] for row in of]
-                    low, high = [row["low"] for row in of], [row["high"] for row in of]
-                    curves.append(Curve(label=label, source=source, look=look, x=x, y=y, low=low, high=high))
+        curves = [curve for source in sources for curve in _curves(source, here, layout, levels, places)]
         title = ", ".join(f"{name.replace('_', ' ')} {plain_text(level)}{_unit(results, name)}" for name, level in here.items())
         panes.append(Pane(title=title, curves=curves))
     ticks = [(place, str(level)) for level, place in places.items()]
@@ -262,6 +254,28 @@ def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple
     if layout.averaged:
         note += f" Averaged over: {', '.join(layout.averaged)}."
     return figure, note
+
+
+def _curves(
+    source: tuple[str, Look, Any],
+    here: Mapping[str, Any],
+    layout: Layout,
+    levels: Mapping[str, Sequence[Any]],
+    places: Mapping[Any, float],
+) -> list[Curve]:
+    """Returns the curves of one source in one pane: one for each level, and one of the means over all levels."""
+    label, look, frame = source
+    name, found = layout.curves, list[Curve]()
+    rows = [row for row in frame.to_dict("records") if all(missing(row[key]) or row[key] == level for key, level in here.items())]
+    rows = [row for row in rows if not missing(row[layout.x])]
+    for level in [None] if name is None else [*levels[name], None]:
+        of = [row for row in rows if name is None or (missing(row[name]) if level is None else row[name] == level)]
+        points = sorted((float(places.get(row[layout.x], row[layout.x])), row["mean"], row["low"], row["high"]) for row in of)
+        if points:
+            x, y, low, high = (list(values) for values in zip(*points, strict=True))
+            text = "" if name is None or level is None else level if name == "group" else f"{name.replace('_', ' ')} {plain_text(level)}"
+            found.append(Curve(label=text, source=label, look=look, x=x, y=y, low=low, high=high))
+    return found
 
 
 def _averaged(beside: Beside, measure: str, by: Sequence[str], results: Results) -> Any:

@@ -21,7 +21,8 @@ CSS = """
   --link: #8fbcff; --caution: #ffc266; --caution-paper: #2c2415; --good: #2fd0a5; --bad: #ff8a80;
   --c0: #56b4e9; --c1: #ff8c42; --c2: #2fd0a5; --c3: #e29fd6; --c4: #e0c04c; --c5: #9cc7f5; } }
 * { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink); font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
+body { margin: 0; background: var(--paper); color: var(--ink);
+  font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 main { max-width: 62rem; margin: 0 auto; padding: 2.5rem 1.5rem 5rem; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .3rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.35rem; margin: 3rem 0 .8rem; padding-top: 1rem; border-top: 1px solid var(--line); }
@@ -34,9 +35,11 @@ a { color: var(--link); }
 .facts dt { color: var(--muted); font-size: .85rem; }
 .facts dd { margin: 0; font-size: 1.3rem; font-weight: 600; font-variant-numeric: tabular-nums; }
 nav { margin: 1rem 0; } nav ul { list-style: none; padding: 0; display: flex; flex-wrap: wrap; gap: .2rem 1.2rem; margin: 0; }
-.caution { background: var(--caution-paper); border-left: 3px solid var(--caution); padding: .5rem 1rem; margin: .8rem 0; border-radius: 0 6px 6px 0; }
+.caution { background: var(--caution-paper);
+  border-left: 3px solid var(--caution); padding: .5rem 1rem; margin: .8rem 0; border-radius: 0 6px 6px 0; }
 .caution::before { content: "Note "; font-weight: 600; color: var(--caution); }
-figure { margin: 1.2rem 0 1.8rem; } figcaption, .note { color: var(--muted); font-size: .9rem; max-width: 48rem; }
+figure { margin: .4rem 0 1.8rem; } .files { font-size: .85rem; margin: .2rem 0; }
+.files a { margin-right: .4rem; } figcaption, .note { color: var(--muted); font-size: .9rem; max-width: 48rem; }
 .plot { overflow-x: auto; } .plot svg { display: block; width: 100%; min-width: 34rem; height: auto; }
 .plot text { font-family: system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
 .plot * { stroke-linejoin: round; stroke-linecap: butt; }
@@ -94,9 +97,11 @@ def _part(part: str | Table | Plot | Caution, drawings: Mapping[str, str]) -> st
             return f'<div class="caution">{_text(part.text)}</div>'
         case Plot():
             drawing = inline_svg(drawings[part.name], part.name, part.title)
-            caption = f"<strong>{_text(part.title)}</strong>" + (f"<br>{_text(part.note)}" if part.note else "")
-            links = f'<a href="figures/{part.name}.svg">SVG</a>, <a href="figures/{part.name}.png">PNG</a>'
-            return f'<figure>\n<div class="plot">{drawing}</div>\n<figcaption>{caption} {links}</figcaption>\n</figure>'
+            links = f'<a href="figures/{part.name}.svg">SVG</a> <a href="figures/{part.name}.png">PNG</a>'
+            return (
+                f'<h3>{_text(part.title)}</h3>\n<figure>\n<div class="plot">{drawing}</div>\n'
+                f'<figcaption>{_text(part.note)} <span class="files">{links}</span></figcaption>\n</figure>'
+            )
         case Table():
             return _table(part)
 
@@ -105,20 +110,22 @@ def _table(table: Table) -> str:
     frame, shown = table.frame, [name for name in table.frame.columns if name not in table.hidden]
     kinds = {name: str(frame[name].dtype) for name in shown}
     numeric = {name for name, kind in kinds.items() if kind.startswith(("int", "float"))}
-    heads = "".join(
-        f'<th scope="col"{" class=number" if name in numeric else ""}>{_text(name_with_unit(name, table.units.get(name, "")))}</th>'
-        for name in shown
-    )
+    heads = "".join(f'<th scope="col"{" class=number" if name in numeric else ""}>{_text(_head(name, table))}</th>' for name in shown)
     rows = "\n".join(
         "<tr>" + "".join(_cell(name, value, numeric, table) for name, value in row.items()) + "</tr>"
         for row in frame[shown].to_dict("records")
     )
-    link = f'<a href="tables/{table.name}.csv">CSV</a>'
+    link = f'<p class="files"><a href="tables/{table.name}.csv">CSV</a></p>'
     note = f'<p class="note">{_text(table.note)}</p>' if table.note else ""
     body = f'{note}<div class="scroll"><table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div>\n'
     if table.folded or len(frame) > FOLDED:
         return f"<details><summary>{_text(table.title)} ({len(frame)} rows)</summary>\n{body}{link}</details>"
     return f"<h3>{_text(table.title)}</h3>\n{body}{link}"
+
+
+def _head(name: str, table: Table) -> str:
+    """Returns the name of a column with its unit; degrees are short there, because many columns have them."""
+    return name_with_unit(name, table.units.get(name, "")).replace("[degrees]", "[°]")
 
 
 def _cell(name: str, value: Any, numeric: set[str], table: Table) -> str:

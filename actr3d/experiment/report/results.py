@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -17,6 +18,10 @@ from actr3d.experiment.store import CHUNK, Column, Store
 
 NUMBERS = ("boolean", "integer", "real")
 """The types of columns that are analysed as numbers."""
+ENDINGS = {"degrees": "_deg", "m/s": "_m_s"}
+"""The endings of names of columns by units, where they are not the unit."""
+SHORT = {"r2": "r²", "rmse": "RMSE", "aic": "AIC", "sd": "SD", "chi2": "χ²"}
+"""Names of statistics as they are written."""
 LEFT_OUT = ("seed", "wall_s", "worker", "position")
 """Columns that no analysis needs."""
 
@@ -34,7 +39,7 @@ class Results:
     columns: Mapping[str, Column]
     """What is known of each column of `rows`."""
     rows: Any
-    """A `pandas.DataFrame` of the trials that did not fail, in their order."""
+    """A `pandas.DataFrame` of the trials that did not fail, sorted by group, participant, the factors, and number."""
     failures: Any
     """A `pandas.DataFrame` of the trials that failed: `trial`, `participant`, `group`, the factors, `end` and `error`."""
     versions: Sequence[str]
@@ -71,9 +76,9 @@ class Results:
 
 def name_with_unit(name: str, unit: str) -> str:
     """Returns a name for axes: words instead of underscores, and the unit instead of an ending that is the same: `clearance left [m]`."""
-    endings = {"degrees": "_deg", "m/s": "_m_s"}
-    base = name.removesuffix(endings.get(unit, f"_{unit.lower()}")) if unit else name
-    return f"{base.replace('_', ' ')} [{unit}]" if unit else base.replace("_", " ")
+    base = name.removesuffix(ENDINGS.get(unit, f"_{unit.lower()}")) if unit else name
+    words = SHORT.get(base, base.replace("_", " "))
+    return f"{words} [{unit}]" if unit else words
 
 
 def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
@@ -85,8 +90,8 @@ def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
 
 def plain_text(value: Any) -> str:
     """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
-    if value is None or isinstance(value, str):
-        return value or "none"
+    if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
+        return value if isinstance(value, str) and value else "none"
     return json.dumps(value) if isinstance(value, (list, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -101,13 +106,12 @@ def read_results(folder: Path | str) -> Results:
         with specification.sealed() as helpers:
             experiment = Experiment(specification, helpers)
         columns = {column.name: column for column in store.columns}
-        frame = _frame(store)
+        design = experiment.design
+        texts = [name for name, levels in design.factors.items() if isinstance(plain_levels(levels)[0], str)]
+        frame = _frame(store, texts)
     if frame is None:
         raise ExperimentError(f"'{folder}': no trial has finished yet; run it with: actr3d experiment {folder} --resume")
-    design = experiment.design
-    for name, levels in design.factors.items():
-        if name in frame and isinstance(plain_levels(levels)[0], str):
-            frame[name] = [plain_text(value) for value in frame[name]]
+    frame = _sorted(frame, design)
     failed = frame["error"].notna()
     rows = frame[~failed].drop(columns=["error", "versions"]).reset_index(drop=True)
     about = [name for name in ("trial", "participant", "group", *design.factors, "end", "error") if name in frame]
@@ -131,12 +135,32 @@ def read_results(folder: Path | str) -> Results:
     )
 
 
-def _frame(store: Store) -> Any:
-    """Returns all rows as a `pandas.DataFrame`; None if there are none. Numbers are `float64`, also switches among the measures."""
+def _sorted(frame: Any, design: Design) -> Any:
+    """Returns the rows sorted by group, participant and factors, each in the order of the design, and by the number of the trial."""
+    orders: dict[str, list[Any]] = {"group": list(design.groups), "participant": [one.name for one in design.participants]}
+    orders |= {name: list(plain_levels(levels)) for name, levels in design.factors.items() if name in frame}
+
+    def rank(column: Any) -> Any:
+        order = orders.get(column.name)
+        return column if order is None else column.map({value: number for number, value in enumerate(order)})
+
+    return frame.sort_values([*orders, "trial"], key=rank, kind="stable", ignore_index=True)
+
+
+def _frame(store: Store, texts: Sequence[str]) -> Any:
+    """Returns all rows as a `pandas.DataFrame`; None if there are none. Numbers are `float64`, also switches among the measures.
+
+    Args:
+        store: The folder of the experiment.
+        texts: The factors whose levels are texts.
+    """
     pd, rows = pandas(), store.rows()
-    kinds = {column.name: "float64" if column.type in NUMBERS else "object" for column in store.columns}
+    kinds = {column.name: "float64" if column.type in NUMBERS and column.name not in texts else "object" for column in store.columns}
     pieces: list[Any] = []
     while chunk := list(islice(rows, CHUNK)):  # in pieces, which need less memory than all rows as dictionaries
         piece = pd.DataFrame.from_records(chunk, exclude=[name for name in LEFT_OUT if name in chunk[0]])
-        pieces.append(piece.astype({name: kinds[name] for name in piece}))
+        piece = piece.astype({name: kinds[name] for name in piece})
+        for name in texts:
+            piece[name] = pd.Series([plain_text(value) for value in piece[name]], dtype="object")
+        pieces.append(piece)
     return pd.concat(pieces, ignore_index=True) if pieces else None

@@ -66,7 +66,7 @@ def cell_means(rows: Any, measure: str, by: Sequence[str]) -> Any:
         by: The columns whose values make a cell; empty for one cell.
     """
     means = participant_means(rows, measure, by)
-    cells = means.groupby(list(by), sort=True, observed=True) if by else [((), means)]
+    cells = means.groupby(list(by), sort=False, observed=True) if by else [((), means)]
     found: list[dict[str, Any]] = []
     for key, cell in cells:
         values = cell["value"].to_numpy()
@@ -75,7 +75,20 @@ def cell_means(rows: Any, measure: str, by: Sequence[str]) -> Any:
         place = dict(zip(by, key, strict=True))
         found.append({**place, "mean": float(values.mean()), "sd": sd, "low": low, "high": high, "n": len(values)})
         found[-1]["trials"] = int(cell["trials"].sum())
-    return pandas().DataFrame(found, columns=[*by, "mean", "sd", "low", "high", "n", "trials"])
+    return in_order(pandas().DataFrame(found, columns=[*by, "mean", "sd", "low", "high", "n", "trials"]), by, rows)
+
+
+def in_order(cells: Any, by: Sequence[str], rows: Any) -> Any:
+    """Returns cells sorted by columns: numbers by size, texts in the order in which the rows have them, which is that of the design."""
+    if not by or not len(cells):
+        return cells
+
+    def rank(column: Any) -> Any:
+        if str(column.dtype).startswith(("float", "int")):
+            return column
+        return column.map({value: number for number, value in enumerate(dict.fromkeys(rows[column.name]))})
+
+    return cells.sort_values(list(by), key=rank, kind="stable", ignore_index=True)
 
 
 def agreement(found: Sequence[float], target: Sequence[float]) -> tuple[float, float]:
@@ -105,7 +118,7 @@ def tests_of(results: Results, measure: str) -> Tests:
     grouped = len(results.groups) > 1
     means = participant_means(results.rows, measure, factors)
     cells = int(np.prod([len(levels) for levels in results.factors.values()]))
-    whole = means.groupby("participant", observed=True).filter(lambda of: len(of) == cells)
+    whole = means[means.groupby("participant", observed=True)["value"].transform("size") == cells]
     lost = means["participant"].nunique() - whole["participant"].nunique()
     sizes = whole.drop_duplicates("participant")["group"].value_counts() if len(whole) else pd.Series(dtype=int)
     reason = ""
@@ -197,7 +210,7 @@ def _add(anova: list[dict[str, Any]], of: str, found: Any, names: dict[str, str]
 
 
 def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any) -> None:
-    row = next((one for one in found.to_dict("records") if one["Source"] == factor), {})
+    row: dict[str, Any] = next((one for one in found.to_dict("records") if one["Source"] == factor), dict[str, Any]())
     p = row.get("p_spher", np.nan)
     # With fewer participants than levels the test of Mauchly cannot be computed; epsilon still can.
     eps = row.get("eps", np.nan)
