@@ -1,4 +1,4 @@
-"""The command `actr3d`: runs models, replays recordings, and measures how fast models run."""
+"""The command `actr3d`: runs models and experiments, replays recordings, writes reports, and measures how fast models run."""
 
 from __future__ import annotations
 
@@ -274,6 +274,17 @@ def _parser() -> argparse.ArgumentParser:
     fit.add_argument("--out", metavar="FOLDER", help="the folder for the candidates and the result")
     fit.add_argument("--json", action="store_true", help="print one JSON object a line")
     fit.set_defaults(function=_fit)
+    report = commands.add_parser(
+        "report",
+        help="write the report of an experiment",
+        description="Writes a page with figures, tables and statistics of an experiment into its folder: report/index.html, which needs no "
+        "network, with each figure as PNG and SVG and each table as CSV beside it.",
+        epilog="Exit codes: 0 the report is written; 1 it cannot be written, or the data are not valid; 2 a package is missing.",
+    )
+    report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
+    report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
+    report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
+    report.set_defaults(function=_report)
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
@@ -302,7 +313,9 @@ def _bench(options: argparse.Namespace) -> int:
 
 
 def _experiment(options: argparse.Namespace) -> int:
-    def work(command: Any) -> int:
+    def work() -> int:
+        from actr3d.experiment import command
+
         out = command.Output(json=options.json)
         if options.name is None:
             return command.list_designs(out)
@@ -318,17 +331,29 @@ def _experiment(options: argparse.Namespace) -> int:
             return command.show_state(options.name, out)
         return command.run(options.name, out, folder=options.out, **numbers, **how)
 
-    return _with_experiments(options, work)
+    return _with_packages(options, work)
 
 
 def _fit(options: argparse.Namespace) -> int:
-    def work(command: Any) -> int:
+    def work() -> int:
+        from actr3d.experiment import command
+
         same = ("target", "measure", "candidates", "hold_out", "ablate", "recover", "workers", "scheduler")
         given = {name: getattr(options, name) for name in same}
         out = command.Output(json=options.json)
         return command.fit(options.name, out, ranges=options.parameter, folder=options.out, **_numbers(options), **given)
 
-    return _with_experiments(options, work)
+    return _with_packages(options, work)
+
+
+def _report(options: argparse.Namespace) -> int:
+    def work() -> int:
+        from actr3d.experiment.report import command
+
+        print(command.write_report(options.folder, human=options.human, compare=options.compare))
+        return 0
+
+    return _with_packages(options, work)
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:
@@ -336,18 +361,16 @@ def _numbers(options: argparse.Namespace) -> dict[str, Any]:
     return {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
 
 
-def _with_experiments(options: argparse.Namespace, work: Callable[[Any], int]) -> int:
-    """Does work with the module of the commands for experiments, whose packages may not be installed; returns the exit code."""
+def _with_packages(options: argparse.Namespace, work: Callable[[], int]) -> int:
+    """Does work that needs packages for experiments, which may not be installed; returns the exit code."""
     try:
-        from actr3d.experiment import command
+        return work()
     except ModuleNotFoundError as error:
         if error.name is None or error.name.startswith("actr3d"):
-            raise
+            return _complain(error)
         text = f"needs the package '{error.name}'; install: pip install 'actr3d[experiment]'"
         print(f"actr3d {options.command}: {text}", file=sys.stderr)
         return 2
-    try:
-        return work(command)
     except (SettingError, DesignError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

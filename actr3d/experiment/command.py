@@ -187,19 +187,14 @@ def fit(
         ExperimentError: If the fit cannot be set up or run.
         Exception: Any error that the files of the design and of the model themselves raise.
     """
-    from actr3d.experiment.fit import Fit, Range, to_json
-    from actr3d.experiment.human_data import PublishedMean, load_means
+    from actr3d.experiment.fit import Fit, Range, TargetMean, load_target, to_json
 
-    def means(design: str, of: str | None) -> tuple[PublishedMean, ...]:
+    def means(design: str, of: str | None) -> tuple[TargetMean, ...]:
         experiment = specify(design)
         data = of or experiment.design.human
         if data is None:
             raise ExperimentError(f"design '{design}': names no human data; give --target FILE")
-        found = load_means(data, [parameter.name for parameter in experiment.parameters] + [*experiment.design.factors])
-        wanted = tuple(one for one in found if measure in (None, one.measure))
-        if not wanted:
-            raise ExperimentError(f"'{data}': has no means of '{measure}'; it has: {', '.join(sorted({one.measure for one in found}))}")
-        return wanted
+        return load_target(data, experiment.design, measure)
 
     path = Path(folder or f"fit {Path(name).stem}")
     wanted = means(name, target)

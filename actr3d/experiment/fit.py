@@ -11,6 +11,7 @@ Source: Raue et al. (2009), Bioinformatics 25(15), for profile likelihoods.
 
 from __future__ import annotations
 
+import csv
 import itertools
 import json
 import math
@@ -31,7 +32,8 @@ from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 from actr3d.configuration import Configuration
 from actr3d.errors import ExperimentError, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.human_data import PublishedMean
+from actr3d.experiment.design import Design
+from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store
 
@@ -44,6 +46,16 @@ GRID = 201
 
 Cell = tuple[tuple[str, Any], ...]
 """The conditions of a mean: names of columns and their values."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TargetMean:
+    """A mean that a model is compared with."""
+
+    conditions: Mapping[str, Any]
+    """The group and the levels of factors; what is missing stands for all."""
+    measure: str
+    mean: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,7 +161,7 @@ class Fit:
         self,
         design: str,
         ranges: Sequence[Range],
-        target: Sequence[PublishedMean],
+        target: Sequence[TargetMean],
         folder: Path,
         client: Any,
         *,
@@ -177,7 +189,7 @@ class Fit:
         self,
         candidates: int,
         *,
-        hold_out: Mapping[str, Sequence[PublishedMean]] | None = None,
+        hold_out: Mapping[str, Sequence[TargetMean]] | None = None,
         ablate: Sequence[str] = (),
         recover: int = 0,
     ) -> FitResult:
@@ -274,7 +286,7 @@ class Fit:
 
     # -- other designs, other models, other data
 
-    def _held_out(self, name: str, target: Sequence[PublishedMean], values: Mapping[str, float]) -> Agreement:
+    def _held_out(self, name: str, target: Sequence[TargetMean], values: Mapping[str, float]) -> Agreement:
         cells = cells_of_target(target)
         experiment = self._experiment(values, name)
         folder = self._folder / f"hold-out {Path(name).stem}"
@@ -354,7 +366,51 @@ class QuadraticSurface:
 # -- means
 
 
-def cells_of_target(target: Sequence[PublishedMean]) -> dict[Cell, float]:
+def load_target(name: str, design: Design, measure: str | None = None) -> tuple[TargetMean, ...]:
+    """Loads the means of human data; those of trials are means of the participants' means.
+
+    Args:
+        name: The name of data of the library, or a file.
+        design: The design whose groups and factors the data have.
+        measure: The measure to load; None for all.
+
+    Raises:
+        ExperimentError: If there are no such data, or they are not valid for the design.
+    """
+    known = library_human_data()
+    path = known.get(name, Path(name))
+    if not path.is_file():
+        raise ExperimentError(f"human data '{name}': no such file{did_you_mean(name, known)}; the library has: {', '.join(known)}")
+    with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
+        lines = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
+    head = [cell.strip() for cell in lines[0]] if lines else []
+    if "measure" in head:
+        place = head.index("measure")
+        measures = [row[place].strip() for row in lines[1:] if len(row) > place]
+    else:
+        measures = [column for column in head if column not in {"participant", "group", *OF_MEANS, *design.factors}]
+    levels: Any = {
+        factor: [level if isinstance(level, str) else float(level) for level in given] for factor, given in design.factors.items()
+    }
+    data = read_human_data(path, Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures))))
+    people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
+    for number, row in enumerate(data.rows):
+        cell = tuple((column, row[column]) for column in ("group", *design.factors) if row.get(column) is not None)
+        for one in [row["measure"]] if data.published else data.measures:
+            value = row["mean"] if data.published else row[one]
+            if value is not None:
+                people[one, cell][row.get("participant", str(number))].append(value)
+    found = tuple(
+        TargetMean(conditions=dict(cell), measure=one, mean=fmean(fmean(values) for values in of.values()))
+        for (one, cell), of in people.items()
+        if measure in (None, one)
+    )
+    if not found:
+        raise ExperimentError(f"human data '{name}': have no means of '{measure}'; they have: {', '.join(data.measures) or 'none'}")
+    return found
+
+
+def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
     """Returns the means of a target by cell.
 
     Raises:

@@ -1,14 +1,24 @@
-"""Human data: published means, and trials of single participants, from CSV files.
+"""Human data: tables of trials of people, and published means, that reports show beside those of a model.
 
-A file has a header and one of two forms. In both, the columns `group` and those with the names of the design's factors are
-conditions; a missing one stands for all of its values.
+Both are CSV files (UTF-8, a line of names, then one row a line). Lines that begin with `#` are notes, which the report shows. Factors,
+groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
+lists them with their units. An empty cell is a value that is missing.
 
-| form | columns besides the conditions |
-|---|---|
-| published means | `measure`, `mean`; if known `sd`, `n` (participants) and `source` |
-| trials | `participant`; every other column is a measure, empty where it was not taken |
+**Trials** have the columns
 
-The files of the library, in `actr3d/experiment/human/`, are published means, named by `Design.human`.
+- `participant`: a name or number, unique in its group;
+- `group`: the name of a group of the design; may be left out if the design has one group;
+- a column for each factor of the design, such as `aperture`, `ratio` or `condition`; without one, the data are means over its levels;
+- a column for each measure, such as `wall_angle_deg` or `speed_m_s`; at least one.
+
+**Published means** have the columns
+
+- `group`, and a column for each factor, as above; an empty cell is a mean over all groups or levels;
+- `measure`: the name of a measure;
+- `mean`, `sd` (between participants) and `n` (participants); `sd` and `n` may be empty;
+- `source`: where the mean is printed.
+
+The published means of the library's own designs are the files of the folder `human` beside this module; `Design.human` names one.
 """
 
 from __future__ import annotations
@@ -16,182 +26,201 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from statistics import fmean, stdev
-from typing import Annotated, Any
+from typing import Any
 
-from annotated_types import Ge
-
-from actr3d.configuration import Configuration
 from actr3d.errors import ExperimentError, did_you_mean
 
-LIBRARY = Path(__file__).parent / "human"
-"""The folder of the library's own human data."""
+FOLDER = Path(__file__).parent / "human"
+"""The folder of the library's published means."""
+SHOWN = 20
+"""The maximum number of errors that are named at a time."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
-"""The columns of published means besides the conditions."""
-SHOWN = 10
-"""The number of errors of a file that are reported at once."""
-
-_Cell = tuple[tuple[str, Any], ...]
+"""The columns of published means that are not factors."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class PublishedMean(Configuration):
-    """The mean of a measure in one condition, over participants."""
+class HumanData:
+    """Human data that were checked against a design."""
 
-    conditions: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """The group, and the levels of factors."""
-    measure: str
-    mean: float
-    sd: Annotated[float, Ge(0)] | None = None
-    """The standard deviation between participants; None if it is not known."""
-    n: Annotated[int, Ge(1)] | None = None
-    """The number of participants; None if it is not known."""
-    source: str = ""
+    name: str
+    """The name of the file."""
+    published: bool
+    """Whether the rows are published means; else they are trials."""
+    rows: Sequence[Mapping[str, Any]]
+    """The rows: factors are numbers or texts as in the design, or None; numbers are floats or None."""
+    measures: Sequence[str]
+    """The measures that they have."""
+    notes: Sequence[str]
+    """The notes of the file."""
+
+    @property
+    def sources(self) -> list[str]:
+        """The sources of published means, each once."""
+        return list(dict.fromkeys(row["source"] for row in self.rows)) if self.published else []
 
 
-def library_data() -> dict[str, Path]:
-    """Returns the files of the library's human data by name."""
-    return {path.stem: path for path in sorted(LIBRARY.glob("*.csv"))}
+@dataclass(frozen=True, kw_only=True)
+class Schema:
+    """What the columns of human data may hold for an experiment."""
+
+    groups: Sequence[str]
+    factors: Mapping[str, Sequence[float] | Sequence[str]]
+    """The factors of the design, and their levels: all numbers, or all texts."""
+    measures: Sequence[str]
 
 
-def load_means(name: str | Path, factors: Collection[str]) -> tuple[PublishedMean, ...]:
-    """Loads human data as means by condition; means of trials are those of the participants' means.
+def library_human_data() -> dict[str, Path]:
+    """Returns the files of the library's published means by name."""
+    return {path.stem: path for path in sorted(FOLDER.glob("*.csv"))}
+
+
+def read_human_data(path: Path | str, schema: Schema) -> HumanData:
+    """Reads and checks a file of human data.
 
     Args:
-        name: The name of data of the library, or a file.
-        factors: The names of the design's factors.
+        path: The file.
+        schema: What its columns may hold.
 
     Raises:
-        ExperimentError: If there are no such data, or the file is not valid: names the file, and each line and column that is wrong.
+        ExperimentError: If the file cannot be read, or does not follow the schema: each error names file, line and column, what was
+            given and what would be right.
     """
-    known = library_data()
-    path = known.get(str(name), Path(name))
+    file = Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        near = "" if path.suffix else did_you_mean(str(name), known)
-        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise ExperimentError(f"human data '{name}': cannot be read ({why}){near}; the library has: {', '.join(known) or 'none'}") from None
-    return _Reader(str(path), text, {"group", *factors}).means()
+        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        raise ExperimentError(f"{path}: cannot be read as human data ({why})") from None
+    return _Reader(str(path), text, schema).read(file.name)
 
 
 class _Reader:
-    """Reads one file, and collects what is wrong with it."""
+    """Reads one file, and collects its errors."""
 
-    def __init__(self, file: str, text: str, conditions: set[str]) -> None:
-        self._file = file
+    def __init__(self, path: str, text: str, schema: Schema) -> None:
+        self._path, self._schema = path, schema
         self._errors: list[str] = []
+        self._notes: list[str] = []
+        self._lines: list[tuple[int, list[str]]] = []
         reader = csv.reader(io.StringIO(text))
-        first: list[str] = next(iter(reader), list[str]())
-        self._header = [name.strip() for name in first]
-        self._rows = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
-        self._conditions = [name for name in self._header if name in conditions]
-        self._all_conditions = conditions
+        try:
+            for cells in reader:
+                if cells and cells[0].lstrip().startswith("#"):
+                    self._notes.append(",".join(cells).strip().lstrip("#").strip())
+                elif any(cell.strip() for cell in cells):
+                    self._lines.append((reader.line_num, [cell.strip() for cell in cells]))
+        except csv.Error as error:
+            raise ExperimentError(f"{path}:{reader.line_num}: is not CSV ({error})") from None
 
-    def means(self) -> tuple[PublishedMean, ...]:
-        """Returns the means of the file.
+    def read(self, name: str) -> HumanData:
+        """Returns the data.
 
         Raises:
-            ExperimentError: If the file is not valid.
+            ExperimentError: If there are errors; names up to `SHOWN` of them.
         """
-        doubled = sorted({name for name in self._header if self._header.count(name) > 1})
-        if doubled:
-            raise ExperimentError(f"{self._file}:1: has two columns '{doubled[0]}'")
-        if not self._rows:
-            raise ExperimentError(f"{self._file}: must have a header and at least one row (found {len(self._header)} columns and no rows)")
-        if "mean" in self._header:
-            found = self._published()
-        elif "participant" in self._header:
-            found = self._of_trials()
-        else:
-            raise ExperimentError(
-                f"{self._file}:1: must have the column 'mean' (published means) or 'participant' (trials); found: {', '.join(self._header)}"
-            )
+        if not self._lines:
+            raise ExperimentError(f"{self._path}: is empty; the first line must name the columns")
+        line, head = self._lines[0]
+        published = self._check_head(line, head)
+        rows = [row for number, cells in self._lines[1:] if (row := self._row(number, head, cells, published)) is not None]
+        # A file of published means without rows says in its notes that none are known.
+        if not self._errors and not rows and not (published and self._notes):
+            self._errors.append(f"{self._path}:{line}: no row follows the names of the columns")
         if self._errors:
-            more = f"\n... and {len(self._errors) - SHOWN} more" if len(self._errors) > SHOWN else ""
-            raise ExperimentError("\n".join(self._errors[:SHOWN]) + more)
-        return found
+            more = len(self._errors) - SHOWN
+            raise ExperimentError("\n".join([*self._errors[:SHOWN], *([f"... and {more} more errors"] if more > 0 else [])]))
+        measures = [one for one in self._schema.measures if (any(row["measure"] == one for row in rows) if published else one in head)]
+        return HumanData(name=name, published=published, rows=rows, measures=measures, notes=self._notes)
 
-    def _published(self) -> tuple[PublishedMean, ...]:
-        unknown = [name for name in self._header if name not in {*OF_MEANS, *self._conditions}]
-        if unknown or "measure" not in self._header:
-            wrong = f"column '{unknown[0]}' is not a condition of the design" if unknown else "the column 'measure' is missing"
-            near = did_you_mean(unknown[0], self._all_conditions | {*OF_MEANS}) if unknown else ""
-            raise ExperimentError(f"{self._file}:1: {wrong}{near}; conditions: {', '.join(sorted(self._all_conditions))}")
-        found: list[PublishedMean] = []
-        for line, row in self._records():
-            mean = self._number(line, row, "mean")
-            sd, n = (self._number(line, row, name) if row.get(name) else None for name in ("sd", "n"))
-            if not row["measure"]:
-                self._wrong(line, "measure", "", "the name of a measure")
-            if mean is None:
-                if not row["mean"]:
-                    self._wrong(line, "mean", "", "a number")
-                continue
-            if sd is not None and sd < 0:
-                self._wrong(line, "sd", row["sd"], "a number >= 0")
-            elif n is not None and (n < 1 or n != int(n)):
-                self._wrong(line, "n", row["n"], "a whole number >= 1")
-            else:
-                conditions = {name: value_of(row[name]) for name in self._conditions if row[name]}
-                source, count = row.get("source", ""), None if n is None else int(n)
-                found.append(PublishedMean(conditions=conditions, measure=row["measure"], mean=mean, sd=sd, n=count, source=source))
-        return tuple(found)
+    def _check_head(self, line: int, head: list[str]) -> bool:
+        """Checks the names of the columns; returns whether the rows are published means."""
+        schema, where = self._schema, f"{self._path}:{line}"
+        published = "measure" in head or "mean" in head
+        measures = [] if published else list(schema.measures)
+        known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures]
+        wrong = [f"{where}: column '{name}' stands there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
+        wrong += [
+            f"{where}: unknown column '{name}'{did_you_mean(name, known)}; there may be: {', '.join(known)}"
+            for name in head
+            if name not in known
+        ]
+        needed = ["measure", "mean", "source"] if published else ["participant"]
+        needed += ["group"] if not published and len(schema.groups) > 1 else []
+        wrong += [f"{where}: column '{name}' is missing; {self._form(published)}" for name in needed if name not in head]
+        if not published and not any(name in measures for name in head):
+            wrong.append(f"{where}: no column is a measure; there may be: {', '.join(measures)}")
+        if wrong:
+            raise ExperimentError("\n".join(wrong))
+        return published
 
-    def _of_trials(self) -> tuple[PublishedMean, ...]:
-        measures = [name for name in self._header if name not in {"participant", "trial", "source", *self._conditions}]
-        if not measures:
-            raise ExperimentError(f"{self._file}:1: has no measure: a column besides participant and conditions")
-        values: dict[tuple[str, _Cell], dict[str, list[float]]] = {}
-        for line, row in self._records():
-            if not row["participant"]:
-                self._wrong(line, "participant", "", "the name of a participant")
-            cell = tuple((name, value_of(row[name])) for name in self._conditions if row[name])
-            for name in measures:
-                if row[name] and (value := self._number(line, row, name)) is not None:
-                    values.setdefault((name, cell), {}).setdefault(row["participant"], []).append(value)
-        found: list[PublishedMean] = []
-        for (name, cell), people in values.items():
-            means = [fmean(trials) for trials in people.values()]
-            sd, source = stdev(means) if len(means) > 1 else None, Path(self._file).name
-            found.append(PublishedMean(conditions=dict(cell), measure=name, mean=fmean(means), sd=sd, n=len(means), source=source))
-        return tuple(found)
+    @staticmethod
+    def _form(published: bool) -> str:
+        if published:
+            return "published means need: measure, mean, source, and may have group, factors, sd, n"
+        return "trials need: participant, group, factors and measures; published means: group, factors, measure, mean, sd, n, source"
 
-    def _records(self) -> list[tuple[int, dict[str, str]]]:
-        found: list[tuple[int, dict[str, str]]] = []
-        for line, row in self._rows:
-            if len(row) != len(self._header):
-                self._errors.append(f"{self._file}:{line}: must have {len(self._header)} values, one for each column (has {len(row)})")
-            else:
-                found.append((line, {name: cell.strip() for name, cell in zip(self._header, row, strict=True)}))
-        return found
+    def _row(self, line: int, head: list[str], cells: list[str], published: bool) -> dict[str, Any] | None:
+        if len(cells) != len(head):
+            self._errors.append(f"{self._path}:{line}: must have {len(head)} cells, as the first line has (got {len(cells)})")
+            return None
+        given, before = dict(zip(head, cells, strict=True)), len(self._errors)
+        row: dict[str, Any] = {"group": self._one_of(line, "group", given.get("group", ""), self._schema.groups)}
+        for name, levels in self._schema.factors.items():
+            row[name] = self._level(line, name, given.get(name, ""), levels)
+        if published:
+            row["measure"] = self._one_of(line, "measure", given["measure"], self._schema.measures, needed=True)
+            row["mean"] = self._number(line, "mean", given["mean"], needed=True)
+            row["sd"] = self._number(line, "sd", given.get("sd", ""), least=0)
+            row["n"] = self._number(line, "n", given.get("n", ""), least=1, whole=True)
+            row["source"] = self._given(line, "source", given["source"])
+        else:
+            row["participant"] = self._given(line, "participant", given["participant"])
+            if len(self._schema.groups) == 1:
+                row["group"] = row["group"] or self._schema.groups[0]
+            elif not row["group"] and len(self._errors) == before:
+                self._add(line, "group", "", f"one of: {', '.join(self._schema.groups)}")
+            row |= {name: self._number(line, name, given[name]) for name in self._schema.measures if name in given}
+        return row if len(self._errors) == before else None
 
-    def _number(self, line: int, row: Mapping[str, str], column: str) -> float | None:
-        try:
-            value = float(row[column])
-        except ValueError:
-            value = math.nan
-        if math.isfinite(value):
-            return value
-        if row[column]:
-            self._wrong(line, column, row[column], "a number")
+    # -- cells
+
+    def _add(self, line: int, column: str, given: str, right: str) -> None:
+        self._errors.append(f"{self._path}:{line}: column '{column}': must be {right} (got {given!r})")
+
+    def _given(self, line: int, column: str, text: str) -> str:
+        if not text:
+            self._add(line, column, text, "given")
+        return text
+
+    def _one_of(self, line: int, column: str, text: str, known: Sequence[str], *, needed: bool = False) -> str | None:
+        if text in known or (not text and not needed):
+            return text or None
+        self._errors.append(
+            f"{self._path}:{line}: column '{column}': must be one of: {', '.join(known)} (got {text!r}){did_you_mean(text, known)}"
+        )
         return None
 
-    def _wrong(self, line: int, column: str, given: str, right: str) -> None:
-        self._errors.append(f"{self._file}:{line}: column '{column}': must be {right} (got {given!r})")
+    def _level(self, line: int, column: str, text: str, levels: Sequence[float] | Sequence[str]) -> float | str | None:
+        """Returns a level of a factor; a number need not be one of the levels of the design, because people can be drawn between them."""
+        texts = [level for level in levels if isinstance(level, str)]
+        return self._one_of(line, column, text, texts) if texts else self._number(line, column, text)
 
-
-def value_of(text: str) -> Any:
-    """Returns the value of a cell: a number, True or False, or else the text."""
-    if text in ("True", "False"):
-        return text == "True"
-    for kind in (int, float):
+    def _number(
+        self, line: int, column: str, text: str, *, needed: bool = False, least: float = -math.inf, whole: bool = False
+    ) -> float | None:
+        if not text and not needed:
+            return None
         try:
-            value = kind(text)
+            value = float(text)
         except ValueError:
-            continue
-        return value if math.isfinite(value) else text
-    return text
+            value = math.nan
+        if not math.isfinite(value) or value < least or (whole and value != int(value)):
+            kind = "a whole number" if whole else "a number"
+            bound = "" if least == -math.inf else f" from {least:g} on"
+            point = "; write the decimal point as '.'" if "," in text else ""
+            self._add(line, column, text, f"{kind}{bound}{point}")
+            return None
+        return value

@@ -14,8 +14,9 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.experiment.aperture import PassageResult, benchmark
-from actr3d.experiment.aperture.constraints import Findings, equivalence, turning_point
-from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trial
+from actr3d.experiment.aperture.constraints import Findings, equivalence
+from actr3d.experiment.aperture.critical_ratio import critical_ratio
+from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, WalkerTrial, experiment, original_means, run_trial
 
 
 def test_the_originals_means_are_there() -> None:
@@ -28,7 +29,7 @@ def test_the_originals_means_are_there() -> None:
 
 def test_agents_have_the_mean_and_deviation_of_their_group() -> None:
     for variant, group, sd in (("human", "small", 0.02), ("human", "large", 0.007), ("replication", "small", 0.007)):
-        trials = [Trial(variant=variant, group=group, condition="normal", aperture=0.5, agent=n, number=0) for n in range(5)]
+        trials = [WalkerTrial(variant=variant, group=group, condition="normal", aperture=0.5, agent=n, number=0) for n in range(5)]
         shoulders = [trial.shoulders for trial in trials]
         assert mean(shoulders) == pytest.approx(GROUPS[group][0], abs=1e-4)
         assert stdev(shoulders) == pytest.approx(sd, abs=1e-4)
@@ -43,7 +44,7 @@ def test_an_experiment_shares_its_trials_among_agents() -> None:
 
 
 def test_a_trial_is_a_run_of_the_model() -> None:
-    trial = Trial(variant="human", group="large", condition="fast", aperture=0.5, agent=2, number=0)
+    trial = WalkerTrial(variant="human", group="large", condition="fast", aperture=0.5, agent=2, number=0)
     once, again = run_trial(trial), run_trial(trial)
     assert (once.result, once.said) == (again.result, again.said)
     assert once.result.outcome == "passed"
@@ -58,8 +59,14 @@ def test_turning_points_are_found() -> None:
     draw = random.Random(1)
     ratios = [1 + 0.6 * n / 400 for n in range(400)]
     noisy = [(ratio, draw.random() < 1 / (1 + math.exp(40 * (ratio - 1.28)))) for ratio in ratios]
-    assert turning_point(noisy) == pytest.approx(1.28, abs=0.02)
-    assert turning_point((ratio, ratio < 1.3) for ratio in (1.0, 1.1, 1.2, 1.28, 1.32, 1.4, 1.5)) == pytest.approx(1.30, abs=0.005)
+    found = critical_ratio(noisy)
+    assert found is not None
+    assert found.value == pytest.approx(1.28, abs=0.02)
+    assert found.low < 1.28 < found.high
+    sharp = critical_ratio((ratio, ratio < 1.3) for ratio in (1.0, 1.1, 1.2, 1.28, 1.32, 1.4, 1.5))
+    assert sharp is not None
+    assert sharp.value == pytest.approx(1.30, abs=0.005)
+    assert critical_ratio([(1.0, True), (1.2, True)]) is None, "nothing is known where nobody walks straight through"
 
 
 def test_equivalence_takes_small_differences_and_small_spread() -> None:
@@ -69,7 +76,7 @@ def test_equivalence_takes_small_differences_and_small_spread() -> None:
     assert equivalence(wide, near, 5)[1] > 0.05
 
 
-def good(trial: Trial) -> PassageResult:
+def good(trial: WalkerTrial) -> PassageResult:
     """Returns what a model of people would do: a margin of 0.15 of the shoulders, and some more when it is fast."""
     need = trial.aperture / 1.3 / trial.shoulders
     angle = 0.0 if need >= 1 else math.degrees(math.acos(need)) + (4 if trial.condition == "fast" else 0) + 0.1 * trial.number
@@ -89,35 +96,39 @@ def good(trial: Trial) -> PassageResult:
     )
 
 
-def outcomes(of: Callable[[Trial], PassageResult]) -> list[Outcome]:
+def outcomes(of: Callable[[WalkerTrial], PassageResult]) -> list[Outcome]:
     return [Outcome(trial=trial, result=of(trial), said="", cost=0.3) for trial in experiment("human", 10)]
 
 
-def unmet(of: Callable[[Trial], PassageResult], boundary: float = 1.16) -> list[int]:
-    return [constraint.number for constraint in Findings(outcomes(of)).all(boundary) if not constraint.met]
+def findings(of: Callable[[WalkerTrial], PassageResult]) -> Findings:
+    return Findings(outcome.passing for outcome in outcomes(of))
 
 
-def with_angle(trial: Trial, angle: float, **other: Any) -> PassageResult:
+def unmet(of: Callable[[WalkerTrial], PassageResult], boundary: float = 1.16) -> list[int]:
+    return [constraint.number for constraint in findings(of).all(boundary=boundary) if constraint.met is False]
+
+
+def with_angle(trial: WalkerTrial, angle: float, **other: Any) -> PassageResult:
     return replace(good(trial), wall_angle_deg=angle, peak_angle_deg=angle, **other)
 
 
-def with_margin(trial: Trial, room: float) -> PassageResult:
+def with_margin(trial: WalkerTrial, room: float) -> PassageResult:
     return replace(good(trial), clearance_left_m=room, clearance_right_m=room)
 
 
 def test_who_does_not_turn_has_no_margin() -> None:
     """At wide apertures there is more room than anyone wants, which is no margin."""
-    findings = Findings(outcomes(lambda trial: with_margin(trial, 0.07 if good(trial).wall_angle_deg else 0.14)))
-    assert findings.margin("large", "fast", 0.45) == pytest.approx(0.07)
-    assert findings.margin("small", "normal", 0.7) is None
-    assert findings.untouched().met
+    found = findings(lambda trial: with_margin(trial, 0.07 if good(trial).wall_angle_deg else 0.14))
+    assert found.margin("large", "fast", 0.45) == pytest.approx(0.07)
+    assert found.margin("small", "normal", 0.7) is None
+    assert found.untouched().met
 
 
 def test_a_model_of_people_meets_all_constraints() -> None:
     assert unmet(good) == []
 
 
-BAD: dict[str, tuple[list[int], Callable[[Trial], PassageResult]]] = {
+BAD: dict[str, tuple[list[int], Callable[[WalkerTrial], PassageResult]]] = {
     "turns more before a wider one": ([1], lambda trial: with_angle(trial, 60.0) if trial.aperture == 0.45 else good(trial)),
     "turns everywhere": ([7, 4], lambda trial: with_angle(trial, max(good(trial).wall_angle_deg or 0, 18.0))),
     "turns by width alone": ([2, 3, 4], lambda trial: with_angle(trial, max(0.0, 300 * (0.6 - trial.aperture)))),
@@ -160,8 +171,8 @@ def test_a_cell_that_nobody_reached_is_no_agreement() -> None:
 def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
     original = original_means()
 
-    def run(trials: list[Trial], *, judging: bool = False) -> list[Outcome]:
-        def result(trial: Trial) -> PassageResult:
+    def run(trials: list[WalkerTrial], *, judging: bool = False) -> list[Outcome]:
+        def result(trial: WalkerTrial) -> PassageResult:
             if trial.variant == "human":
                 return good(trial)
             angle = original[trial.group, trial.condition, trial.aperture] + rise
@@ -178,7 +189,7 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
     assert told.count("\nmet ") == 8
     turned = {(trial.group, trial.condition, trial.aperture) for trial in experiment("human", 5) if (good(trial).wall_angle_deg or 0) > 5}
     assert told.split("human: angle")[1].count(" (7.0)") == len(turned)
-    assert "mean margin of agents that turned 7.0 cm at 40, 7.0 cm at 45, 7.0 cm at 50, 7.0 cm at 55, 7.0 cm at 60" in told
+    assert "mean margin of agents that turned 6.9 cm left and 7.1 cm right at 40, 6.9 cm left and 7.1 cm right at 45" in told
     assert "5 trials a cell; a trial takes 300 ms of one processor for 11.0 s simulated" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == code
     measured = json.loads(capsys.readouterr().out)
@@ -196,7 +207,7 @@ def test_trials_that_fail_are_told_and_count(monkeypatch: pytest.MonkeyPatch, ca
     """One walker in a cell never reaches the wall, another touches it: no mean of a cell would show the first."""
     original = original_means()
 
-    def run(trials: list[Trial], *, judging: bool = False) -> list[Outcome]:
+    def run(trials: list[WalkerTrial], *, judging: bool = False) -> list[Outcome]:
         outcomes: list[Outcome] = []
         for trial in trials:
             result = good(trial)

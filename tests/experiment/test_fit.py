@@ -12,8 +12,8 @@ import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError
 from actr3d.experiment.cluster import local_cluster
-from actr3d.experiment.fit import Fit, QuadraticSurface, Range, agreement, cells_of_target
-from actr3d.experiment.human_data import PublishedMean
+from actr3d.experiment.fit import Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_target, load_target
+from actr3d.experiment.specification import specify
 
 LINE = """
 x = 1
@@ -61,8 +61,8 @@ def client() -> Generator[Any]:
         yield found
 
 
-def means(levels: tuple[int, ...]) -> tuple[PublishedMean, ...]:
-    return tuple(PublishedMean(conditions={"x": x}, measure="y", mean=TRUE["slope"] * x + TRUE["offset"]) for x in levels)
+def means(levels: tuple[int, ...]) -> tuple[TargetMean, ...]:
+    return tuple(TargetMean(conditions={"x": x}, measure="y", mean=TRUE["slope"] * x + TRUE["offset"]) for x in levels)
 
 
 def fit_of(tmp_path: Path, client: Any, *ranges: str, **options: Any) -> Fit:
@@ -131,7 +131,7 @@ def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> Non
     fit.measure = "z"
     with pytest.raises(ExperimentError, match="no trial has a value of 'z'"):
         fit.run(1)
-    two = (*means((1,)), PublishedMean(measure="z", mean=1))
+    two = (*means((1,)), TargetMean(conditions={}, measure="z", mean=1))
     with pytest.raises(ExperimentError, match=r"must have means of one measure; choose it with --measure \(y, z\)"):
         cells_of_target(two)
     with pytest.raises(ExperimentError, match="has two means for"):
@@ -150,3 +150,18 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     assert (low, high) == (pytest.approx(0.4 - half, abs=0.01), pytest.approx(0.4 + half, abs=0.01))
     assert surface.interval(1) == (None, None)
     assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
+
+
+def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
+    design = specify("fan_effect").design
+    means_of_people = load_target("fan_effect", design, "reaction_time")
+    assert len(means_of_people) == 18
+    assert means_of_people[0].conditions == {"group": "all", "probe": "target", "location_fan": 1, "person_fan": 1}
+    path = tmp_path / "mine.csv"
+    path.write_text("participant,probe,reaction_time\np,target,1\np,target,2\nq,target,3\n")
+    (one,) = load_target(str(path), design)
+    assert (one.conditions, one.measure, one.mean) == ({"group": "all", "probe": "target"}, "reaction_time", 2.25)
+    with pytest.raises(ExperimentError, match=r"human data 'fan_efect': no such file; did you mean 'fan_effect'"):
+        load_target("fan_efect", design)
+    with pytest.raises(ExperimentError, match="have no means of 'speed'; they have: reaction_time"):
+        load_target("fan_effect", design, "speed")

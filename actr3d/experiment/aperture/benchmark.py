@@ -11,8 +11,9 @@ from statistics import mean
 from typing import Any
 
 from actr3d.benchmark import benchmark
-from actr3d.experiment.aperture.constraints import Constraint, Findings, turning_point
-from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, Trial, experiment, original_means, run_trials
+from actr3d.experiment.aperture.constraints import BARS, Constraint, Findings
+from actr3d.experiment.aperture.critical_ratio import critical_ratio
+from actr3d.experiment.aperture.trials import APERTURES, CONDITIONS, GROUPS, Outcome, WalkerTrial, experiment, original_means, run_trials
 
 TRIALS = 30
 """The default number of trials per cell. Source: as many as each of the original's agents (docs/human-data.md)."""
@@ -55,7 +56,7 @@ def root_mean_square(found: dict[Any, float], original: dict[Any, float]) -> flo
     return math.sqrt(mean((found.get(key, math.inf) - angle) ** 2 for key, angle in original.items()))
 
 
-def judgements(trials: int) -> list[Trial]:
+def judgements(trials: int) -> list[WalkerTrial]:
     """Returns trials of the human variant of which only the judgement is used."""
     agents = [replace(trial, aperture=0.0) for trial in experiment("human", min(trials, 10), [0.0])]
     return [replace(trial, aperture=ratio * trial.shoulders) for trial in agents for ratio in JUDGED]
@@ -67,9 +68,10 @@ def measure(trials: int) -> dict[str, Any]:
     replication, human = (run_trials(experiment(variant, trials)) for variant in ("replication", "human"))
     judged = run_trials(judgements(trials), judging=True)
     spent = time.perf_counter() - start
-    boundary = turning_point((outcome.trial.ratio, "as it is" not in outcome.said) for outcome in judged)
+    boundary = critical_ratio((outcome.trial.ratio, "as it is" not in outcome.said) for outcome in judged)
     original, found = original_means(), cells(replication)
-    findings = Findings(human)
+    findings = Findings(outcome.passing for outcome in human)
+    constraints = findings.all(boundary=math.nan if boundary is None else boundary.value)
     return {
         "trials": trials,
         "cells": [
@@ -85,7 +87,7 @@ def measure(trials: int) -> dict[str, Any]:
             for c in CONDITIONS
             for a in APERTURES
         ],
-        "constraints": [asdict(constraint) for constraint in findings.all(boundary)],
+        "constraints": [asdict(constraint) for constraint in constraints if constraint.number != BARS],
         "ms_a_trial": round(1000 * mean(outcome.cost for outcome in (*replication, *human)), 1),
         "simulated_s_a_trial": round(mean(outcome.result.time_s for outcome in (*replication, *human)), 2),
         "took_s": round(spent, 1),

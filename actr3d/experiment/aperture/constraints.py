@@ -1,6 +1,6 @@
-"""The constraints on a model of people who pass apertures: those without a hand-held bar, by their numbers in docs/human-data.md.
+"""The constraints on a model of people who pass apertures, by their numbers in docs/human-data.md.
 
-Agents, not trials, are the unit of analysis: means of agents are compared.
+Participants, not trials, are the unit of analysis: means of participants are compared. The benchmark and the report both use this.
 """
 
 from __future__ import annotations
@@ -11,16 +11,15 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import mean, stdev, variance
-from typing import Any
 
 import numpy as np
-from scipy import optimize
 from scipy.special import stdtr
 
-from actr3d.experiment.aperture.trials import CONDITIONS, GROUPS, Outcome, Trial
+from actr3d.experiment.aperture.critical_ratio import critical_ratio
+from actr3d.experiment.aperture.passing import DEPTH, Passing
 
 TURNED = 5.0
-"""An agent has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md). No source: our choice."""
+"""A walker has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md). No source: our choice."""
 CRITICAL = (1.25, 1.35)
 """The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of
 docs/human-data.md."""
@@ -37,6 +36,10 @@ STEADY = 1.0
 """The maximum rise of an angle by chance from one aperture to a wider one [degrees]. No source: our choice."""
 WIDE = 1.35
 """Apertures from this ratio on are wide."""
+EQUAL = 0.63
+"""Below this aperture the large group turns more [m]. Source: 1.30 times the large group's shoulders (docs/human-data.md)."""
+BARS = 8
+"""The number of the constraint that needs bars in the hands."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,156 +49,286 @@ class Constraint:
     number: int
     """Its number in docs/human-data.md."""
     says: str
-    met: bool
+    met: bool | None
+    """None if the design of the experiment does not test it."""
     found: str
-    """The model's result, with its numbers."""
+    """The model's result, with its numbers; or what the design lacks."""
 
 
-def angle(outcome: Outcome) -> float:
-    """Returns the angle of the shoulders at the wall [degrees]; for an agent that did not get there, its greatest angle."""
-    result = outcome.result
-    return result.wall_angle_deg if result.wall_angle_deg is not None else result.peak_angle_deg or 0.0
-
-
-def margin(outcome: Outcome) -> float | None:
-    """Returns the margin on each side of an agent that had to turn and did [m]: the mean of both sides, each at the moment when any
-    part was nearest to the wall. Returns None for all others: their margin depends on the aperture only, or they never were in it.
+def margin(passing: Passing) -> tuple[float, float] | None:
+    """Returns the margins on the left and right of a walker that had to turn and did [m], each at the moment when any part was nearest to
+    the wall. Returns None for all others: their margin depends on the aperture only, or they never were in it.
     """
-    left, right = outcome.result.clearance_left_m, outcome.result.clearance_right_m
-    turned = outcome.trial.ratio < POINT and angle(outcome) > TURNED
-    return (left + right) / 2 if left is not None and right is not None and turned else None
+    if passing.left is None or passing.right is None or passing.angle is None:
+        return None
+    return (passing.left, passing.right) if passing.ratio < POINT and passing.angle > TURNED else None
 
 
 class Findings:
-    """The results of the human variant, by cell and by agent."""
+    """The results of an experiment with apertures, by cell and by participant.
 
-    def __init__(self, outcomes: Iterable[Outcome]) -> None:
-        self.outcomes = list(outcomes)
-        self._cells: defaultdict[tuple[str, str, float], list[Outcome]] = defaultdict(list)
-        self._agents: defaultdict[tuple[str, str, int], defaultdict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
-        for outcome in self.outcomes:
-            trial = outcome.trial
-            self._cells[trial.group, trial.condition, trial.aperture].append(outcome)
-            self._agents[trial.group, trial.condition, trial.agent][trial.aperture].append(angle(outcome))
-        self.apertures = sorted({trial.aperture for trial in (outcome.trial for outcome in self.outcomes)})
+    Args:
+        passings: All trials.
+        by: What the design varies: the aperture, or its ratio to the shoulder width.
+    """
 
-    def mean(self, group: str, condition: str, aperture: float) -> float:
-        """Returns the mean angle of a cell [degrees]."""
-        return mean(angle(outcome) for outcome in self._cells[group, condition, aperture])
+    def __init__(self, passings: Iterable[Passing], by: str = "aperture") -> None:
+        self.passings = list(passings)
+        self.by = by
+        """What the design varies: `aperture` or `ratio`."""
+        self.plain = [one for one in self.passings if one.bar_ratio == 1 and one.straight]
+        """The trials without a bar that is wider than the body, which begin in line with the doorway."""
+        self._people: defaultdict[tuple[str, str, str], defaultdict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
+        self._margins: defaultdict[tuple[str, str, float], list[float]] = defaultdict(list)
+        self._trials: defaultdict[tuple[str, str, str], list[Passing]] = defaultdict(list)
+        for one in self.plain:
+            if one.angle is not None:
+                self._people[one.group, one.condition, one.participant][self.level(one)].append(one.angle)
+                self._trials[one.group, one.condition, one.participant].append(one)
+            if (sides := margin(one)) is not None:
+                self._margins[one.group, one.condition, self.level(one)].append(mean(sides))
+        self._shoulders = {(one.group, one.participant): one.shoulders for one in self.plain}
+        self.groups = list(dict.fromkeys(one.group for one in self.plain))
+        self.conditions = list(dict.fromkeys(one.condition for one in self.plain))
+        self.levels = sorted({level for angles in self._people.values() for level in angles})
+        """The apertures [m], or their ratios."""
 
-    def margin(self, group: str, condition: str, aperture: float) -> float | None:
-        """Returns the mean margin of the agents in a cell that turned [m]; None if none did."""
-        margins = [found for outcome in self._cells[group, condition, aperture] if (found := margin(outcome)) is not None]
+    def level(self, passing: Passing) -> float:
+        """Returns the level of what the design varies."""
+        return round(passing.aperture if self.by == "aperture" else passing.ratio, 3)
+
+    def has(self, group: str, condition: str, level: float) -> bool:
+        """Returns whether a cell has an angle."""
+        return any(level in self._people[group, condition, one] for one in self.people(group))
+
+    def mean(self, group: str, condition: str, level: float) -> float:
+        """Returns the mean angle of a cell, of the participants' means [degrees]."""
+        found = (self._people[group, condition, one].get(level) for one in self.people(group))
+        return mean(mean(angles) for angles in found if angles)
+
+    def margin(self, group: str, condition: str, level: float) -> float | None:
+        """Returns the mean margin of both sides of the walkers in a cell that turned [m]; None if none did."""
+        margins = self._margins.get((group, condition, level))
         return mean(margins) if margins else None
 
-    def agents(self, group: str) -> list[int]:
-        """Returns the agents of a group."""
-        return sorted({agent for of, _, agent in self._agents if of == group})
+    def people(self, group: str) -> list[str]:
+        """Returns the participants of a group."""
+        return [one for of, one in self._shoulders if of == group]
 
-    def curve(self, group: str, condition: str, agent: int) -> tuple[list[float], list[float]]:
-        """Returns an agent's ratios of aperture to shoulders, and its mean angles at them [degrees]."""
-        angles = self._agents[group, condition, agent]
-        shoulders = Trial(variant="", group=group, condition=condition, aperture=0, agent=agent, number=0).shoulders
-        return [aperture / shoulders for aperture in sorted(angles)], [mean(angles[aperture]) for aperture in sorted(angles)]
+    def trials(self, group: str, condition: str, participant: str) -> list[Passing]:
+        """Returns a participant's trials with an angle."""
+        return self._trials[group, condition, participant]
+
+    def curve(self, group: str, condition: str, participant: str) -> tuple[list[float], list[float]]:
+        """Returns a participant's ratios of aperture to shoulders, and its mean angles at them [degrees]."""
+        angles, shoulders = self._people[group, condition, participant], self._shoulders[group, participant]
+        scale = shoulders if self.by == "aperture" else 1.0
+        return [level / scale for level in sorted(angles)], [mean(angles[level]) for level in sorted(angles)]
+
+    @property
+    def pair(self) -> tuple[str, str] | None:
+        """The groups with the narrowest and the widest shoulders; None if there is one group."""
+        if len(self.groups) < 2:
+            return None
+        widths = {group: mean(self._shoulders[group, one] for one in self.people(group)) for group in self.groups}
+        return min(widths, key=widths.__getitem__), max(widths, key=widths.__getitem__)
 
     # -- the constraints
 
-    def all(self, boundary: float) -> list[Constraint]:
-        """Returns every constraint that needs no bar.
+    def all(self, *, boundary: float | None = None) -> list[Constraint]:
+        """Returns all nine constraints.
 
         Args:
-            boundary: The ratio from which the model judges that it can pass without turning.
+            boundary: The ratio from which the model judges that it can pass without turning; None if it was not asked.
         """
         made: list[Callable[[], Constraint]] = [self.falls, self.wider_turns_more, self.same_ratio, self.critical, self.faster_turns_more]
-        return [*(make() for make in made), self.untouched(), self.upright(), self.judged(boundary)]
+        made += [self.untouched, self.upright, self.longer_bar]
+        return [*(make() for make in made), self.judged(boundary)]
 
     def falls(self) -> Constraint:
         """1: rotation falls with aperture."""
-        curves = [[self.mean(group, condition, aperture) for aperture in self.apertures] for group in GROUPS for condition in CONDITIONS]
-        rise = max(b - a for curve in curves for a, b in pairwise(curve))
+        says = "rotation falls with aperture"
+        if len(self.levels) < 2:
+            return _untested(1, says, "it needs several apertures")
+        curves = [
+            [self.mean(group, condition, level) for level in self.levels if self.has(group, condition, level)]
+            for group in self.groups
+            for condition in self.conditions
+        ]
+        rise = max((b - a for curve in curves for a, b in pairwise(curve)), default=math.inf)
         found = f"largest rise from one aperture to the next {rise:.1f} degrees"
-        return Constraint(number=1, says="rotation falls with aperture", met=rise <= STEADY, found=found)
+        return Constraint(number=1, says=says, met=rise <= STEADY, found=found)
 
     def wider_turns_more(self) -> Constraint:
         """2: the large group turns more at equal width below about 63 cm."""
-        least = min(
-            self.mean("large", condition, aperture) - self.mean("small", condition, aperture)
-            for condition in CONDITIONS
-            for aperture in self.apertures
-            if aperture < 0.63
-        )
-        return Constraint(number=2, says="large > small below 63 cm", met=least > 0, found=f"smallest difference {least:.1f} degrees")
+        says = "large > small below 63 cm"
+        if self.pair is None or self.by != "aperture":
+            return _untested(2, says, "it needs two groups of different shoulder width at the same apertures")
+        small, large = self.pair
+        differences = [
+            self.mean(large, condition, aperture) - self.mean(small, condition, aperture)
+            for condition in self.conditions
+            for aperture in self.levels
+            if aperture < EQUAL and self.has(large, condition, aperture) and self.has(small, condition, aperture)
+        ]
+        if not differences:
+            return _untested(2, says, "it needs apertures below 63 cm")
+        least = min(differences)
+        return Constraint(number=2, says=says, met=least > 0, found=f"smallest difference {least:.1f} degrees")
+
+    def scores(self) -> tuple[list[float], list[float]] | None:
+        """Returns the mean angle on the ratio, from 1.0 to 1.4, of each participant of the large and of the small group [degrees]."""
+        if self.pair is None or min(len(self.people(group)) for group in self.pair) < 2:
+            return None
+        curves = {key: self.curve(*key) for key in sorted(self._people) if key[0] in self.pair}
+        low = max((min(ratios) for ratios, _ in curves.values()), default=math.inf)
+        high = min((max(ratios) for ratios, _ in curves.values()), default=-math.inf)
+        # Outside of a participant's own ratios nothing is known: only what all have is compared.
+        ratios = [ratio for ratio in np.arange(1.0, 1.41, 0.05).tolist() if low <= ratio <= high]
+        if len(ratios) < 3:
+            return None
+
+        def score(group: str, one: str) -> float:
+            of = [curves[group, condition, one] for condition in self.conditions if (group, condition, one) in curves]
+            return float(np.mean([np.interp(ratios, *curve) for curve in of]))
+
+        small, large = ([score(group, one) for one in self.people(group)] for group in self.pair)
+        return large, small
 
     def same_ratio(self) -> Constraint:
-        """3: the groups agree on the ratio: two one-sided t tests of agents."""
-        ratios = np.arange(1.0, 1.41, 0.05)
-        scores = {
-            group: [
-                float(np.mean([np.interp(ratios, *self.curve(group, condition, agent)) for condition in CONDITIONS]))
-                for agent in self.agents(group)
-            ]
-            for group in GROUPS
-        }
-        difference, p = equivalence(scores["large"], scores["small"], SAME)
+        """3: the groups agree on the ratio: two one-sided t tests of participants."""
+        says, scores = "groups coincide on A/S", self.scores()
+        if scores is None:
+            return _untested(3, says, "it needs two groups of two or more participants, and common ratios between 1.0 and 1.4")
+        difference, p = equivalence(*scores, SAME)
         found = f"large minus small {difference:.1f} degrees, within {SAME:g}: p = {p:.3g}"
-        return Constraint(number=3, says="groups coincide on A/S", met=p < 0.05, found=found)
+        return Constraint(number=3, says=says, met=p < 0.05, found=found)
 
     def critical(self) -> Constraint:
         """4: the critical ratio of each cell."""
-        found = {
-            (group, condition): turning_point(
-                (outcome.trial.ratio, angle(outcome) > TURNED)
-                for outcome in self.outcomes
-                if (outcome.trial.group, outcome.trial.condition) == (group, condition)
-            )
-            for group in GROUPS
-            for condition in CONDITIONS
-        }
-        met = all(CRITICAL[0] <= ratio <= CRITICAL[1] for ratio in found.values())
         says = f"critical ratio {CRITICAL[0]} to {CRITICAL[1]} in each cell"
-        return Constraint(number=4, says=says, met=met, found=", ".join(f"{g} {c} {ratio:.3f}" for (g, c), ratio in found.items()))
+        cells = {
+            (group, condition): [one for who in self.people(group) for one in self.trials(group, condition, who)]
+            for group in self.groups
+            for condition in self.conditions
+        }
+        if not cells or any(not of or not _spans([one.ratio for one in of], CRITICAL) for of in cells.values()):
+            return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
+        found = {key: critical_ratio((one.ratio, (one.angle or 0.0) > TURNED) for one in of) for key, of in cells.items()}
+        met = all(ratio is not None and CRITICAL[0] <= ratio.value <= CRITICAL[1] for ratio in found.values())
+        texts = [f"{' '.join(filter(None, key))} {'none' if ratio is None else f'{ratio.value:.3f}'}" for key, ratio in found.items()]
+        return Constraint(number=4, says=says, met=met, found=", ".join(texts))
 
     def faster_turns_more(self) -> Constraint:
-        """5: fast minus normal below the critical point, by agents."""
+        """5: fast minus normal below the critical point, by participants."""
+        says = "fast > normal below the critical ratio"
+        if not {"normal", "fast"} <= set(self.conditions):
+            return _untested(5, says, "it needs the conditions normal and fast")
         found: list[str] = []
         met = True
-        for group in GROUPS:
+        for group in self.groups:
             differences: list[float] = []
-            for agent in self.agents(group):
-                (ratios, normal), (_, fast) = (self.curve(group, condition, agent) for condition in ("normal", "fast"))
-                below = [b - a for ratio, a, b in zip(ratios, normal, fast, strict=True) if ratio < CRITICAL[0]]
-                differences.append(mean(below))
+            for one in self.people(group):
+                normal, fast = (dict(zip(*self.curve(group, condition, one), strict=True)) for condition in ("normal", "fast"))
+                below = [fast[ratio] - normal[ratio] for ratio in normal if ratio < CRITICAL[0] and ratio in fast]
+                if below:
+                    differences.append(mean(below))
+            if len(differences) < 2:
+                return _untested(5, says, "it needs two or more participants in each group, with apertures below the critical ratio")
             p = above_zero(mean(differences), stdev(differences) / math.sqrt(len(differences)), len(differences) - 1)
             met &= p < 0.05
             found.append(f"{group} {mean(differences):+.1f} degrees (p = {p:.2g})")
-        return Constraint(number=5, says="fast > normal below the critical ratio", met=met, found=", ".join(found))
+        return Constraint(number=5, says=says, met=met, found=", ".join(found))
 
     def untouched(self) -> Constraint:
-        """6: no contact, and the margin of agents that turned, at each aperture."""
-        touched = sum(outcome.result.contacts > 0 for outcome in self.outcomes)
-        passed = sum(outcome.result.outcome == "passed" for outcome in self.outcomes)
-        margins: defaultdict[float, list[float]] = defaultdict(list)
-        for outcome in self.outcomes:
-            room = margin(outcome)
-            if room is not None:
-                margins[outcome.trial.aperture].append(room)
-        means = {aperture: mean(of) for aperture, of in sorted(margins.items())}
-        found = f"{touched} of {len(self.outcomes)} touched, {passed} passed; mean margin of agents that turned "
-        found += ", ".join(f"{100 * room:.1f} cm at {100 * aperture:.0f}" for aperture, room in means.items())
-        met = touched == 0 and passed == len(self.outcomes) and bool(means)
-        met &= all(MARGIN[0] <= room <= MARGIN[1] for room in means.values())
-        return Constraint(number=6, says="no contact, margin 6 to 8 cm at each aperture", met=met, found=found)
+        """6: no contact, and the margin on each side of walkers that turned, at each aperture."""
+        says = "no contact, margin 6 to 8 cm a side at each aperture"
+        passable = [one for one in self.plain if one.ratio > DEPTH]
+        if not passable:
+            return _untested(6, says, "it needs apertures that can be passed, without a bar that is wider than the body")
+        touched = sum(one.contacts > 0 for one in passable)
+        passed = sum(one.passed for one in passable)
+        sides: defaultdict[float, defaultdict[str, list[tuple[float, float]]]] = defaultdict(lambda: defaultdict(list))
+        for one in passable:
+            if (found := margin(one)) is not None:
+                sides[self.level(one)][one.participant].append(found)
+        means = {
+            level: tuple(mean(mean(pair[side] for pair in pairs) for pairs in of.values()) for side in (0, 1))
+            for level, of in sorted(sides.items())
+        }
+        scale, unit = (100, "cm") if self.by == "aperture" else (1, "A/S")
+        text = f"{touched} of {len(passable)} touched, {passed} passed; mean margin of agents that turned "
+        text += ", ".join(f"{_sides(left, right)} at {scale * level:.3g}" for level, (left, right) in means.items())
+        text += f" {unit}" if means else "none"
+        met = touched == 0 and passed == len(passable) and bool(means)
+        met &= all(MARGIN[0] <= side <= MARGIN[1] for of in means.values() for side in of)
+        return Constraint(number=6, says=says, met=met, found=text)
 
     def upright(self) -> Constraint:
         """7: no constant turn at wide apertures."""
-        turns = [angle(outcome) for outcome in self.outcomes if outcome.trial.ratio > WIDE]
-        found = f"mean {mean(turns):.2f} degrees above {WIDE}, at most {max(turns):.1f}"
-        return Constraint(number=7, says="no fixed turn at wide apertures", met=mean(turns) <= 3, found=found)
+        says = "no fixed turn at wide apertures"
+        turns: defaultdict[tuple[str, str], list[float]] = defaultdict(list)
+        for one in self.plain:
+            if one.ratio > WIDE and one.angle is not None:
+                turns[one.group, one.participant].append(one.angle)
+        if not turns:
+            return _untested(7, says, f"it needs apertures above {WIDE} shoulder widths")
+        of_all = mean(mean(angles) for angles in turns.values())
+        found = f"mean {of_all:.2f} degrees above {WIDE}, at most {max(max(angles) for angles in turns.values()):.1f}"
+        return Constraint(number=7, says=says, met=of_all <= 3, found=found)
 
-    def judged(self, boundary: float) -> Constraint:
+    def bar_angles(self) -> dict[float, dict[float, dict[str, float]]]:
+        """Returns the mean angle of each participant [degrees] by ratio of the aperture to the total width, length of the bar in shoulder
+        widths, and participant."""
+        held: defaultdict[float, defaultdict[float, defaultdict[str, list[float]]]]
+        held = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
+        for one in self.passings:
+            if one.bar is not None and one.straight and one.angle is not None:
+                held[round(one.total_ratio, 2)][round(one.bar_ratio, 2)][one.participant].append(one.angle)
+        return {
+            ratio: {bar: {name: mean(angles) for name, angles in sorted(of.items())} for bar, of in sorted(bars.items())}
+            for ratio, bars in sorted(held.items())
+        }
+
+    def longer_bar(self) -> Constraint:
+        """8: at the same ratio of aperture to total width, the angle falls with the length of the bar."""
+        says = "angle falls with bar length at equal ratio"
+        angles = {ratio: bars for ratio, bars in self.bar_angles().items() if len(bars) > 1}
+        if not angles:
+            return _untested(BARS, says, "it needs bars of several lengths in the hands")
+        met, found = True, list[str]()
+        for ratio, bars in angles.items():
+            means = [mean(of.values()) for of in bars.values()]
+            met &= all(a > b for a, b in pairwise(means))
+            found.append(f"{', '.join(f'{angle:.1f}' for angle in means)} at A/S {ratio:g}")
+        lengths = _listed(next(iter(angles.values())))
+        return Constraint(number=BARS, says=says, met=met, found=f"degrees with bars of {lengths} body widths: {'; '.join(found)}")
+
+    def judged(self, boundary: float | None) -> Constraint:
         """9: the boundary of what is judged to be passable."""
+        says = "«can pass» from about 1.16, below 1.30"
+        if boundary is None:
+            return _untested(9, says, "it needs judgements, as in the design passability_judgement")
         met = PASSABLE[0] <= boundary <= PASSABLE[1]
-        return Constraint(number=9, says="«can pass» from about 1.16, below 1.30", met=met, found=f"from {boundary:.3f}")
+        return Constraint(number=9, says=says, met=met, found=f"from {boundary:.3f}")
+
+
+def _untested(number: int, says: str, why: str) -> Constraint:
+    return Constraint(number=number, says=says, met=None, found=f"not testable with this design: {why}")
+
+
+def _spans(ratios: Sequence[float], bounds: tuple[float, float]) -> bool:
+    return min(ratios) < bounds[0] and max(ratios) > bounds[1]
+
+
+def _sides(left: float, right: float) -> str:
+    """Returns the margins on both sides as one number if they are the same."""
+    one, other = f"{100 * left:.1f} cm", f"{100 * right:.1f} cm"
+    return one if one == other else f"{one} left and {other} right"
+
+
+def _listed(values: Iterable[float]) -> str:
+    return ", ".join(f"{value:.3g}" for value in values)
 
 
 def equivalence(one: Sequence[float], other: Sequence[float], bound: float) -> tuple[float, float]:
@@ -218,24 +351,3 @@ def above_zero(value: float, error: float, freedom: float) -> float:
     if error == 0:
         return float(value <= 0)
     return float(stdtr(freedom, -value / error))
-
-
-def turning_point(trials: Iterable[tuple[float, bool]]) -> float:
-    """Returns the ratio at which half of the trials have a property, by a logistic fit whose slope is at most 200 per unit.
-
-    Args:
-        trials: The ratio, and whether the trial has the property, which is more likely at small ratios.
-    """
-    pairs = sorted(trials)
-    ratios, has = np.array([ratio for ratio, _ in pairs]), np.array([yes for _, yes in pairs], dtype=float)
-
-    def unlikely(values: Any) -> float:
-        centre, slope = values
-        signed = slope * (ratios - centre)
-        return float(np.sum(np.logaddexp(0.0, signed) - (1 - has) * signed)) if slope > 0 else math.inf
-
-    low, high = float(ratios[0]), float(ratios[-1])
-    starts = [(low + (high - low) * n / 40, slope) for n in range(41) for slope in (20.0, 200.0)]
-    best = min(starts, key=unlikely)
-    bounds = [(low, high), (1.0, 200.0)]
-    return float(optimize.minimize(unlikely, best, bounds=bounds, method="L-BFGS-B").x[0])

@@ -19,6 +19,7 @@ import actr3d
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
 from actr3d.experiment.aperture.passage import PassageResult
+from actr3d.experiment.aperture.passing import Passing
 from actr3d.runner.model_factory import Blueprint
 
 GROUPS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
@@ -37,7 +38,7 @@ _SPREAD = tuple(statistics.NormalDist().inv_cdf((n + 0.5) / AGENTS) for n in ran
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trial:
+class WalkerTrial:
     """One run of the model."""
 
     variant: str
@@ -73,12 +74,29 @@ class Trial:
 class Outcome:
     """The result of a trial."""
 
-    trial: Trial
+    trial: WalkerTrial
     result: PassageResult
     said: str
     """The model's output."""
     cost: float
     """Processor time [s]."""
+
+    @property
+    def passing(self) -> Passing:
+        """The trial as it is analysed."""
+        trial, result = self.trial, self.result
+        return Passing(
+            participant=f"{trial.group} {trial.agent}",
+            group=trial.group,
+            condition=trial.condition,
+            aperture=trial.aperture,
+            shoulders=trial.shoulders,
+            angle=result.wall_angle_deg if result.wall_angle_deg is not None else result.peak_angle_deg,
+            left=result.clearance_left_m,
+            right=result.clearance_right_m,
+            contacts=result.contacts,
+            passed=result.outcome == "passed",
+        )
 
 
 def model_file() -> Path:
@@ -94,7 +112,7 @@ def _blueprint() -> Blueprint:
     return Blueprint(read_source(path), str(path), path.parent)
 
 
-def run_trial(trial: Trial, *, judging: bool = False) -> Outcome:
+def run_trial(trial: WalkerTrial, *, judging: bool = False) -> Outcome:
     """Runs one trial.
 
     Args:
@@ -110,7 +128,7 @@ def run_trial(trial: Trial, *, judging: bool = False) -> Outcome:
     return Outcome(trial=trial, result=simulation.result(), said=said.getvalue(), cost=time.process_time() - start)
 
 
-def run_trials(trials: Sequence[Trial], *, judging: bool = False) -> list[Outcome]:
+def run_trials(trials: Sequence[WalkerTrial], *, judging: bool = False) -> list[Outcome]:
     """Runs trials, one at a time on each processor, and returns their outcomes in the same order.
 
     Args:
@@ -121,10 +139,10 @@ def run_trials(trials: Sequence[Trial], *, judging: bool = False) -> list[Outcom
         return list(pool.map(partial(run_trial, judging=judging), trials, chunksize=4))
 
 
-def experiment(variant: str, trials: int, apertures: Iterable[float] = APERTURES) -> list[Trial]:
+def experiment(variant: str, trials: int, apertures: Iterable[float] = APERTURES) -> list[WalkerTrial]:
     """Returns all trials of a variant: for both groups and conditions, `trials` per aperture, divided among the agents."""
     return [
-        Trial(variant=variant, group=group, condition=condition, aperture=aperture, agent=n % AGENTS, number=n // AGENTS)
+        WalkerTrial(variant=variant, group=group, condition=condition, aperture=aperture, agent=n % AGENTS, number=n // AGENTS)
         for group in GROUPS
         for condition in CONDITIONS
         for aperture in apertures

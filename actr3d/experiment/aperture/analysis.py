@@ -1,0 +1,571 @@
+"""The sections of a report on passing apertures: rotation, critical ratio, margins, bars, judgements, and the nine constraints.
+
+The means of the original ACT-R 3D and the baseline, one line of geometry, are always shown beside the model.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings
+from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
+from actr3d.experiment.aperture.passing import Passing, baseline_angle
+from actr3d.experiment.aperture.trials import original_means
+from actr3d.experiment.report.analyses import analysis
+from actr3d.experiment.report.beside import Beside
+from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
+from actr3d.experiment.report.libraries import noting_warnings, pandas, pingouin
+from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.results import Results
+from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means, in_order
+
+Parts = list[str | Table | Plot | Caution]
+ORIGINAL, GEOMETRY = "original ACT-R 3D", "geometry (baseline)"
+BASELINE = (
+    "Baseline: one line of geometry, which any model must beat: the angle at which an ellipse, as wide as the shoulders S and 0.563 S "
+    "deep, leaves the room 0.30 S."
+)
+ANGLE = "shoulder angle at the wall [degrees]"
+OF_RATIO = "aperture / shoulder width (A/S)"
+PEOPLE_TURN = f"people turn below {CRITICAL[0]:g} to {CRITICAL[1]:g}"
+NEEDED = ("participant", "group", "condition", "aperture", "shoulder_width", "wall_angle_deg", "peak_angle_deg", "clearance_left_m")
+NEEDED = (*NEEDED, "clearance_right_m", "contacts", "outcome", "bar", "aside", "off")
+"""The columns that a `Passing` is made of."""
+SIDES_DIFFER = 0.001
+"""Sides that differ by less than this in every trial are equal [m]."""
+
+
+def passings_of(results: Results) -> list[Passing]:
+    """Returns the trials of an experiment with apertures."""
+    found: list[Passing] = []
+    for row in results.rows[[name for name in NEEDED if name in results.rows]].to_dict("records"):
+        row = {name: None if isinstance(value, float) and math.isnan(value) else value for name, value in row.items()}
+        if row["shoulder_width"] is None:
+            continue
+        found.append(
+            Passing(
+                participant=row["participant"],
+                group=row["group"],
+                condition=row.get("condition") or "",
+                aperture=row["aperture"],
+                shoulders=row["shoulder_width"],
+                angle=row["wall_angle_deg"] if row["wall_angle_deg"] is not None else row.get("peak_angle_deg"),
+                left=row["clearance_left_m"],
+                right=row["clearance_right_m"],
+                contacts=int(row["contacts"] or 0),
+                passed=row["outcome"] == "passed",
+                bar=row.get("bar"),
+                straight=not row.get("aside") and not row.get("off"),
+            )
+        )
+    return found
+
+
+def frame_of(results: Results, findings: Findings) -> Any:
+    """Returns a `DataFrame` of the trials without a wide bar that begin in line with the doorway; lengths are in cm."""
+    plain = set(map(id, findings.plain))
+    kept = [n for n, one in enumerate(findings.passings) if id(one) in plain]
+    rows = results.rows[results.rows["shoulder_width"].notna()].iloc[kept]
+    frame = rows[["participant", "group", "outcome", "contacts"]].reset_index(drop=True)
+    frame["condition"] = [one.condition for one in findings.plain]
+    frame["level"] = [findings.level(one) for one in findings.plain]
+    frame["ratio"] = [one.ratio for one in findings.plain]
+    frame["angle"] = np.array([one.angle for one in findings.plain], dtype=float)
+    for name, column, scale in (
+        ("logged", "logged_angle_deg", 1),
+        ("left", "clearance_left_m", 100),
+        ("right", "clearance_right_m", 100),
+        ("onset", "onset_distance_m", 1),
+        ("onset_time", "onset_time_s", 1),
+        ("force", "max_force_n", 1),
+    ):
+        frame[name] = rows[column].to_numpy() * scale if column in rows else math.nan
+    return frame
+
+
+@analysis("aperture", "shoulder_width", "wall_angle_deg", "clearance_left_m", "clearance_right_m", "contacts", "outcome")
+def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
+    """Returns the sections on walking through apertures."""
+    by = "aperture" if "aperture" in results.factors else "ratio"
+    findings = Findings(passings_of(results), by)
+    sections = [Section(title="Constraints on a model of people", parts=[_constraints(findings.all())])]
+    frame = frame_of(results, findings)
+    if len(findings.levels) > 1:
+        rotation = Rotation(findings, frame, others)
+        sections.append(Section(title="Rotation of the shoulders", parts=rotation.parts()))
+        sections.append(Section(title="Critical ratio", parts=_critical_ratios(findings)))
+        sections.append(Section(title="Margins, contacts and onset", parts=_margins(findings, frame)))
+    if bars := findings.bar_angles():
+        sections.append(Section(title="Bars in the hands", parts=_bars(bars)))
+    if (left := len(findings.passings) - len(findings.plain)) and len(findings.levels) > 1:
+        text = f"{left:,} trials with a wide bar, or with a start beside the doorway or aslant, are in no figure of rotation and margins."
+        sections[1] = Section(title=sections[1].title, parts=[Caution(text), *sections[1].parts])
+    return sections
+
+
+@analysis("judged", "passable", "ratio", "shoulder_width")
+def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
+    """Returns the sections on judging whether one could pass without turning."""
+    pd, rows = pandas(), results.rows
+    of_all = critical_ratio(zip(rows["ratio"], rows["passable"] < 0.5, strict=True))
+    constraints = Findings([]).all(boundary=math.nan if of_all is None else of_all.value)
+    found: list[dict[str, Any]] = []
+    for (group, participant), of in rows.groupby(["group", "participant"], sort=False, observed=True):
+        one = critical_ratio(zip(of["ratio"], of["passable"] < 0.5, strict=True))
+        values = (math.nan,) * 3 if one is None else (one.value, one.low, one.high)
+        found.append({"group": group, "participant": participant, **dict(zip(("boundary", "low", "high"), values, strict=True))})
+    people = pd.DataFrame(found)
+    means = cell_means(rows, "passable", ["group", "ratio"])
+    curves: list[Curve] = []
+    for group in results.groups:
+        of = means[means["group"] == group]
+        low, high = of["low"].tolist(), of["high"].tolist()
+        x, y = of["ratio"].tolist(), of["mean"].tolist()
+        curves.append(Curve(label=group, source="this model", look="model", x=x, y=y, low=low, high=high))
+        curves += _curves_beside(others, "passable", {"group": group}, group, "ratio", 1.0)
+    pane = Pane(title="", curves=curves, band=(*PASSABLE, "people judge from about 1.16"))
+    figure = curves_figure([pane], OF_RATIO, "judged passable without turning [proportion]")
+    parts: Parts = [
+        Plot(name="judgements", title="Judged passable", figure=figure, note="Means of participants with 95 % bootstrap intervals."),
+        Table(
+            name="boundaries",
+            title="Boundary of each participant",
+            frame=people,
+            note="Half of the judgements there are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood.",
+            digits={"boundary": 3, "low": 3, "high": 3},
+        ),
+    ]
+    if of_all is not None:
+        low, high = bootstrap_interval(people["boundary"].tolist())
+        mean = people["boundary"].mean()
+        parts.append(
+            f"Mean boundary {mean:.3f} (95 % interval over participants {low:.3f} to {high:.3f}); of all judgements {of_all.value:.3f}."
+        )
+    parts.append("The boundary of the human variant is a parameter of the model (1.16): only its spread follows from the noise of vision.")
+    return [
+        Section(title="Constraints on a model of people", parts=[_constraints(constraints)]),
+        Section(title="Judged passability", parts=parts),
+    ]
+
+
+def _constraints(constraints: Sequence[Constraint]) -> Table:
+    words = {True: "met", False: "not met", None: "not testable"}
+    rows = [{"number": str(one.number), "constraint": one.says, "result": words[one.met], "found": one.found} for one in constraints]
+    note = "As in the manual, «Human data and sources». Participants are the unit."
+    return Table(name="constraints", title="The nine constraints", frame=pandas().DataFrame(rows), note=note)
+
+
+class Rotation:
+    """The rotation of the shoulders: figures, means beside those of the original and of the baseline, and how well they agree.
+
+    Args:
+        findings: The trials.
+        frame: The same as a table; see `frame_of`.
+        others: Means of people, or of another experiment.
+    """
+
+    def __init__(self, findings: Findings, frame: Any, others: Sequence[Beside]) -> None:
+        self._findings, self._others = findings, others
+        self._by_aperture = findings.by == "aperture"
+        self._x_label = "aperture [cm]" if self._by_aperture else OF_RATIO
+        self._frame = frame
+        self._means = cell_means(frame, "angle", ["group", "condition", "level"])
+        self._shoulders = {
+            group: float(np.mean([one.shoulders for one in findings.plain if one.group == group])) for group in findings.groups
+        }
+        self._original = original_means() if self._by_aperture else {}
+
+    def parts(self) -> Parts:
+        """Returns the parts of the section."""
+        findings, several = self._findings, len(self._findings.conditions) > 1
+        note = "Means of participants with 95 % bootstrap intervals."
+        panes = [self._pane(condition, [(group, group, condition) for group in findings.groups]) for condition in findings.conditions]
+        parts: Parts = [BASELINE]
+        figure = curves_figure(panes, self._x_label, ANGLE, from_zero=True)
+        parts.append(Plot(name="rotation_by_aperture", title=f"Rotation by {self._x}", figure=figure, note=note))
+        if several:
+            panes = [self._pane(group, [(name, group, name) for name in findings.conditions]) for group in findings.groups]
+            figure = curves_figure(panes, self._x_label, ANGLE, from_zero=True)
+            parts.append(Plot(name="rotation_by_speed", title="Rotation by speed", figure=figure, note=note))
+        if self._by_aperture:
+            panes = [self._ratio_pane(condition) for condition in findings.conditions]
+            figure = curves_figure(panes, OF_RATIO, ANGLE, from_zero=True)
+            parts.append(Plot(name="rotation_by_ratio", title="Rotation by A/S", figure=figure, note=note))
+        parts += [self._cells(), self._fit(), *self._equivalence(), *self._aic()]
+        if not any(one.look == "human" and len(one.of("wall_angle_deg")) for one in self._others):
+            parts.append(
+                "Human mean angles for each aperture are not available in print, so none are drawn; give data of your own with --human."
+            )
+        return parts
+
+    @property
+    def _x(self) -> str:
+        return "aperture" if self._by_aperture else "A/S"
+
+    def _pane(self, title: str, cells: Sequence[tuple[str, str, str]]) -> Pane:
+        """Returns a pane with curves, each given by its label, group and condition."""
+        scale = 100.0 if self._by_aperture else 1.0
+        curves: list[Curve] = []
+        for label, group, condition in cells:
+            of = self._means[(self._means["group"] == group) & (self._means["condition"] == condition)]
+            x = (of["level"] * scale).tolist()
+            curves.append(_model_curve(label, x, of))
+            curves += self._original_curve(label, group, condition, 1.0)
+            grid = np.linspace(self._findings.levels[0], self._findings.levels[-1], 200)
+            ratio = grid / self._shoulders[group] if self._by_aperture else grid
+            drawn = any(curve.look == "baseline" and curve.y == baseline_angle(ratio).tolist() for curve in curves)
+            if not drawn:  # it is the same at all speeds
+                shared = not self._by_aperture or len({g for _, g, _ in cells}) == 1
+                y = baseline_angle(ratio).tolist()
+                curves.append(Curve(label="" if shared else label, source=GEOMETRY, look="baseline", x=(grid * scale).tolist(), y=y))
+            curves += self._others_curves(label, group, condition, scale)
+        return Pane(title=title, curves=curves)
+
+    def _ratio_pane(self, condition: str) -> Pane:
+        curves: list[Curve] = []
+        for group in self._findings.groups:
+            of = self._means[(self._means["group"] == group) & (self._means["condition"] == condition)]
+            shoulders = self._shoulders[group]
+            curves.append(_model_curve(group, (of["level"] / shoulders).tolist(), of))
+            curves += self._original_curve(group, group, condition, 0.01 / shoulders)
+            curves += self._others_curves(group, group, condition, 1 / shoulders)
+        ratios = [x for curve in curves for x in curve.x]
+        grid = np.linspace(min(ratios), max(ratios), 200)
+        curves.append(Curve(label="", source=GEOMETRY, look="baseline", x=grid.tolist(), y=baseline_angle(grid).tolist()))
+        return Pane(title=condition, curves=curves, band=(*CRITICAL, PEOPLE_TURN))
+
+    def _original_curve(self, label: str, group: str, condition: str, scale: float) -> list[Curve]:
+        cells = sorted((aperture, angle) for (g, c, aperture), angle in self._original.items() if (g, c) == (group, condition))
+        x, y = [100 * aperture * scale for aperture, _ in cells], [angle for _, angle in cells]
+        return [Curve(label=label, source=ORIGINAL, look="other", x=x, y=y)] if cells else []
+
+    def _others_curves(self, label: str, group: str, condition: str, scale: float) -> list[Curve]:
+        """Returns the curves of people and of another experiment, where they have angles by aperture."""
+        cell = {"group": group, "condition": condition}
+        return _curves_beside(self._others, "wall_angle_deg", cell, label, self._findings.by, scale)
+
+    def _cells(self) -> Table:
+        frame = self._means.copy()
+        frame["original"] = [
+            self._original.get((row["group"], row["condition"], row["level"]), math.nan) for row in frame.to_dict("records")
+        ]
+        frame["baseline"] = self._baseline(frame)
+        frame = frame.rename(columns={"level": self._findings.by})
+        units = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
+        units |= {"aperture": "m"} if self._by_aperture else {}
+        note = "Angles at the wall. sd: between participants; low, high: 95 % interval; n: participants."
+        digits = dict.fromkeys(units, 1) | {"aperture": 2, "ratio": 2}
+        return Table(name="rotation", title="Rotation of each cell", frame=frame, units=units, digits=digits, note=note, folded=True)
+
+    def _baseline(self, cells: Any) -> list[float]:
+        """Returns the baseline's mean angle of each cell [degrees], from the shoulder widths of the participants."""
+        ratios = self._frame.groupby(["group", "participant", "level"], observed=True)["ratio"].first().reset_index()
+        ratios["angle"] = baseline_angle(ratios["ratio"].to_numpy())
+        angles = ratios.groupby(["group", "level"], observed=True)["angle"].mean()
+        return [float(angles[row["group"], row["level"]]) for row in cells.to_dict("records")]
+
+    def _fit(self) -> Table:
+        """Returns the agreement of model, original and baseline."""
+        measure = "logged" if self._frame["logged"].notna().any() else "angle"
+        logged = cell_means(self._frame, measure, ["group", "condition", "level"])
+        logged["baseline"] = self._baseline(logged)
+        logged["original"] = [
+            self._original.get((row["group"], row["condition"], row["level"]), math.nan) for row in logged.to_dict("records")
+        ]
+        angles = self._means.assign(baseline=self._baseline(self._means))
+        pairs = [("this model", ORIGINAL, logged, "mean", "original"), (GEOMETRY, ORIGINAL, logged, "baseline", "original")]
+        pairs.append((GEOMETRY, "this model", angles, "baseline", "mean"))
+        rows: list[dict[str, Any]] = []
+        for what, other, frame, one, two in pairs:
+            both = frame[frame[two].notna()]
+            if len(both):
+                rmse, r2 = agreement(both[one], both[two])
+                rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r2": r2})
+        note = "RMSE and squared correlation of the means of cells. The original's angle is the one it logged: torso plus clavicle."
+        frame = pandas().DataFrame(rows)
+        digits = {"rmse": 2, "r2": 3}
+        return Table(name="agreement", title="Agreement", frame=frame, units={"rmse": "degrees"}, digits=digits, note=note)
+
+    def _equivalence(self) -> Parts:
+        scores, pair = self._findings.scores(), self._findings.pair
+        if scores is None or pair is None:
+            return []
+        large, small = scores
+        with noting_warnings() as notes:
+            found = pingouin().tost(large, small, bound=SAME, paired=False, correction=True).iloc[0]
+        difference = float(np.mean(large) - np.mean(small))
+        row = {
+            "groups": f"{pair[1]} − {pair[0]}",
+            "difference": difference,
+            "bound": SAME,
+            "df": float(found["dof"]),
+            "p": float(found["pval"]),
+        }
+        row["result"] = "equivalent" if row["p"] < 0.05 else "not shown to be equivalent"
+        note = (
+            "Two one-sided Welch t tests on the mean angle of each participant at the common ratios from 1.0 to 1.4. A small p says that "
+            "the groups differ by less than the bound."
+        )
+        table = Table(
+            name="equivalence",
+            title="Do the groups coincide on A/S?",
+            frame=pandas().DataFrame([row]),
+            units={"difference": "degrees", "bound": "degrees"},
+            digits={"difference": 2},
+            note=note,
+        )
+        return [table, *notes]
+
+    def _aic(self) -> Parts:
+        if not self._by_aperture or self._findings.pair is None:
+            return []
+        means = self._frame.groupby(["group", "participant", "level"], observed=True)[["angle", "ratio"]].mean().reset_index().dropna()
+        rows: list[dict[str, Any]] = []
+        for name, column in (("A/S", "ratio"), ("A", "level")):
+            x, y = means[column].to_numpy(dtype=float), means["angle"].to_numpy(dtype=float)
+            design = np.column_stack([np.ones_like(x), x, x**2])
+            coefficients, *_ = np.linalg.lstsq(design, y, rcond=None)
+            error = float(np.sum((y - design @ coefficients) ** 2))
+            if error <= 0:
+                return []
+            rows.append({"angle_depends_on": name, "aic": len(y) * math.log(error / len(y)) + 2 * (design.shape[1] + 1)})
+        note = "Akaike's criterion of a quadratic regression of participants' mean angles on A/S, or on the aperture A; smaller is better."
+        return [Table(name="aic", title="Ratio or width?", frame=pandas().DataFrame(rows), note=note, digits={"aic": 1})]
+
+
+def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str], label: str, x: str, scale: float) -> list[Curve]:
+    """Returns the means of people and of other experiments in a cell; those of all groups or conditions count for each of them."""
+    found: list[Curve] = []
+    for one in others:
+        rows = one.of(measure)
+        if x not in rows:
+            continue
+        for name, level in cell.items():
+            rows = rows[(rows[name] == level) | rows[name].isna()] if name in rows else rows
+        rows = rows[rows[x].notna()].sort_values(x)
+        if len(rows):
+            look: Look = "human" if one.look == "human" else "points"
+            places, y = (rows[x].astype(float) * scale).tolist(), rows["mean"].tolist()
+            low, high = rows["low"].tolist(), rows["high"].tolist()
+            found.append(Curve(label=label, source=one.label, look=look, x=places, y=y, low=low, high=high))
+    return found
+
+
+def _model_curve(label: str, x: Sequence[float], of: Any) -> Curve:
+    low, high = of["low"].tolist(), of["high"].tolist()
+    return Curve(label=label, source="this model", look="model", x=x, y=of["mean"].tolist(), low=low, high=high)
+
+
+# -- critical ratio
+
+
+def _critical_ratios(findings: Findings) -> Parts:
+    rows: list[dict[str, Any]] = []
+    for group in findings.groups:
+        for condition in findings.conditions:
+            for one in findings.people(group):
+                fits = _fits(findings.trials(group, condition, one), findings.curve(group, condition, one))
+                rows.append({"group": group, "condition": condition, "participant": one, **fits})
+    pd = pandas()
+    frame = pd.DataFrame(rows)
+    digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3, "baseline_deg": 1}
+    note = (
+        f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
+        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood; it cannot be narrower than the step between two apertures. "
+        "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
+    )
+    parts: Parts = []
+    if (known := frame[frame["critical_ratio"].notna()]).size:
+        panes = [_ratios_pane(known[known["condition"] == condition], condition, findings) for condition in findings.conditions]
+        names = {one: n for n, one in enumerate(dict.fromkeys(known["participant"]))}
+        ticks = [(float(n), one.rpartition(" ")[2]) for one, n in names.items()] if len(names) <= 30 else [(0.0, "")]
+        figure = curves_figure(panes, "participant", "critical ratio A/S", ticks=ticks)
+        title = "Critical ratio of each participant"
+        parts.append(Plot(name="critical_ratio", title=title, figure=figure, note="95 % intervals of the profile likelihood."))
+    summary: list[dict[str, Any]] = []
+    for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
+        values: list[float] = of["critical_ratio"].dropna().tolist()
+        low, high = bootstrap_interval(values)
+        bends: list[float] = of["bend"].dropna().tolist()
+        row = {"group": group, "condition": condition, "mean": float(np.mean(values)) if values else math.nan, "low": low, "high": high}
+        summary.append({**row, "n": len(values), "mean_bend": float(np.mean(bends)) if bends else math.nan})
+    note_of_all = "Means of participants with 95 % bootstrap intervals. People: 1.30 (1.28 to 1.31; Warren & Whang 1987)."
+    of_all: dict[str, int] = dict.fromkeys(("mean", "low", "high", "mean_bend"), 3)
+    parts.append(
+        Table(name="critical_ratios_of_groups", title="Critical ratio", frame=pd.DataFrame(summary), note=note_of_all, digits=of_all)
+    )
+    title = "Critical ratio of each participant"
+    parts.append(Table(name="critical_ratios", title=title, frame=frame, note=note, digits=digits, folded=True))
+    if len(known) < len(frame):
+        parts.append(
+            Caution(f"{len(frame) - len(known)} of {len(frame)} curves have no critical ratio: all of their trials are turned, or none is.")
+        )
+    return parts
+
+
+def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict[str, float]:
+    """Returns both fits of one participant at one speed."""
+    wide = [one.angle or 0.0 for one in of if one.ratio > WIDE]
+    base = float(np.median(wide)) if wide else 0.0
+    logistic = critical_ratio((one.ratio, (one.angle or 0.0) > base + TURNED) for one in of) if of else None
+    line = bend(*curve)
+    return {
+        "critical_ratio": math.nan if logistic is None else logistic.value,
+        "low": math.nan if logistic is None else logistic.low,
+        "high": math.nan if logistic is None else logistic.high,
+        "baseline_deg": base if wide else math.nan,
+        "bend": math.nan if line is None else line.ratio,
+    }
+
+
+def _ratios_pane(rows: Any, condition: str, findings: Findings) -> Pane:
+    places = {one: n for n, one in enumerate(one for group in findings.groups for one in findings.people(group))}
+    curves: list[Curve] = []
+    for group in findings.groups:
+        of = rows[rows["group"] == group]
+        x = [float(places[one]) for one in of["participant"]]
+        low, high = of["low"].tolist(), of["high"].tolist()
+        curves.append(Curve(label=group, source="this model", look="points", x=x, y=of["critical_ratio"].tolist(), low=low, high=high))
+    return Pane(title=condition, curves=curves, level=(*CRITICAL, PEOPLE_TURN))
+
+
+# -- margins, contacts, onset
+
+
+def _margins(findings: Findings, frame: Any) -> Parts:
+    pd, by, scale = pandas(), findings.by, 100.0 if findings.by == "aperture" else 1.0
+    x_label = "aperture [cm]" if by == "aperture" else OF_RATIO
+    parts, panes = list[str | Table | Plot | Caution](), list[Pane]()
+    for group in findings.groups:
+        for condition in findings.conditions:
+            of = frame[(frame["group"] == group) & (frame["condition"] == condition)]
+            curves: list[Curve] = []
+            for side in ("left", "right"):
+                means = cell_means(of, side, ["level"])
+                x, low, high = (means["level"] * scale).tolist(), means["low"].tolist(), means["high"].tolist()
+                curves.append(Curve(label=side, source="this model", look="model", x=x, y=means["mean"].tolist(), low=low, high=high))
+            band = (100 * MARGIN[0], 100 * MARGIN[1], "people keep 6 to 8 cm")
+            panes.append(Pane(title=", ".join(filter(None, (group, condition))), curves=curves, level=band))
+    figure = curves_figure(panes, x_label, "smallest distance to the wall [cm]", from_zero=True)
+    note = "Means of participants with 95 % bootstrap intervals. At wide apertures there is more room than anyone wants."
+    parts.append(Plot(name="margins", title="Margins on the left and on the right", figure=figure, note=note))
+    there = frame[frame["left"].notna() & frame["right"].notna()]
+    if len(there) and float((there["left"] - there["right"]).abs().max()) < 100 * SIDES_DIFFER:
+        parts.append(Caution("Left and right are equal in every trial: this walker neither sways nor steers, which people do."))
+    rows: list[dict[str, Any]] = []
+    for (group, condition, level), of in there.groupby(["group", "condition", "level"], sort=False, observed=True):
+        row: dict[str, Any] = {"group": group, "condition": condition, by: level, "trials": len(of)}
+        for side in ("left", "right"):
+            sd = float(of[side].std(ddof=1)) if len(of) > 1 else math.nan
+            row |= {f"{side}_mean": float(of[side].mean()), f"{side}_least": float(of[side].min()), f"{side}_sd": sd}
+        rows.append({**row, "largest_difference": float((of["left"] - of["right"]).abs().max())})
+    table = in_order(pd.DataFrame(rows), ["group", "condition", by], frame)
+    of_sides = [name for name in table if name.startswith(("left", "right", "largest"))]
+    units, digits = dict.fromkeys(of_sides, "cm"), dict.fromkeys(of_sides, 1) | {"aperture": 2, "ratio": 2}
+    note = "sd: between trials; largest difference: between the sides of one trial."
+    units |= {"aperture": "m"} if by == "aperture" else {}
+    parts.append(Table(name="margins", title="Margins of each cell", frame=table, units=units, digits=digits, note=note, folded=True))
+    return [*parts, _contacts(frame), *_onset(findings, frame, x_label, scale)]
+
+
+def _contacts(frame: Any) -> Table:
+    rows: list[dict[str, Any]] = []
+    for (group, condition), of in frame.groupby(["group", "condition"], sort=False, observed=True):
+        counts = {name: int((of["outcome"] == name).sum()) for name in ("passed", "stopped", "declined")}
+        touched = int((of["contacts"] > 0).sum())
+        rows.append(
+            {"group": group, "condition": condition, "trials": len(of), **counts, "touched": touched, "max_force": of["force"].max()}
+        )
+    note = "touched: trials with at least one contact; the force is the greatest of all."
+    return Table(
+        name="contacts", title="Contacts", frame=pandas().DataFrame(rows), units={"max_force": "N"}, digits={"max_force": 1}, note=note
+    )
+
+
+def _onset(findings: Findings, frame: Any, x_label: str, scale: float) -> Parts:
+    turned = frame[frame["onset"].notna() & (frame["angle"] > TURNED)]
+    if not len(turned):
+        return ["No walker turned, so there is no onset."]
+    means = cell_means(turned, "onset", ["group", "condition", "level"])
+    panes: list[Pane] = []
+    for condition in findings.conditions:
+        curves: list[Curve] = []
+        for group in findings.groups:
+            of = means[(means["group"] == group) & (means["condition"] == condition)]
+            if len(of):
+                curves.append(_model_curve(group, (of["level"] * scale).tolist(), of))
+        panes.append(Pane(title=condition, curves=curves))
+    figure = curves_figure(panes, x_label, "distance from the wall at the onset [m]", from_zero=True)
+    note = f"Of trials that turned by more than {TURNED:g} degrees. Means of participants with 95 % bootstrap intervals."
+    table = means.rename(columns={"level": findings.by})
+    units = dict.fromkeys(("mean", "sd", "low", "high"), "m") | ({"aperture": "m"} if findings.by == "aperture" else {})
+    digits = dict.fromkeys(units, 2)
+    return [
+        Plot(name="onset", title="Onset of the turn", figure=figure, note=note),
+        Table(name="onset", title="Onset of each cell", frame=table, units=units, digits=digits, folded=True),
+    ]
+
+
+# -- bars
+
+
+def original_bar_means() -> dict[tuple[float, float], float]:
+    """Returns the original ACT-R 3D's mean angles [degrees] by ratio of the aperture to the total width, and bar in body widths.
+
+    Source: its own trials, 360 per cell (docs/human-data.md).
+    """
+    with (Path(__file__).parent / "original_bar_means.csv").open(encoding="utf-8") as file:
+        rows: list[Any] = list(csv.DictReader(file))
+    return {(float(row["APRatio"]), float(row["BarRatio"])): float(row["mean_deg"]) for row in rows}
+
+
+def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
+    original = original_bar_means()
+    curves, rows = list[Curve](), list[dict[str, Any]]()
+    for ratio, lengths in bars.items():
+        label = f"A / total width {ratio:g}"
+        x, y, low, high = list(lengths), list[float](), list[float](), list[float]()
+        for length, of in lengths.items():
+            values = list(of.values())
+            interval = bootstrap_interval(values)
+            y.append(float(np.mean(values)))
+            low.append(interval[0])
+            high.append(interval[1])
+            baseline = float(baseline_angle([ratio * length], length)[0])
+            row = {"ratio": ratio, "bar": length, "mean": y[-1], "low": low[-1], "high": high[-1], "n": len(values)}
+            rows.append({**row, "original": original.get((ratio, length), math.nan), "baseline": baseline})
+        curves.append(Curve(label=label, source="this model", look="model", x=x, y=y, low=low, high=high))
+        there = [(length, original[ratio, length]) for length in x if (ratio, length) in original]
+        if there:
+            curves.append(Curve(label=label, source=ORIGINAL, look="other", x=[a for a, _ in there], y=[b for _, b in there]))
+        of_baseline = [row["baseline"] for row in rows if row["ratio"] == ratio]
+        curves.append(Curve(label=label, source=GEOMETRY, look="baseline", x=x, y=of_baseline))
+    figure = curves_figure([Pane(title="", curves=curves)], "bar [body widths; 1 is a bar that does not stand out]", ANGLE, from_zero=True)
+    note = (
+        "People turn less with a longer bar at the same ratio (Higuchi, Seya & Imanaka 2012); their mean angles are not at hand. Baseline: "
+        "body and a thin bar keep the room 0.30 S together."
+    )
+    frame = pandas().DataFrame(rows)
+    parts: Parts = [Plot(name="bars", title="Rotation with a bar", figure=figure, note=note)]
+    both = frame[frame["original"].notna()]
+    units = dict.fromkeys(("mean", "low", "high", "original", "baseline"), "degrees") | {"bar": "body widths"}
+    digits: dict[str, int] = dict.fromkeys(("mean", "low", "high", "original", "baseline"), 1)
+    parts.append(Table(name="bars", title="Rotation with a bar", frame=frame, units=units, digits=digits))
+    if len(both) > 2:
+        rows.clear()
+        for what, other, one, two in (
+            ("this model", ORIGINAL, "mean", "original"),
+            (GEOMETRY, ORIGINAL, "baseline", "original"),
+            (GEOMETRY, "this model", "baseline", "mean"),
+        ):
+            rmse, r2 = agreement(both[one], both[two])
+            rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r2": r2})
+        frame = pandas().DataFrame(rows)
+        parts.append(Table(name="bar_agreement", title="Agreement", frame=frame, units={"rmse": "degrees"}, digits={"rmse": 2, "r2": 3}))
+    return parts

@@ -1,0 +1,89 @@
+"""The ratio of aperture to shoulder width below which a walker turns: a logistic fit, and a piecewise-linear fit with a baseline."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+STEEPEST = 200.0
+"""The greatest slope of the logistic curve per unit of the ratio: steeper ones cannot be distinguished."""
+STEPS = 401
+"""The number of ratios at which the likelihood is computed, between the smallest and the largest of the trials."""
+CHI_SQUARED = 3.841
+"""The 95 % quantile of the chi-squared distribution with one degree of freedom."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalRatio:
+    """A critical ratio with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bend:
+    """A straight fall of angles with the ratio, down to a baseline."""
+
+    ratio: float
+    """Where the fall ends."""
+    baseline: float
+    """The angle above that ratio [degrees]."""
+    slope: float
+    """The fall below it [degrees per unit of the ratio]."""
+
+
+def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None:
+    """Returns the ratio at which half of the trials are turned, by a logistic fit; None if all are, or none is.
+
+    The interval is that of the profile likelihood. If no ratio has both turned and other trials, the likelihood is flat between two
+    ratios: the value is their middle, and the interval spans them.
+
+    Args:
+        trials: The ratio of each trial, and whether the walker turned, which is more likely at small ratios.
+    """
+    pairs = list(trials)
+    ratios, inverse = np.unique([ratio for ratio, _ in pairs], return_inverse=True)
+    turned = np.bincount(inverse, weights=[float(yes) for _, yes in pairs])
+    total = np.bincount(inverse).astype(float)
+    if not 0 < turned.sum() < total.sum():
+        return None
+    centres: NDArray[np.float64] = np.linspace(ratios[0], ratios[-1], STEPS)
+    slopes = np.geomspace(2.0, STEEPEST, 16)
+    profile = np.full(STEPS, -np.inf)
+    for slope in slopes:
+        signed: NDArray[np.float64] = slope * (ratios[None, :] - centres[:, None])
+        likelihood = -(np.logaddexp(0.0, signed) @ turned) - np.logaddexp(0.0, -signed) @ (total - turned)
+        profile = np.maximum(profile, likelihood)
+    best = profile.max()
+    top: list[float] = centres[profile >= best - 1e-3].tolist()
+    inside: list[float] = centres[profile >= best - CHI_SQUARED / 2].tolist()
+    return CriticalRatio(value=(top[0] + top[-1]) / 2, low=inside[0], high=inside[-1])
+
+
+def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
+    """Returns the piecewise-linear fit `baseline + slope x max(0, ratio - x)` with the least squares; None with fewer than four ratios.
+
+    A rotation that falls more steeply near its end than before, as that of a body that just fits, makes the ratio too large.
+
+    Args:
+        ratios: The ratios of aperture to shoulders.
+        angles: The angle at each [degrees].
+    """
+    x, y = np.asarray(ratios, dtype=float), np.asarray(angles, dtype=float)
+    if len(np.unique(x)) < 4:
+        return None
+    best: tuple[float, Bend] | None = None
+    places: list[float] = np.linspace(x.min(), x.max(), STEPS)[1:].tolist()
+    for at in places:
+        fall = np.maximum(0.0, at - x)
+        design = np.column_stack([np.ones_like(x), fall])
+        (base, slope), *_ = np.linalg.lstsq(design, y, rcond=None)
+        error = float(np.sum((y - base - slope * fall) ** 2))
+        if slope > 0 and (best is None or error < best[0] - 1e-9):
+            best = error, Bend(ratio=at, baseline=float(base), slope=float(slope))
+    return None if best is None else best[1]

@@ -1,0 +1,58 @@
+"""The registry of analyses: what the report shows beyond what it shows of every experiment."""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, TypeVar
+
+import actr3d.experiment
+from actr3d.experiment.report.parts import Section
+from actr3d.registry import Registry
+
+F = TypeVar("F", bound=Callable[[Any, Sequence[Any]], Sequence[Section]])
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """An analysis of experiments of one kind."""
+
+    make: Callable[[Any, Sequence[Any]], Sequence[Section]]
+    """Returns the sections, from the `Results` of the experiment and the `Beside` means of people and other experiments."""
+    columns: frozenset[str]
+    """The columns of the trials that it needs."""
+
+
+ANALYSES: Registry[Analysis] = Registry("analysis")
+"""All analyses by name."""
+
+
+def analysis(*columns: str) -> Callable[[F], F]:
+    """Registers a function that returns more sections of a report.
+
+    It is called for every experiment whose trials have certain columns, whatever its design and its model are called. Its arguments are
+    a `Results`, and a list of `Beside`: means of people, or of another experiment. A file with a design can define such a function, too.
+
+    Args:
+        columns: The names of the columns: measures, factors or other parameters.
+
+    Raises:
+        ValueError: If there is another analysis of this name.
+    """
+
+    def register(function: F) -> F:
+        ANALYSES.add(f"{function.__module__}.{function.__qualname__}", Analysis(function, frozenset(columns)))
+        return function
+
+    return register
+
+
+def find_analyses() -> Registry[Analysis]:
+    """Imports the module `analysis` of each package of `actr3d.experiment`, and returns all analyses."""
+    home = actr3d.experiment
+    for package in pkgutil.iter_modules(home.__path__, f"{home.__name__}."):
+        if package.ispkg and any(inner.name == "analysis" for inner in pkgutil.iter_modules(import_module(package.name).__path__)):
+            import_module(f"{package.name}.analysis")
+    return ANALYSES

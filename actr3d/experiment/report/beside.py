@@ -1,0 +1,143 @@
+"""Means that are shown beside those of an experiment: of people, or of another experiment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.special import stdtrit
+
+from actr3d.experiment.human_data import HumanData, Schema, library_human_data, read_human_data
+from actr3d.experiment.report.figures import Look
+from actr3d.experiment.report.libraries import pandas
+from actr3d.experiment.report.results import Results
+from actr3d.experiment.report.statistics import agreement, cell_means
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """Means by cell from elsewhere."""
+
+    label: str
+    """Whose they are."""
+    look: Look
+    frame: Any
+    """A `DataFrame` with `group`, the factors of the design, `measure`, `mean`, `sd`, `low`, `high` and `n`; a group or a level that is
+    None (NaN for numbers) is a mean over all."""
+
+    def of(self, measure: str) -> Any:
+        """Returns the rows of a measure."""
+        return self.frame[self.frame["measure"] == measure]
+
+
+def schema_of(results: Results) -> Schema:
+    """Returns what human data for an experiment may hold."""
+    return Schema(groups=results.groups, factors=results.all_factors, measures=results.measures)
+
+
+def human_data_of(results: Results, file: Path | str | None) -> tuple[HumanData | None, str]:
+    """Returns the human data of a report, and a text that says why there are none.
+
+    Args:
+        results: The experiment.
+        file: A file, or None for what the design names.
+
+    Raises:
+        ExperimentError: If the file does not follow the schema.
+    """
+    if file is not None:
+        return read_human_data(file, schema_of(results)), ""
+    name, known = results.design.human, library_human_data()
+    if name is None:
+        return None, "The design names no human data, and none were given with --human."
+    if name not in known:
+        return None, f"The design names the human data '{name}', which the library does not have, and none were given with --human."
+    if name in known and not set(results.measures) & _measures_in(known[name]):
+        return None, f"The published means '{name}' are of other measures than this experiment has."
+    return read_human_data(known[name], schema_of(results)), ""
+
+
+def _measures_in(path: Path) -> set[str]:
+    """Returns the words of a file: enough to know whether a measure of the experiment occurs in it."""
+    return set(path.read_text(encoding="utf-8").replace("\n", ",").split(","))
+
+
+def beside_people(data: HumanData, results: Results) -> Beside:
+    """Returns human data as means by cell."""
+    pd, factors = pandas(), list(results.all_factors)
+    columns = ["group", *factors, "measure", "mean", "sd", "low", "high", "n"]
+    if data.published:
+        frame = pd.DataFrame([dict(row) for row in data.rows], columns=["group", *factors, "measure", "mean", "sd", "n"])
+        for name in ("mean", "sd", "n"):
+            frame[name] = frame[name].astype("float64")
+        enough = frame["n"].where(frame["n"] > 1)
+        half: Any = stdtrit(enough - 1, 0.975) * frame["sd"] / np.sqrt(enough)
+        frame["low"], frame["high"] = frame["mean"] - half, frame["mean"] + half
+        return Beside(label="people", look="human", frame=frame[columns])
+    rows = pd.DataFrame([dict(row) for row in data.rows])
+    rows["participant"] = rows["group"] + " " + rows["participant"]
+    given = [name for name in ("group", *factors) if rows[name].notna().any()]
+    pieces: list[Any] = []
+    for measure in data.measures:
+        rows[measure] = rows[measure].astype("float64")
+        if rows[measure].notna().any():
+            pieces.append(cell_means(rows, measure, given).assign(measure=measure))
+    frame = pd.concat(pieces, ignore_index=True) if pieces else pd.DataFrame(columns=columns)
+    return Beside(label="people", look="human", frame=frame.reindex(columns=columns))
+
+
+def beside_experiment(other: Results, results: Results) -> Beside | None:
+    """Returns the means of another experiment; None if it has no measure in common."""
+    pd, common = pandas(), [name for name in results.measures if name in other.measures]
+    by = ["group", *(name for name in results.all_factors if name in other.rows)]
+    pieces = [cell_means(other.rows, measure, by).assign(measure=measure) for measure in common]
+    if not pieces:
+        return None
+    frame = pd.concat(pieces, ignore_index=True)
+    columns = ["group", *results.all_factors, "measure", "mean", "sd", "low", "high", "n"]
+    return Beside(label=other.label, look="other", frame=frame.reindex(columns=columns))
+
+
+def matched(results: Results, beside: Beside, measure: str) -> Any:
+    """Returns a `DataFrame` of the cells that both have: `model`, `beside` and what makes the cell. Means over all groups or levels are
+    compared with the model's means over all."""
+    keys = ["group", *results.all_factors]
+    found: list[dict[str, Any]] = []
+    for given, rows in _patterns(beside.of(measure), keys):
+        model = {tuple(row[name] for name in given): row["mean"] for row in cell_means(results.rows, measure, given).to_dict("records")}
+        for row in rows:
+            place = tuple(row[name] for name in given)
+            if place in model:
+                found.append({**{name: row[name] for name in keys}, "model": model[place], "beside": row["mean"]})
+    return pandas().DataFrame(found, columns=[*keys, "model", "beside"])
+
+
+def fit_to(results: Results, beside: Beside, measures: Sequence[str]) -> Any:
+    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have."""
+    found: list[dict[str, Any]] = []
+    for measure in measures:
+        cells = matched(results, beside, measure)
+        if len(cells):
+            rmse, r2 = agreement(cells["model"], cells["beside"])
+            difference = float((cells["model"] - cells["beside"]).mean())
+            unit = results.unit(measure)
+            row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells)}
+            found.append({**row, "mean_difference": difference, "rmse": rmse, "r2": r2})
+    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "mean_difference", "rmse", "r2"])
+
+
+def missing(value: Any) -> bool:
+    """Returns whether a group or level is not given: the mean is one over all."""
+    return value is None or (isinstance(value, float) and math.isnan(value))
+
+
+def _patterns(frame: Any, keys: Sequence[str]) -> Iterator[tuple[list[str], list[dict[str, Any]]]]:
+    """Yields the rows of a frame by the names of the keys that they give."""
+    found: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    for row in frame.to_dict("records"):
+        found.setdefault(tuple(name for name in keys if not missing(row[name])), []).append(row)
+    yield from ((list(given), rows) for given, rows in found.items())

@@ -1,0 +1,94 @@
+"""The command `actr3d report`: writes the report of an experiment into its folder."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.report.analyses import find_analyses
+from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
+from actr3d.experiment.report.figures import png, svg
+from actr3d.experiment.report.general import comparison_section, human_section, measure_sections, what_was_run
+from actr3d.experiment.report.page import page
+from actr3d.experiment.report.parts import Plot, Section, Table
+from actr3d.experiment.report.results import Results, read_results
+
+REPORT, PAGE = "report", "index.html"
+"""The folder of a report in that of the experiment, and the name of its page."""
+DIGITS = "%.8g"
+"""The format of numbers in tables: more digits would depend on the processor."""
+
+
+def write_report(folder: Path | str, *, human: Path | str | None = None, compare: Path | str | None = None) -> Path:
+    """Writes the report of an experiment, and returns its page.
+
+    The folder `report` of the experiment has the page `index.html`, `figures/NAME.svg` and `.png`, and `tables/NAME.csv`; an earlier
+    report there is replaced.
+
+    Args:
+        folder: The folder of the experiment.
+        human: A file of human data; None for those that the design names. See `actr3d.experiment.human_data`.
+        compare: The folder of another experiment to show beside this one.
+
+    Raises:
+        ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
+    """
+    results = read_results(folder)
+    data, why = human_data_of(results, human)
+    people = None if data is None else beside_people(data, results)
+    other = None if compare is None else read_results(compare)
+    beside = None if other is None else beside_experiment(other, results)
+    others: list[Beside] = [one for one in (people, beside) if one is not None]
+    sections = [what_was_run(results)]
+    for one in find_analyses().values():
+        if one.columns <= set(results.rows.columns):
+            sections += one.make(results, others)
+    sections.append(human_section(results, data, why, people))
+    if other is not None:
+        sections.append(comparison_section(results, other, beside))
+    sections += measure_sections(results, others)
+    return _write(Path(folder), results, sections)
+
+
+def _write(folder: Path, results: Results, sections: Sequence[Section]) -> Path:
+    """Writes all files into a new folder, which then replaces the earlier report."""
+    final, part = folder / REPORT, folder / f"{REPORT}.part"
+    try:
+        if final.exists() and any(final.iterdir()) and not (final / PAGE).exists():
+            raise ExperimentError(f"'{final}' is not a report; move it away")
+        shutil.rmtree(part, ignore_errors=True)
+        for inner in ("figures", "tables"):
+            (part / inner).mkdir(parents=True)
+        drawings: dict[str, str] = {}
+        for item in (item for section in sections for item in section.parts):
+            match item:
+                case Plot():
+                    drawings[item.name] = svg(item.figure)
+                    (part / "figures" / f"{item.name}.svg").write_text(drawings[item.name], encoding="utf-8")
+                    (part / "figures" / f"{item.name}.png").write_bytes(png(item.figure))
+                case Table():
+                    item.frame.to_csv(part / "tables" / f"{item.name}.csv", index=False, float_format=DIGITS, lineterminator="\n")
+                case _:
+                    pass
+        (part / PAGE).write_text(_page(results, sections, drawings), encoding="utf-8")
+        if final.exists():
+            shutil.rmtree(final)
+        part.replace(final)
+    except OSError as error:
+        raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error})") from None
+    return final / PAGE
+
+
+def _page(results: Results, sections: Sequence[Section], drawings: dict[str, str]) -> str:
+    count: Callable[[int], str] = "{:,}".format
+    people = sum(group.participants for group in results.design.groups.values())
+    facts = {
+        "participants": count(people),
+        "trials": count(len(results.rows) + len(results.failures)),
+        "failed": count(len(results.failures)),
+        "cells of each participant": count(len(results.design.cells)),
+    }
+    first = " ".join(results.description.partition("\n\n")[0].split())
+    return page(results.specification.name, first, facts, sections, drawings)

@@ -1,0 +1,220 @@
+"""Figures of reports: curves with intervals in panels, and their SVG and PNG files.
+
+Figures are made without pyplot, so that nothing is kept between two of them. The same data give the same files. Colours are those of
+Okabe & Ito (2008), which colour-blind readers can distinguish; each also has its own marker.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from actr3d.experiment.report.libraries import matplotlib
+
+INK, MUTED, GRID, PAPER = "#1b2430", "#5b6675", "#dde2e8", "#fffffe"
+COLOURS = ("#0072b2", "#c44e00", "#007a5e", "#a3528f", "#8a6d00", "#3f7fbf")
+MARKERS = ("o", "s", "^", "D", "v", "P")
+VARIABLES = {INK: "--ink", MUTED: "--muted", GRID: "--line", PAPER: "--paper"} | {c: f"--c{n}" for n, c in enumerate(COLOURS)}
+"""Colours that the page replaces by variables of its style, which differ between light and dark."""
+STYLE: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 10,
+    "text.color": INK,
+    "axes.edgecolor": MUTED,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 10.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.8,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "figure.facecolor": PAPER,
+    "axes.facecolor": PAPER,
+    "savefig.facecolor": PAPER,
+    "legend.frameon": False,
+    "legend.fontsize": 9.5,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "actr3d",
+}
+Look = Literal["model", "points", "human", "other", "baseline"]
+"""`model`: the experiment of the report; `points`: the same without a line; `human`: people;
+`other`: another experiment or model; `baseline`: what any model must beat."""
+LOOKS: dict[str, dict[str, Any]] = {
+    "model": {"linestyle": "-", "linewidth": 1.8, "markersize": 5.5},
+    "points": {"linestyle": "none", "markersize": 6},
+    "human": {"linestyle": "none", "markersize": 8.5, "markeredgewidth": 1.6, "hollow": True},
+    "other": {"linestyle": "--", "linewidth": 1.2, "markersize": 5.5, "markeredgewidth": 1.2, "hollow": True},
+    "baseline": {"linestyle": ":", "linewidth": 1.6, "marker": ""},
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """Values over x, with intervals."""
+
+    label: str
+    """What its colour stands for, such as a group; empty for all groups together."""
+    source: str
+    """Whose values they are, such as `model` or `original ACT-R 3D`."""
+    look: Look
+    x: Sequence[float]
+    y: Sequence[float]
+    low: Sequence[float] | None = None
+    high: Sequence[float] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pane:
+    """One pair of axes."""
+
+    title: str
+    curves: Sequence[Curve]
+    band: tuple[float, float, str] | None = None
+    """A band of x that is shaded, and what it is."""
+    level: tuple[float, float, str] | None = None
+    """A band of y that is shaded, and what it is."""
+
+
+def curves_figure(
+    panes: Sequence[Pane], x_label: str, y_label: str, *, ticks: Sequence[tuple[float, str]] = (), from_zero: bool = False
+) -> Any:
+    """Returns a figure with a row of panes that share their axes.
+
+    Args:
+        panes: The panes.
+        x_label: The name of x, with its unit.
+        y_label: The name of y, with its unit.
+        ticks: Places on x with their texts; empty to choose them.
+        from_zero: Whether y begins at 0.
+    """
+    labels = list(dict.fromkeys(curve.label for pane in panes for curve in pane.curves if curve.label))
+    columns = min(len(panes), 2)
+    rows = math.ceil(len(panes) / columns)
+    figure = new_figure(8.6 if columns > 1 else 6.4, 0.7 + 3.1 * rows)
+    with matplotlib().rc_context(STYLE):
+        axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        for place, ax in enumerate(axes.flat):
+            if place >= len(panes):
+                ax.remove()
+                continue
+            pane = panes[place]
+            ax.set_title(pane.title)
+            _shade(ax, pane)
+            for curve in pane.curves:
+                _draw(ax, curve, labels.index(curve.label) if curve.label else None, len(labels))
+            if ticks:
+                ax.set_xticks([at for at, _ in ticks], [text for _, text in ticks])
+            if place + columns >= len(panes):
+                ax.set_xlabel(x_label)
+                ax.tick_params(labelbottom=True)
+            if place % columns == 0:
+                ax.set_ylabel(y_label)
+        if from_zero:
+            axes.flat[0].set_ylim(bottom=min(0.0, *axes.flat[0].get_ylim()))
+        _legend(figure, panes, labels)
+    return figure
+
+
+def new_figure(width: float, height: float) -> Any:
+    """Returns an empty figure in the style of reports; its size is in inches."""
+    with matplotlib().rc_context(STYLE):
+        return matplotlib("figure").Figure(figsize=(width, height), layout="constrained")
+
+
+def _shade(ax: Any, pane: Pane) -> None:
+    if pane.band is not None:
+        low, high, _ = pane.band
+        ax.axvspan(low, high, color=MUTED, alpha=0.16, linewidth=0)
+    if pane.level is not None:
+        low, high, _ = pane.level
+        ax.axhspan(low, high, color=MUTED, alpha=0.16, linewidth=0)
+
+
+def _draw(ax: Any, curve: Curve, number: int | None, of: int) -> None:
+    look = dict(LOOKS[curve.look])
+    colour = INK if number is None else COLOURS[number % len(COLOURS)]
+    marker = "D" if number is None else MARKERS[number % len(MARKERS)]
+    hollow = look.pop("hollow", False)
+    look = {"marker": marker, "markerfacecolor": PAPER if hollow else colour, "markeredgecolor": colour, **look}
+    x = list(curve.x)
+    if curve.look == "model" and number is not None and of > 1 and len(x) > 1:  # intervals of two curves must not cover each other
+        step = 0.012 * (max(x) - min(x))
+        x = [value + step * (number - (of - 1) / 2) for value in x]
+    ax.plot(x, curve.y, color=colour, zorder=2 if curve.look in ("baseline", "other") else 3, **look)
+    if curve.low is not None and curve.high is not None:
+        solid = [n for n in range(len(x)) if math.isfinite(curve.low[n]) and math.isfinite(curve.high[n])]
+        lower, upper = [curve.low[n] for n in solid], [curve.high[n] for n in solid]
+        ax.vlines([x[n] for n in solid], lower, upper, color=colour, linewidth=1.3, zorder=2.5)
+
+
+def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
+    """Adds the legend above the panes: a colour for each label, a style for each source."""
+    line = matplotlib("lines").Line2D
+    patch = matplotlib("patches").Patch
+    handles: list[Any] = []
+    for number, label in enumerate(labels):
+        colour = COLOURS[number % len(COLOURS)]
+        handles.append(line([], [], color=colour, linewidth=1.8, marker=MARKERS[number % len(MARKERS)], markersize=5.5, label=label))
+    sources = dict.fromkeys((curve.source, curve.look) for pane in panes for curve in pane.curves)
+    if len(sources) > 1:
+        for source, name in sources:
+            look = dict(LOOKS[name])
+            hollow = look.pop("hollow", False)
+            face = PAPER if hollow else INK
+            look = {"marker": "D" if name == "human" else "o", "markerfacecolor": face, "markeredgecolor": INK, **look}
+            handles.append(line([], [], color=INK, label=source, **look))
+    bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
+    handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]
+    if handles:
+        wide = figure.get_figwidth() * 14  # characters in a row; a handle takes the place of six
+        rows = math.ceil(sum(len(str(handle.get_label())) + 6 for handle in handles) / wide)
+        columns = math.ceil(len(handles) / rows)
+        figure.legend(handles=handles, loc="outside upper left", ncols=columns, borderaxespad=0.2, columnspacing=1.6, handlelength=2.2)
+
+
+def png(figure: Any) -> bytes:
+    """Returns a figure as a PNG file."""
+    out = io.BytesIO()
+    with matplotlib().rc_context(STYLE):
+        figure.savefig(out, format="png", dpi=160, metadata={"Software": None})
+    return out.getvalue()
+
+
+def svg(figure: Any) -> str:
+    """Returns a figure as an SVG file, whose texts are texts."""
+    out = io.StringIO()
+    with matplotlib().rc_context(STYLE):
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+    return out.getvalue()
+
+
+def inline_svg(text: str, name: str, title: str) -> str:
+    """Returns an SVG file as an element of a page: with the colours of the page, and ids of its own.
+
+    Args:
+        text: The file.
+        name: A name that no other figure of the page has.
+        title: Its name for readers who do not see it.
+    """
+    body = text[text.index("<svg") :]
+    for colour, variable in VARIABLES.items():
+        body = body.replace(colour, f"var({variable})")
+    body = re.sub(r"<metadata>.*?</metadata>\s*|<defs>\s*<style.*?</defs>\s*", "", body, flags=re.DOTALL)
+    body = re.sub(r"\bid=\"", f'id="{name}-', body)
+    body = re.sub(r"url\(#", f"url(#{name}-", body)
+    body = re.sub(r"href=\"#", f'href="#{name}-', body)
+    body = re.sub(r"font: ((?:bold |\d+ )*)([\d.]+)px [^;\"]*", r"font-size: \2px; font-weight: \1", body)
+    body = re.sub(r"; font-weight: (?=[;\"])|font-family: [^;\"]*;? ?", "", body)
+    label = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    return re.sub(r"<svg [^>]*?viewBox=\"([^\"]*)\"[^>]*>", f'<svg viewBox="\\1" role="img" aria-label="{label}">', body, count=1)

@@ -1,0 +1,293 @@
+"""The sections that every report has: what was run, failures, human data, and each measure with its figure, means and tests."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from actr3d.experiment.human_data import HumanData
+from actr3d.experiment.report.beside import Beside, fit_to, matched, missing
+from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
+from actr3d.experiment.report.libraries import pandas, versions
+from actr3d.experiment.report.parts import Caution, Plot, Section, Table
+from actr3d.experiment.report.results import Results, plain_text
+from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, participant_means, tests_of
+
+MOST_PANES = 6
+"""A factor with more levels than this makes no panes of a figure."""
+MOST_KINDS = 20
+"""A measure with more different texts than this is not counted."""
+TAIL = 700
+"""The characters of a failure's message that the page shows: its end."""
+
+
+def what_was_run(results: Results) -> Section:
+    """Returns the section on design, model, participants and trials."""
+    design, specification, pd = results.design, results.specification, pandas()
+    rows = [("design", specification.name), ("model", specification.model.file)]
+    rows += [(f"factor {name}", ", ".join(map(plain_text, levels)) + _unit(results, name)) for name, levels in design.factors.items()]
+    for name, group in design.groups.items():
+        drawn = "; ".join(f"{key} = {value!r}" for key, value in group.parameters.items())
+        rows.append((f"group {name}", f"{group.participants} participants{': ' + drawn if drawn else ''}"))
+    rows += [(f"setting {name}", repr(value)) for name, value in design.settings.items()]
+    rows += [(f"changed {name}", repr(value)) for name, value in specification.values.items()]
+    rows += [("trials of each cell", f"{design.trials:,} by each participant"), ("order", design.order), ("seed", str(design.seed))]
+    rows += [("versions", text) for text in results.versions]
+    rows.append(("analysed with", versions()))
+    table = Table(name="design", title="Design", frame=pd.DataFrame(rows, columns=["what", "value"]))
+    parts: list[str | Table | Plot | Caution] = [*(text for text in results.description.split("\n\n")[1:]), *cautions(results), table]
+    if len(results.failures):
+        parts.append(failures(results))
+    return Section(title="What was run", parts=parts)
+
+
+def cautions(results: Results) -> list[Caution]:
+    """Returns what a reader must not overlook: trials that are missing, few participants, versions that changed."""
+    total, done = len(results.design), len(results.rows) + len(results.failures)
+    found: list[str] = []
+    if done < total:
+        found.append(f"Only {done:,} of {total:,} trials have finished; all numbers are preliminary.")
+    if len(results.failures):
+        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are in no mean.")
+    least = min(group.participants for group in results.design.groups.values())
+    if least < FEWEST:
+        many = "one participant" if least == 1 else f"{least} participants"
+        found.append(f"A group has {many}. With fewer than {FEWEST} nothing can be said about other participants: nothing is tested.")
+    elif least < FEW:
+        found.append(f"A group has {least} participants. With fewer than {FEW}, bootstrap intervals are too narrow.")
+    if len(results.versions) > 1:
+        found.append(f"The trials were run with {len(results.versions)} different sets of versions.")
+    return [Caution(text) for text in found]
+
+
+def failures(results: Results) -> Table:
+    """Returns the table of failures: how many trials ended with each message, and one of them."""
+    frame = results.failures.copy()
+    frame["message"] = [text.strip() if len(text.strip()) <= TAIL else f"… {text.strip()[-TAIL:]}" for text in frame["error"]]
+    groups = frame.groupby(["end", "message"], sort=False)
+    found = [
+        {"trials": len(of), "end": end, "first_trial": int(of["trial"].min()), "participants": of["participant"].nunique(), "message": text}
+        for (end, text), of in groups
+    ]
+    table = pandas().DataFrame(found).sort_values(["trials", "first_trial"], ascending=[False, True])
+    note = "Run one of them again: actr3d experiment FOLDER --trial ID --record FILE"
+    return Table(name="failures", title="Failures", frame=table, note=note)
+
+
+def human_section(results: Results, data: HumanData | None, why: str, beside: Beside | None) -> Section:
+    """Returns the section on human data: what there is, where it is from, and how well the model agrees with it."""
+    if data is None or beside is None:
+        return Section(title="Human data", parts=[why, "No human mean is invented: figures without people show the model only."])
+    kind = "published means" if data.published else "trials of people"
+    parts: list[str | Table | Plot | Caution] = [f"{data.name}: {len(data.rows):,} rows of {kind}.", *(f"{note}" for note in data.notes)]
+    if data.published:
+        parts += [f"Source: {source}" for source in data.sources]
+        parts.append("Intervals of published means follow from their SD and n (t distribution); means without these have none.")
+    fit = fit_to(results, beside, data.measures)
+    without = [name for name in results.measures if name not in data.measures]
+    if len(fit):
+        note = "Agreement of the means of all cells that both have. A model must be compared with a baseline, too."
+        parts.append(Table(name="fit_to_people", title="Agreement with people", frame=fit, note=note, hidden=["beside"]))
+        parts.append(_matched_table(results, [beside], data.measures, "means_beside_people", "Means beside those of people"))
+    if without:
+        parts.append(f"No human data for: {', '.join(without)}.")
+    return Section(title="Human data", parts=parts)
+
+
+def comparison_section(results: Results, other: Results, beside: Beside | None) -> Section:
+    """Returns the section that compares two experiments."""
+    title = f"Compared with {other.label}"
+    if beside is None:
+        return Section(title=title, parts=[Caution(f"{other.label} has no measure in common with {results.label}.")])
+    one, two = results.specification, other.specification
+    different = [name for name in ("design", "model") if getattr(one, name) != getattr(two, name)]
+    changed = [f"{name} = {two.values.get(name)!r} (here {one.values.get(name)!r})" for name in sorted({*one.values, *two.values})]
+    changed = [text for name, text in zip(sorted({*one.values, *two.values}), changed, strict=True) if _differs(name, one, two)]
+    text = (
+        f"{other.label} ({two.name}, {len(other.rows):,} trials) differs in: {', '.join([*different, *changed]) or 'nothing that was set'}."
+    )
+    fit = fit_to(results, beside, results.measures)
+    parts: list[str | Table | Plot | Caution] = [text]
+    if len(fit):
+        parts.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
+        parts.append(_matched_table(results, [beside], results.measures, "means_beside_other", f"Means beside those of {other.label}"))
+    return Section(title=title, parts=parts)
+
+
+def _differs(name: str, one: Any, two: Any) -> bool:
+    return one.values.get(name) != two.values.get(name)
+
+
+def _matched_table(results: Results, others: Sequence[Beside], measures: Sequence[str], name: str, title: str) -> Table:
+    pieces = [
+        matched(results, other, measure).assign(measure=measure).rename(columns={"beside": other.label.replace(" ", "_")})
+        for other in others
+        for measure in measures
+    ]
+    frame = pandas().concat([piece for piece in pieces if len(piece)], ignore_index=True)
+    first = ["measure", "group", *results.all_factors]
+    return Table(name=name, title=title, frame=frame[[*first, *(c for c in frame if c not in first)]], folded=True)
+
+
+def measure_sections(results: Results, others: Sequence[Beside]) -> list[Section]:
+    """Returns a section for each measure, and one that explains what all measures show."""
+    note = (
+        "Means are of participants: first the trials of a participant in a cell are averaged, then the participants. Intervals are 95 % "
+        f"percentile bootstrap intervals over participants ({RESAMPLES:,} samples, seed {SEED}). The tests describe the simulated sample: "
+        "with more simulated participants, any difference becomes significant, so read the effect sizes. They are not corrected for the "
+        "number of measures."
+    )
+    found = [Section(title="All measures", parts=[note, *_outcomes(results)])]
+    return found + [_measure_section(results, name, others) for name in results.measures]
+
+
+def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
+    """Returns a table for each measure that is a text: how many trials had each."""
+    found: list[str | Table | Plot | Caution] = []
+    for name in results.outcomes:
+        by = [key for key in ("group",) if len(results.groups) > 1]
+        rows = results.rows[[*by, name]].fillna({name: "none"})
+        if rows[name].nunique() <= MOST_KINDS:
+            counts = rows.groupby([*by, name], observed=True).size().rename("trials").reset_index()
+            found.append(Table(name=f"counts_{name}", title=f"Trials by {name.replace('_', ' ')}", frame=counts))
+    return found
+
+
+def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -> Section:
+    unit, meaning = results.unit(measure), results.columns[measure].meaning if measure in results.columns else ""
+    by = [*(["group"] if len(results.groups) > 1 else []), *results.factors]
+    means = cell_means(results.rows, measure, by)
+    means = means.assign(measure=measure, unit=unit)[[*by, "measure", "unit", "mean", "sd", "low", "high", "n", "trials"]]
+    lost = int(results.rows[measure].isna().sum())
+    parts: list[str | Table | Plot | Caution] = [meaning] if meaning else []
+    if lost:
+        parts.append(f"{lost:,} of {len(results.rows):,} trials have no value.")
+    figure, note = figure_of(results, measure, others)
+    if figure is not None:
+        parts.append(Plot(name=f"measure_{measure}", title=f"{results.name_with_unit(measure)} by cell", figure=figure, note=note))
+    units = dict.fromkeys(("mean", "sd", "low", "high"), unit) | {name: results.unit(name) for name in by}
+    note = "sd: between participants; low, high: 95 % interval; n: participants."
+    table = Table(
+        name=f"means_{measure}", title="Means", frame=means, units=units, hidden=("measure", "unit"), note=note, folded=len(means) > 12
+    )
+    parts += [table, *_participants(results, measure, unit), *test_parts(tests_of(results, measure), measure)]
+    return Section(title=results.name_with_unit(measure), parts=parts, folded=True)
+
+
+def _participants(results: Results, measure: str, unit: str) -> list[Table]:
+    """Returns the table of the means of each participant, over all cells."""
+    frame = participant_means(results.rows, measure, []).rename(columns={"value": "mean"})
+    return [Table(name=f"participants_{measure}", title="Participants", frame=frame, units={"mean": unit}, folded=True)]
+
+
+def test_parts(tests: Tests, measure: str) -> list[str | Table | Plot | Caution]:
+    """Returns tests as parts of a section."""
+    parts: list[str | Table | Plot | Caution] = []
+    if tests.anova is not None:
+        note = (
+            "One factor within participants at a time, averaged over others; p corrected: Greenhouse-Geisser. Differences: an effect on "
+            "the difference between two levels is an interaction with them."
+        )
+        parts.append(Table(name=f"anova_{measure}", title="Analysis of variance", frame=tests.anova, note=note))
+    if tests.mixed_model is not None:
+        note = "Linear mixed model of the means of participants, all effects crossed, random intercept of participants; Wald tests."
+        parts.append(Table(name=f"mixed_model_{measure}", title="Mixed model", frame=tests.mixed_model, note=note))
+    if tests.assumptions is not None and len(tests.assumptions):
+        parts.append(Table(name=f"assumptions_{measure}", title="Assumptions", frame=tests.assumptions))
+    return [*parts, *tests.notes]
+
+
+# -- the figure of a measure
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layout:
+    """What the axes, colours and panes of a figure show."""
+
+    x: str
+    curves: str | None
+    panes: Sequence[str]
+    averaged: Sequence[str]
+    """Factors that the figure averages over."""
+
+
+def layout_of(results: Results) -> Layout | None:
+    """Returns the layout of the figures of an experiment: x is the factor with the most levels, numbers before texts; the groups, or
+    the next factor, are curves; other factors are panes, as long as there are few. Returns None if there is nothing to lay out."""
+    factors = results.factors
+    order = sorted(factors, key=lambda name: (isinstance(factors[name][0], str), -len(factors[name])))
+    grouped = ["group"] if len(results.groups) > 1 else []
+    left = [*order[1:]] if order else []
+    if not order:
+        return Layout(x="group", curves=None, panes=(), averaged=()) if grouped else None
+    curves = "group" if grouped else left.pop(0) if left else None
+    panes: list[str] = []
+    while left and np.prod([len(factors[name]) for name in [*panes, left[0]]]) <= MOST_PANES:
+        panes.append(left.pop(0))
+    return Layout(x=order[0], curves=curves, panes=panes, averaged=left)
+
+
+def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple[Any, str]:
+    """Returns the figure of a measure, and a note; None if there is only one cell."""
+    layout = layout_of(results)
+    if layout is None:
+        return None, ""
+    levels: dict[str, Sequence[Any]] = {**results.all_factors, "group": results.groups}
+    by = [name for name in (*layout.panes, layout.curves, layout.x) if name is not None]
+    places: dict[Any, float] = {level: float(n) for n, level in enumerate(levels[layout.x]) if isinstance(level, str)}
+    sources: list[tuple[str, Look, Any]] = [("model", "model", cell_means(results.rows, measure, by))]
+    for one in others:
+        sources.append((one.label, one.look, _averaged(one, measure, by, results)))  # noqa: PERF401 - pyright infers other types
+    panes: list[Pane] = []
+    for cell in itertools.product(*(levels[name] for name in layout.panes)):
+        here = dict(zip(layout.panes, cell, strict=True))
+        curves = [curve for source in sources for curve in _curves(source, here, layout, levels, places)]
+        title = ", ".join(f"{name.replace('_', ' ')} {plain_text(level)}{_unit(results, name)}" for name, level in here.items())
+        panes.append(Pane(title=title, curves=curves))
+    ticks = [(place, str(level)) for level, place in places.items()]
+    figure = curves_figure(panes, results.name_with_unit(layout.x), results.name_with_unit(measure), ticks=ticks)
+    note = "Means of participants with 95 % bootstrap intervals."
+    if layout.averaged:
+        note += f" Averaged over: {', '.join(layout.averaged)}."
+    return figure, note
+
+
+def _curves(
+    source: tuple[str, Look, Any],
+    here: Mapping[str, Any],
+    layout: Layout,
+    levels: Mapping[str, Sequence[Any]],
+    places: Mapping[Any, float],
+) -> list[Curve]:
+    """Returns the curves of one source in one pane: one for each level, and one of the means over all levels."""
+    label, look, frame = source
+    name, found = layout.curves, list[Curve]()
+    rows = [row for row in frame.to_dict("records") if all(missing(row[key]) or row[key] == level for key, level in here.items())]
+    rows = [row for row in rows if not missing(row[layout.x])]
+    for level in [None] if name is None else [*levels[name], None]:
+        of = [row for row in rows if name is None or (missing(row[name]) if level is None else row[name] == level)]
+        points = sorted((float(places.get(row[layout.x], row[layout.x])), row["mean"], row["low"], row["high"]) for row in of)
+        if points:
+            x, y, low, high = (list(values) for values in zip(*points, strict=True))
+            text = "" if name is None or level is None else level if name == "group" else f"{name.replace('_', ' ')} {plain_text(level)}"
+            found.append(Curve(label=text, source=label, look=look, x=x, y=y, low=low, high=high))
+    return found
+
+
+def _averaged(beside: Beside, measure: str, by: Sequence[str], results: Results) -> Any:
+    """Returns the means of another source for a figure: those of cells that the figure averages over are averaged, without intervals."""
+    rows = beside.of(measure)
+    over = [name for name in ("group", *results.all_factors) if name not in by and rows[name].notna().any()]
+    if not any(rows[name].nunique() > 1 for name in over):
+        return rows
+    means = rows.groupby(list(by), dropna=False, observed=True)["mean"].mean().reset_index()
+    return means.assign(low=float("nan"), high=float("nan"))
+
+
+def _unit(results: Results, name: str) -> str:
+    unit = results.unit(name)
+    return f" {unit}" if unit else ""

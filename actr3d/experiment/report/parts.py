@@ -1,0 +1,58 @@
+"""The parts of a report: sections with text, tables and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A table, on the page and as a CSV file."""
+
+    name: str
+    """The name of the file, without its ending."""
+    title: str
+    frame: Any
+    """A `pandas.DataFrame`; its columns are those of the file."""
+    note: str = ""
+    """What a reader has to know."""
+    units: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Units of columns; they stand in the head of the table on the page."""
+    digits: Mapping[str, int] = field(default_factory=dict[str, int])
+    """Decimals of columns on the page; others have three significant digits."""
+    hidden: Sequence[str] = ()
+    """Columns that only the file has."""
+    folded: bool = False
+    """Whether the page shows it only after a click."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plot:
+    """A figure, on the page and as PNG and SVG files."""
+
+    name: str
+    """The name of the files, without their ending."""
+    title: str
+    figure: Any
+    """A `matplotlib.figure.Figure`."""
+    note: str = ""
+    """What a reader has to know."""
+
+
+@dataclass(frozen=True)
+class Caution:
+    """A text that a reader must not overlook."""
+
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """A part of a report with a title; texts are paragraphs."""
+
+    title: str
+    parts: Sequence[str | Table | Plot | Caution]
+    folded: bool = False
+    """Whether the page shows its parts only after a click."""

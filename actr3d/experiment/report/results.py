@@ -1,0 +1,166 @@
+"""The results of an experiment, as they are analysed."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.design import OWN_COLUMNS, Design
+from actr3d.experiment.report.libraries import pandas
+from actr3d.experiment.specification import Experiment, Specification
+from actr3d.experiment.store import CHUNK, Column, Store
+
+NUMBERS = ("boolean", "integer", "real")
+"""The types of columns that are analysed as numbers."""
+ENDINGS = {"degrees": "_deg", "m/s": "_m_s"}
+"""The endings of names of columns by units, where they are not the unit."""
+SHORT = {"r2": "r²", "rmse": "RMSE", "aic": "AIC", "sd": "SD", "chi2": "χ²"}
+"""Names of statistics as they are written."""
+LEFT_OUT = ("seed", "wall_s", "worker", "position")
+"""Columns that no analysis needs."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Results:
+    """The trials of an experiment, with what is known of them."""
+
+    label: str
+    """The name of the folder."""
+    description: str
+    """The docstring of the design."""
+    specification: Specification
+    design: Design
+    columns: Mapping[str, Column]
+    """What is known of each column of `rows`."""
+    rows: Any
+    """A `pandas.DataFrame` of the trials that did not fail, sorted by group, participant, the factors, and number."""
+    failures: Any
+    """A `pandas.DataFrame` of the trials that failed: `trial`, `participant`, `group`, the factors, `end` and `error`."""
+    versions: Sequence[str]
+    """The versions of the packages that ran the trials; more than one if they changed meanwhile."""
+    measures: Sequence[str]
+    """The measures that are numbers; switches count as 1 and 0, so that their means are proportions."""
+    outcomes: Sequence[str]
+    """The measures that are texts."""
+
+    @property
+    def factors(self) -> dict[str, list[float] | list[str]]:
+        """The factors with more than one level, and their levels as they are in `rows`: all of them numbers, or all texts."""
+        return {name: levels for name, levels in self.all_factors.items() if len(levels) > 1}
+
+    @property
+    def all_factors(self) -> dict[str, list[float] | list[str]]:
+        """All factors of the design, also those with one level, with their levels as in `factors`."""
+        return {name: plain_levels(levels) for name, levels in self.design.factors.items()}
+
+    @property
+    def groups(self) -> list[str]:
+        """The names of the groups."""
+        return list(self.design.groups)
+
+    def unit(self, column: str) -> str:
+        """Returns the unit of a column; empty if it has none, or none is known."""
+        known = self.columns.get(column)
+        return (known.unit or "") if known is not None else ""
+
+    def name_with_unit(self, column: str) -> str:
+        """Returns a name for axes: words instead of underscores, and the unit."""
+        return name_with_unit(column, self.unit(column))
+
+
+def name_with_unit(name: str, unit: str) -> str:
+    """Returns a name for axes: words instead of underscores, and the unit instead of an ending that is the same: `clearance left [m]`."""
+    base = name.removesuffix(ENDINGS.get(unit, f"_{unit.lower()}")) if unit else name
+    words = SHORT.get(base, base.replace("_", " "))
+    return f"{words} [{unit}]" if unit else words
+
+
+def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
+    """Returns the levels of a factor as numbers if all of them are numbers, else as texts."""
+    if all(isinstance(level, (int, float)) and not isinstance(level, bool) for level in levels):
+        return [float(level) for level in levels]
+    return [plain_text(level) for level in levels]
+
+
+def plain_text(value: Any) -> str:
+    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
+    if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
+        return value if isinstance(value, str) and value else "none"
+    return json.dumps(value) if isinstance(value, (list, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def read_results(folder: Path | str) -> Results:
+    """Reads the folder of an experiment.
+
+    Raises:
+        ExperimentError: If it holds no experiment, or no trial has finished.
+    """
+    with Store(folder) as store:
+        specification = store.specification
+        with specification.sealed() as helpers:
+            experiment = Experiment(specification, helpers)
+        columns = {column.name: column for column in store.columns}
+        design = experiment.design
+        texts = [name for name, levels in design.factors.items() if isinstance(plain_levels(levels)[0], str)]
+        frame = _frame(store, texts)
+    if frame is None:
+        raise ExperimentError(f"'{folder}': no trial has finished yet; run it with: actr3d experiment {folder} --resume")
+    frame = _sorted(frame, design)
+    failed = frame["error"].notna()
+    rows = frame[~failed].drop(columns=["error", "versions"]).reset_index(drop=True)
+    about = [name for name in ("trial", "participant", "group", *design.factors, "end", "error") if name in frame]
+    failures = frame.loc[failed, about].reset_index(drop=True)
+    if not len(rows):
+        first = str(failures["error"].iloc[0]).strip().splitlines()[-1]
+        raise ExperimentError(f"'{folder}': all {len(failures):,} trials failed; the first one with: {first}")
+    of_design = {*design.trial(0).columns, *OWN_COLUMNS}
+    kinds = {name: columns[name].type for name in rows if name in columns and name not in of_design}
+    return Results(
+        label=Path(folder).resolve().name,
+        description=experiment.description,
+        specification=specification,
+        design=design,
+        columns=columns,
+        rows=rows,
+        failures=failures,
+        versions=sorted(frame["versions"].unique()),
+        measures=[name for name, kind in kinds.items() if kind in NUMBERS and rows[name].notna().any()],
+        outcomes=[name for name, kind in kinds.items() if kind == "text"],
+    )
+
+
+def _sorted(frame: Any, design: Design) -> Any:
+    """Returns the rows sorted by group, participant and factors, each in the order of the design, and by the number of the trial."""
+    orders: dict[str, list[Any]] = {"group": list(design.groups), "participant": [one.name for one in design.participants]}
+    orders |= {name: list(plain_levels(levels)) for name, levels in design.factors.items() if name in frame}
+
+    def rank(column: Any) -> Any:
+        order = orders.get(column.name)
+        return column if order is None else column.map({value: number for number, value in enumerate(order)})
+
+    return frame.sort_values([*orders, "trial"], key=rank, kind="stable", ignore_index=True)
+
+
+def _frame(store: Store, texts: Sequence[str]) -> Any:
+    """Returns all rows as a `pandas.DataFrame`; None if there are none. Numbers are `float64`, also switches among the measures.
+
+    Args:
+        store: The folder of the experiment.
+        texts: The factors whose levels are texts.
+    """
+    pd, rows = pandas(), store.rows()
+    kinds = {column.name: "float64" if column.type in NUMBERS and column.name not in texts else "object" for column in store.columns}
+    pieces: list[Any] = []
+    while chunk := list(islice(rows, CHUNK)):  # in pieces, which need less memory than all rows as dictionaries
+        piece = pd.DataFrame.from_records(chunk, exclude=[name for name in LEFT_OUT if name in chunk[0]])
+        piece = piece.astype({name: kinds[name] for name in piece})
+        for name in texts:
+            piece[name] = pd.Series([plain_text(value) for value in piece[name]], dtype="object")
+        pieces.append(piece)
+    return pd.concat(pieces, ignore_index=True) if pieces else None

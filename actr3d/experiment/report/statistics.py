@@ -1,0 +1,280 @@
+"""Statistics of experiments with participants as the unit: means, bootstrap intervals, analyses of variance, mixed models."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actr3d.experiment.report.libraries import mixedlm, noting_warnings, pandas, pingouin
+from actr3d.experiment.report.results import Results
+
+RESAMPLES = 4_000
+"""The number of bootstrap samples."""
+SEED = 1987
+"""The seed of the bootstrap; the same for every report."""
+FEWEST = 3
+"""With fewer participants in a group, nothing is tested."""
+FEW = 10
+"""With fewer participants, bootstrap intervals are known to be too narrow."""
+LEVEL = 0.05
+"""The level of significance of the checks of assumptions."""
+NOTHING = 1e-12
+"""A standard deviation below this, relative to the values, is rounding."""
+
+
+@cache
+def _samples(n: int) -> NDArray[np.intp]:
+    """Returns the participants of each bootstrap sample, (RESAMPLES, n)."""
+    return np.random.default_rng([SEED, n]).integers(0, n, (RESAMPLES, n))
+
+
+def bootstrap_interval(values: Sequence[float]) -> tuple[float, float]:
+    """Returns the 95 % percentile interval of the mean over bootstrap samples of participants; NaN for fewer than two."""
+    given = np.asarray(values, dtype=float)
+    given = given[np.isfinite(given)]
+    if len(given) < 2:
+        return float("nan"), float("nan")
+    low, high = np.quantile(given[_samples(len(given))].mean(axis=1), (0.025, 0.975))
+    return float(low), float(high)
+
+
+def participant_means(rows: Any, measure: str, by: Sequence[str]) -> Any:
+    """Returns a `DataFrame` with the mean of each participant in each cell, `value`, and its number of trials, `trials`.
+
+    Args:
+        rows: The trials; those without a value are left out.
+        measure: The column with the values.
+        by: The columns whose values make a cell.
+    """
+    there = rows[rows[measure].notna()]
+    keys = ["participant", *(["group"] if "group" in rows else []), *(name for name in by if name != "group")]
+    return there.groupby(keys, sort=False, observed=True)[measure].agg(value="mean", trials="count").reset_index()
+
+
+def cell_means(rows: Any, measure: str, by: Sequence[str]) -> Any:
+    """Returns a `DataFrame` with a row for each cell: the mean of participants' means, with `sd`, `low`, `high`, `n` and `trials`.
+
+    Args:
+        rows: The trials.
+        measure: The column with the values.
+        by: The columns whose values make a cell; empty for one cell.
+    """
+    means = participant_means(rows, measure, by)
+    cells = means.groupby(list(by), sort=False, observed=True) if by else [((), means)]
+    found: list[dict[str, Any]] = []
+    for key, cell in cells:
+        values = cell["value"].to_numpy()
+        low, high = bootstrap_interval(values)
+        sd = float(np.std(values, ddof=1)) if len(values) > 1 else float("nan")
+        place = dict(zip(by, key, strict=True))
+        found.append({**place, "mean": float(values.mean()), "sd": sd, "low": low, "high": high, "n": len(values)})
+        found[-1]["trials"] = int(cell["trials"].sum())
+    return in_order(pandas().DataFrame(found, columns=[*by, "mean", "sd", "low", "high", "n", "trials"]), by, rows)
+
+
+def in_order(cells: Any, by: Sequence[str], rows: Any) -> Any:
+    """Returns cells sorted by columns: numbers by size, texts in the order in which the rows have them, which is that of the design."""
+    if not by or not len(cells):
+        return cells
+
+    def rank(column: Any) -> Any:
+        if str(column.dtype).startswith(("float", "int")):
+            return column
+        return column.map({value: number for number, value in enumerate(dict.fromkeys(rows[column.name]))})
+
+    return cells.sort_values(list(by), key=rank, kind="stable", ignore_index=True)
+
+
+def agreement(found: Sequence[float], target: Sequence[float]) -> tuple[float, float]:
+    """Returns the root mean square difference of two lists of means, and the squared correlation (NaN if one of them is constant)."""
+    one, other = np.asarray(found, dtype=float), np.asarray(target, dtype=float)
+    rmse = float(np.sqrt(np.mean((one - other) ** 2)))
+    if len(one) < 3 or np.ptp(one) == 0 or np.ptp(other) == 0:
+        return rmse, float("nan")
+    return rmse, float(np.corrcoef(one, other)[0, 1] ** 2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tests:
+    """The statistical tests of one measure; a table is None where the design does not allow it."""
+
+    anova: Any
+    mixed_model: Any
+    assumptions: Any
+    notes: Sequence[str]
+    """What was not tested, and why; what a library warned of."""
+
+
+def tests_of(results: Results, measure: str) -> Tests:
+    """Runs the tests that the design allows on the means of participants."""
+    pd, notes = pandas(), list[str]()
+    factors = list(results.factors)
+    grouped = len(results.groups) > 1
+    means = participant_means(results.rows, measure, factors)
+    cells = int(np.prod([len(levels) for levels in results.factors.values()]))
+    whole = means[means.groupby("participant", observed=True)["value"].transform("size") == cells]
+    lost = means["participant"].nunique() - whole["participant"].nunique()
+    sizes = whole.drop_duplicates("participant")["group"].value_counts() if len(whole) else pd.Series(dtype=int)
+    reason = ""
+    if not grouped and not factors:
+        reason = "the design has one group and no factor"
+    elif len(means) < 2 or np.std(means["value"]) <= NOTHING * max(1.0, float(np.abs(means["value"]).max())):
+        reason = "all means are the same"
+    elif len(sizes) < len(results.groups) or sizes.min() < FEWEST:
+        reason = f"a group has fewer than {FEWEST} participants with a value in every cell"
+    if reason:
+        return Tests(anova=None, mixed_model=None, assumptions=None, notes=[f"Not tested: {reason}."])
+    if lost:
+        notes.append(f"{lost} participants without a value in some cell are not part of the analysis of variance.")
+    anova: list[dict[str, Any]] = []
+    checks: list[dict[str, Any]] = []
+    with noting_warnings() as warned:
+        _analyse_variance(whole, results, anova, checks)
+        _check_assumptions(whole, factors, grouped, checks)
+        mixed = _mixed_model(means, factors, grouped, notes) if len(factors) + grouped > 1 else None
+    notes += [f"Note of a library: {text}" for text in warned if "etrying" not in text]
+    return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
+
+
+def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]], checks: list[dict[str, Any]]) -> None:
+    """Adds the rows of all analyses of variance: one factor within participants at a time, and pairs of them."""
+    pg, factors, grouped = pingouin(), list(results.factors), len(results.groups) > 1
+    if not factors:
+        found = pg.anova(data=_over(whole, []), dv="value", between="group", effsize="np2")
+        _add(anova, "between participants", found, {})
+    for factor in factors:
+        data = _over(whole, [factor])
+        if grouped:
+            found = pg.mixed_anova(
+                data=data, dv="value", within=factor, subject="participant", between="group", correction=True, effsize="ng2"
+            )
+            _add(anova, f"group × {factor}", found, {"Interaction": f"group × {factor}"})
+        else:
+            found = pg.rm_anova(data=data, dv="value", within=factor, subject="participant", correction=True, effsize="ng2")
+            _add(anova, factor, found, {})
+        if len(results.factors[factor]) > 2:
+            _add_sphericity(checks, factor, found)
+    for one, other in ((a, b) for a in factors for b in factors if a != b):
+        levels = results.factors[one]
+        if len(levels) != 2:
+            continue
+        # An interaction with a factor of two levels is an effect on the difference between them.
+        wide = _over(whole, [one, other]).pivot(index=["participant", "group", other], columns=one, values="value")
+        data = (wide[levels[1]] - wide[levels[0]]).rename("value").reset_index()
+        name = f"{_text(levels[1])} − {_text(levels[0])}"
+        if np.std(data["value"]) <= NOTHING:
+            continue
+        if grouped:
+            found = pg.mixed_anova(
+                data=data, dv="value", within=other, subject="participant", between="group", correction=True, effsize="ng2"
+            )
+            found = found[found["Source"] != "group"]  # the analysis of this factor has the same test
+            names = {other: f"{one} × {other}", "Interaction": f"group × {one} × {other}"}
+        else:
+            found = pg.rm_anova(data=data, dv="value", within=other, subject="participant", correction=True, effsize="ng2")
+            names = {other: f"{one} × {other}"}
+        _add(anova, f"differences {name}", found, names)
+
+
+def _over(whole: Any, factors: Sequence[str]) -> Any:
+    """Returns each participant's means over all factors but some."""
+    return whole.groupby(["participant", "group", *factors], sort=True, observed=True)["value"].mean().reset_index()
+
+
+def _add(anova: list[dict[str, Any]], of: str, found: Any, names: dict[str, str]) -> None:
+    """Adds the rows of one analysis of variance under common names of columns."""
+    for row in found.to_dict("records"):
+        if row["Source"] == "Residual" or not np.isfinite(row.get("F", np.nan)):
+            continue
+        effect = "ng2" if "ng2" in row else "np2"
+        corrected = row.get("p_GG_corr")
+        anova.append(
+            {
+                "analysis": of,
+                "effect": names.get(row["Source"], row["Source"]),
+                "df1": row.get("DF1", row.get("ddof1")),
+                "df2": row.get("DF2", row.get("ddof2")),
+                "F": row["F"],
+                "p": row["p_unc"],
+                "p_corrected": corrected if corrected is not None else np.nan,
+                "effect_size": row[effect],
+                "effect_size_is": "generalised η²" if effect == "ng2" else "partial η²",
+            }
+        )
+
+
+def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any) -> None:
+    row: dict[str, Any] = next((one for one in found.to_dict("records") if one["Source"] == factor), dict[str, Any]())
+    p = row.get("p_spher", np.nan)
+    # With fewer participants than levels the test of Mauchly cannot be computed; epsilon still can.
+    eps = row.get("eps", np.nan)
+    holds = "" if not np.isfinite(p) else "yes" if p >= LEVEL else "no: use the corrected p (Greenhouse-Geisser)"
+    checks.append(
+        {
+            "assumption": f"sphericity of {factor}",
+            "test": "Mauchly",
+            "statistic": row.get("W_spher", np.nan),
+            "p": p,
+            "holds": holds or f"cannot be tested with so few participants: use the corrected p (ε = {eps:.2f})",
+        }
+    )
+
+
+def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks: list[dict[str, Any]]) -> None:
+    """Adds the checks of normality, of the residuals of all cells, and of equal variances of the groups."""
+    pg = pingouin()
+    cell = [*(["group"] if grouped else []), *factors]
+    residuals = whole["value"] - whole.groupby(cell, observed=True)["value"].transform("mean") if cell else whole["value"]
+    # A participant counts once in each cell; with very many cells the test of Shapiro and Wilk takes 5,000 values at most.
+    sample = residuals.to_numpy()[:5000]
+    if np.std(sample) > NOTHING:
+        found = pg.normality(sample).iloc[0]
+        says = "yes" if found["pval"] >= LEVEL else "no: prefer the bootstrap intervals"
+        checks.append(
+            {"assumption": "normality of residuals", "test": "Shapiro-Wilk", "statistic": found["W"], "p": found["pval"], "holds": says}
+        )
+    if grouped:
+        found = pg.homoscedasticity(_over(whole, []), dv="value", group="group").iloc[0]
+        says = "yes" if found["pval"] >= LEVEL else "no: the groups differ in their spread"
+        checks.append(
+            {"assumption": "equal variances of groups", "test": "Levene", "statistic": found["W"], "p": found["pval"], "holds": says}
+        )
+
+
+def _mixed_model(means: Any, factors: Sequence[str], grouped: bool, notes: list[str]) -> Any:
+    """Returns the Wald tests of a linear mixed model with a random intercept for each participant; None if it cannot be fitted."""
+    names = [*(["group"] if grouped else []), *factors]
+    short = {name: f"f{number}" for number, name in enumerate(names)}
+    data = means[["participant", "value", *names]].rename(columns=short)
+    terms = " * ".join(f"C({name}, Sum)" for name in short.values())
+    try:
+        fitted = mixedlm()(f"value ~ {terms}", data, groups=data["participant"]).fit(reml=True)
+        tests = fitted.wald_test_terms(scalar=True).table
+    except (np.linalg.LinAlgError, ValueError) as error:
+        notes.append(f"The mixed model cannot be fitted: {error}.")
+        return None
+    found: list[dict[str, Any]] = []
+    for term, row in tests.iterrows():
+        if term == "Intercept":
+            continue
+        used = re.findall(r"C\((f\d+), Sum\)", str(term))
+        back = {code: name for name, code in short.items()}
+        found.append(
+            {"effect": " × ".join(back[code] for code in used), "chi2": row["statistic"], "df": row["df_constraint"], "p": row["pvalue"]}
+        )
+    between = float(np.sqrt(max(0.0, float(np.asarray(fitted.cov_re).ravel()[0]))))
+    notes.append(
+        f"Mixed model: random intercept of participants, SD {between:.3g}; residual SD {float(np.sqrt(fitted.scale)):.3g}"
+        + ("." if fitted.converged else "; the fit did not converge, so read it with care.")
+    )
+    return pandas().DataFrame(found)
+
+
+def _text(level: float | str) -> str:
+    return level if isinstance(level, str) else f"{level:g}"
