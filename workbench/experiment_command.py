@@ -80,7 +80,10 @@ class ExperimentCommand:
 
     @property
     def problem(self) -> str:
-        """Its last messages."""
+        """Why it failed: the signal that ended it, or its last messages."""
+        code = self._process.returncode
+        if code is not None and code < 0 and not self._interrupted:
+            return f"its process was ended by the signal {signal.Signals(-code).name}"
         text = "\n".join(self._messages).strip().removeprefix("error: ")
         return text if len(text) <= PART else f"… {text[-PART:]}"
 

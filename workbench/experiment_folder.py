@@ -166,4 +166,5 @@ def is_plain(path: Path) -> bool:
 
 def as_values(facts: Facts | None) -> dict[str, Any]:
     """Returns facts as plain values."""
-    return {} if facts is None else cast("dict[str, Any]", msgspec.to_builtins(facts))
+    found = {} if facts is None else cast("dict[str, Any]", msgspec.to_builtins(facts))
+    return {name: value for name, value in found.items() if name != "event"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -86,8 +87,8 @@ def experiments_of(request: Request) -> Experiments:
 
 @router.get("/designs")
 def designs(request: Request) -> dict[str, Any]:
-    """Lists the designs of the library and of the model files; none of them is executed."""
-    return {"designs": described(sessions_of(request).folder)}
+    """Lists the designs of the library and of the model files, without executing them; `processors` is how many this computer has."""
+    return {"designs": described(sessions_of(request).folder), "processors": os.cpu_count() or 1}
 
 
 @router.post("/designs/check")
