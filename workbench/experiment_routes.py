@@ -29,7 +29,8 @@ REPORT_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; f
 """What a report may do: nothing but show itself; its code does not run."""
 
 Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
-Level = bool | int | float | Annotated[str, Field(max_length=1_000)] | None
+Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
+Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
 Column = Annotated[str, Query(min_length=1, max_length=200)]
 Count = Annotated[int, Field(ge=1, le=1_000_000)]
 WHERE: TypeAdapter[dict[str, Level]] = TypeAdapter(Annotated[dict[str, Level], Field(max_length=10)])

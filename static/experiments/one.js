@@ -18,7 +18,7 @@ function Actions({ experiment }) {
   return html`
     ${state === "running" || state === "stopping" ? html`<button disabled=${waits || state === "stopping"} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
     ${(state === "stopped" || state === "failed") && (total === null || done < total) ? html`<button class="primary" disabled=${waits} title="Run the trials that are left" onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
-    ${done > 0 && !isRunning(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Report</button>` : null}
+    ${done > 0 && !isRunning(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
     ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${waits} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
   `;
 }
