@@ -18,8 +18,8 @@ import { hurried, session } from "./store.js";
 
 const LEAST_SCENE = 320; // [px]
 const ROWS = 336; // the height of the default rows of a model with a body [px]
-// By default, wide windows give the panels more room too.
-const side = remembered("side width", Math.max(632, Math.round(0.38 * innerWidth)));
+// By default, all tabs can be seen, and wide windows give the panels more room too.
+const side = remembered("side width", Math.max(736, Math.round(0.38 * innerWidth)));
 /** Whether there is a 3D view; otherwise the panels have all the room. */
 const hasWorld = remembered("has world", true); // while a model loads, that of the previous one
 effect(() => {
@@ -27,7 +27,7 @@ effect(() => {
 });
 const below = remembered("timeline height", Math.round(Math.min(0.42 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
 
-PANELS.forEach(({ id }, n) => bindKey(String((n + 1) % 10), "", () => (openTab.value = id)));
+PANELS.slice(0, 10).forEach(({ id }, n) => bindKey(String((n + 1) % 10), "", () => (openTab.value = id)));
 noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");
 noteKey("b", "Breakpoint, in the list of productions", "Panels");

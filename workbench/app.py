@@ -18,8 +18,9 @@ from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
 from actr3d.values import escape_surrogates
-from workbench import recording_routes, routes, sockets
+from workbench import experiment_routes, recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
+from workbench.experiments import Experiments
 from workbench.files import ModelFolder
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
@@ -32,7 +33,7 @@ from workbench.worker.workers import Workers
 
 
 def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, zygote: Zygote | None = None) -> FastAPI:
-    """Returns the application; its `state.leave` ends all runs.
+    """Returns the application; its `state.leave` ends all runs and experiments.
 
     Args:
         models: The models folder.
@@ -44,9 +45,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     folder = ModelFolder(models)
     workers = Workers(memory, zygote)
     sessions = Sessions(folder, Recordings(folder.root), workers)
+    experiments = Experiments(sessions)
 
     async def leave() -> None:
-        await sessions.close_all()
+        await asyncio.gather(sessions.close_all(), experiments.close())
         await workers.close()
 
     @asynccontextmanager
@@ -66,10 +68,12 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app = FastAPI(title="ACT-R 3D workbench", docs_url=None, redoc_url=None, openapi_url="/api/openapi.json", lifespan=life)
     app.state.leave = leave
     app.state.sessions = sessions
+    app.state.experiments = experiments
     app.state.bridge = Bridge()
     app.state.pages = 0
     app.include_router(routes.router)
     app.include_router(recording_routes.router)
+    app.include_router(experiment_routes.router)
     app.include_router(sockets.router)
     app.mount("/static", StaticFiles(directory=static()), name="static")
     app.mount("/manual", _manual(), name="manual")

@@ -126,3 +126,30 @@ def beginning(path: Path, to: Path) -> None:
     from workbench.recorded_start import beginning_of, written
 
     to.write_text(written(beginning_of(path)), encoding="utf-8")
+
+
+@export("trial counts")
+def trial_counts(*paths: Path) -> None:
+    """Writes the numbers of finished and of failed trials of experiments as JSON; the last path is that of the new file."""
+    from workbench.experiment_table import counts
+
+    *tables, to = paths
+    to.write_text(to_json(counts(*tables)), encoding="utf-8")
+
+
+@export("trial rows")
+def trial_rows(path: Path, to: Path, **options: Any) -> None:
+    """Writes rows of an experiment as JSON; the options are those of `Table.rows`."""
+    from workbench.experiment_table import Table
+
+    with closing(Table(path)) as table:
+        to.write_text(to_json(table.rows(**options)), encoding="utf-8")
+
+
+@export("trial means")
+def trial_means(path: Path, to: Path, **options: Any) -> None:
+    """Writes the means of a measure of an experiment as JSON; the options are those of `Table.means`."""
+    from workbench.experiment_table import Table
+
+    with closing(Table(path)) as table:
+        to.write_text(to_json(table.means(**options)), encoding="utf-8")

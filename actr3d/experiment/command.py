@@ -25,7 +25,7 @@ from actr3d.experiment.cluster import existing_cluster, local_cluster, run_exper
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store
 from actr3d.experiment.table import export
-from actr3d.experiment.trial import record_trial
+from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TrialProcess
 from actr3d.recording.schema import versions
 from actr3d.values import to_json
@@ -79,6 +79,8 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     """
     experiment = specify(name, participants=participants, trials=trials, values=values)
     design, total = experiment.design, len(experiment.design)
+    facts = facts_of(experiment)
+    out.event("facts", facts)
     process, text = TrialProcess(), experiment.specification.to_json()
     try:
         process.run(text, 0, design.limit)  # the first one includes the start of the process
@@ -88,17 +90,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     finally:
         process.end()
     groups = {name: group.participants for name, group in design.groups.items()}
-    about: dict[str, Any] = {
-        "name": experiment.specification.name,
-        "description": experiment.description,
-        "trials": total,
-        "trials_a_cell": design.trials,
-        "factors": {name: list(levels) for name, levels in design.factors.items()},
-        "groups": groups,
-        "model": experiment.specification.model.file,
-        "seconds_a_trial": round(seconds, 3),
-        "error": row["error"],
-    }
+    about = {**facts, "seconds_a_trial": round(seconds, 3), "error": row["error"]}
     out.event("check", about)
     people = ", ".join(f"{count} {name}" for name, count in groups.items())
     out.line(f"[bold]{about['name']}[/bold]: {total:,} trials of '{about['model']}' by participants: {people}")
@@ -146,6 +138,7 @@ def run(
     experiment, store = _opened(name, values, participants, trials, folder, resume=resume, any_version=any_version)
     with store:
         total, begin, before = len(experiment.design), time.monotonic(), store.count
+        out.event("facts", {**facts_of(experiment), "folder": str(store.folder)})
         out.line(f"[bold]{experiment.specification.name}[/bold]: {total:,} trials in '{store.folder}', {before:,} finished")
         if before < total:
             cluster = local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler)
@@ -227,6 +220,30 @@ def fit(
         out.line(f"simulated data {number}: {pairs}")
     out.line(f"result: {path / 'fit.json'}")
     return 0
+
+
+def facts_of(experiment: Experiment) -> dict[str, Any]:
+    """Returns what programs show of an experiment: its size, factors, groups, and the parameters of its model."""
+    design = experiment.design
+    return {
+        "name": experiment.specification.name,
+        "description": experiment.description,
+        "trials": len(design),
+        "trials_a_cell": design.trials,
+        "factors": {name: list(levels) for name, levels in design.factors.items()},
+        "groups": {name: group.participants for name, group in design.groups.items()},
+        "group_parameters": {
+            name: {key: value if isinstance(value, PLAIN) else str(value) for key, value in group.parameters.items()}
+            for name, group in design.groups.items()
+        },
+        "settings": {name: value if isinstance(value, PLAIN) else str(value) for name, value in design.settings.items()},
+        "seed": design.seed,
+        "model": experiment.specification.model.file,
+        "parameters": [
+            {"name": one.name, "help": one.help, "unit": one.unit, "default": one.default, "choices": one.choices}
+            for one in experiment.parameters
+        ],
+    }
 
 
 def show_state(folder: str, out: Output) -> int:

@@ -258,7 +258,7 @@ class Design(Configuration):
         """
         left = dict(values or {})
         own = {name: left.pop(name) for name in ("seed", "until", "limit") if name in left}
-        factors = {name: _levels(left.pop(name)) if name in left else levels for name, levels in self.factors.items()}
+        factors = {name: _levels(left.pop(name), levels) if name in left else levels for name, levels in self.factors.items()}
         grouped = {name for group in self.groups.values() for name in group.parameters}
         groups = {
             name: replace(
@@ -372,8 +372,11 @@ def _example(value: Any, p: float) -> Any:
     return round(value.quantile(p), DIGITS) if isinstance(value, Distribution) else value
 
 
-def _levels(value: Any) -> Sequence[Any]:
-    return cast("Sequence[Any]", value) if isinstance(value, (list, tuple)) else [value]
+def _levels(value: Any, before: Sequence[Any]) -> Sequence[Any]:
+    """Returns new levels of a factor. One that equals a level before has its type (0 becomes 0.0), so that its trials stay the same."""
+    levels = cast("Sequence[Any]", value) if isinstance(value, (list, tuple)) else [value]
+    known = {(level, isinstance(level, bool)): level for level in before if isinstance(level, (int, float))}
+    return [known.get((level, isinstance(level, bool)), level) if isinstance(level, (int, float)) else level for level in levels]
 
 
 @lru_cache(maxsize=4)

@@ -181,6 +181,13 @@ def test_changes_replace_levels_numbers_and_values() -> None:
 # -- designs in files
 
 
+def test_a_level_written_in_another_way_is_the_same_level() -> None:
+    before = Design(factors={"a": [0.0, 0.5], "b": [True, 2]})
+    after = before.changed(values={"a": [0, 0.5], "b": [True, 2.0]})
+    assert [repr(level) for levels in after.factors.values() for level in levels] == ["0.0", "0.5", "True", "2"]
+    assert list(after.table()) == list(before.table())
+
+
 def test_the_designs_of_the_library_fit_their_models() -> None:
     names = library_designs()
     assert "warren_whang_1987" in names

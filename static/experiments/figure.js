@@ -1,0 +1,260 @@
+// The figure of an experiment: the mean of a measure by the levels of a factor, one line for each combination of others.
+
+import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { counted } from "../parts/count.js";
+import { Icon } from "../parts/icon.js";
+import { savePicture } from "../parts/picture.js";
+import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
+import { numberText } from "../parts/ticks.js";
+import { remembered } from "../local_storage.js";
+import { labelOf, whenText } from "../runs/wording.js";
+import { dark } from "../theme.js";
+import { useFresh } from "./answer.js";
+import { colourOf, drawFigure, drawPoint, layout, levelsOf } from "./drawing.js";
+import { experiments, showExperiment } from "./list.js";
+import { Parts } from "./parts.js";
+import { doneText } from "./wording.js";
+
+const MOST_LINES = 12;
+const MOST_BUTTONS = 300; // points that keys can reach
+const REACH = 12; // [px]
+const UNITS = [["_deg", "°"], ["_m_s", "m/s"], ["_m", "m"], ["_n", "N"], ["_s", "s"]];
+const EMPTY = [];
+
+/** What was chosen for the figures of a design: {name: {measure, x, by}}. */
+const choices = remembered("figures", {});
+/** The id of the experiment that is compared; "" for none. */
+const compared = remembered("experiment compared", "");
+
+const sizeOf = (facts, name) => facts.factors?.[name]?.length ?? (name === "group" ? Object.keys(facts.groups ?? {}).length : 0);
+
+/** Returns the columns for the axis and the lines: factors and groups first, then all other values of a trial. */
+function keysOf(facts, columns) {
+  const first = [...Object.keys(facts.factors ?? {}), ...(Object.keys(facts.groups ?? {}).length > 1 ? ["group"] : [])];
+  const others = columns.filter(({ role }) => role === "value").map(({ name }) => name);
+  return [...new Set([...first, ...others, "participant", "repetition", "position"])].filter((name) => columns.some((column) => column.name === name));
+}
+
+const isMeasure = ({ role, name, type }) => (role === "measure" || name === "wall_s") && ["integer", "real", "boolean"].includes(type);
+
+/** Returns what is shown unless the user has chosen otherwise. */
+function defaults(facts, columns) {
+  const keys = keysOf(facts, columns);
+  const factors = keys.filter((name) => sizeOf(facts, name) > 1).toSorted((one, other) => sizeOf(facts, other) - sizeOf(facts, one));
+  const x = factors.find((name) => facts.factors?.[name]?.every((level) => typeof level === "number")) ?? factors[0] ?? keys[0];
+  const by = [];
+  for (const name of factors.filter((one) => one !== x)) {
+    if ([...by, name].reduce((product, one) => product * sizeOf(facts, one), 1) <= 6) by.push(name);
+  }
+  const measures = columns.filter(isMeasure).filter(({ name }) => name !== "wall_s");
+  return { x, by, measure: (measures.find(({ type }) => type === "real") ?? measures[0])?.name ?? "wall_s" };
+}
+
+function chosenFor(name, facts, columns) {
+  const otherwise = defaults(facts, columns);
+  const { x, by, measure } = { ...otherwise, ...choices.value[name] };
+  const known = (column) => columns.some((one) => one.name === column);
+  const axis = known(x) ? x : otherwise.x;
+  return { x: axis, by: by.filter((one) => known(one) && one !== axis), measure: known(measure) ? measure : otherwise.measure };
+}
+
+function pathOf(id, { x, by, measure }) {
+  const query = new URLSearchParams([["x", x], ["measure", measure], ...by.map((name) => ["by", name])]);
+  return `/api/experiments/${encodeURIComponent(id)}/means?${query}`;
+}
+
+/** Returns the lines of an answer: {number, key, name, values, points, dashed, experiment}; the nth combination has the nth colour. */
+function linesOf(answer, facts, combinations, dashed, experiment) {
+  if (!answer) return [];
+  const groups = Map.groupBy(answer.points, ({ at }) => JSON.stringify(at.slice(1)));
+  const levels = levelsOf(answer.points.map(({ at }) => at[0]), orderOf(facts, answer.x));
+  const places = new Map(levels.map((level, n) => [JSON.stringify(level), n]));
+  return combinations.flatMap((key, number) => {
+    const points = groups.get(key);
+    if (!points) return [];
+    const values = JSON.parse(key);
+    const name = values.map((value, n) => (typeof value === "string" ? value : `${labelOf(answer.by[n])} ${valueText(value)}`)).join(" · ");
+    return { number, key: `${experiment} ${key}`, name, values, dashed, experiment, points: points.toSorted((one, other) => places.get(JSON.stringify(one.at[0])) - places.get(JSON.stringify(other.at[0]))) };
+  });
+}
+
+const orderOf = (facts, name) => facts.factors?.[name] ?? (name === "group" ? Object.keys(facts.groups ?? {}) : undefined);
+
+/** Returns all combinations of the values of lines, as JSON, in the order of the design. */
+function combinationsOf(answers, by, facts) {
+  const all = [...new Set(answers.flatMap((answer) => answer?.points.map(({ at }) => JSON.stringify(at.slice(1))) ?? []))];
+  const ranks = by.map((name, n) => new Map(levelsOf(all.map((key) => JSON.parse(key)[n]), orderOf(facts, name)).map((level, place) => [JSON.stringify(level), place])));
+  const rank = (key) => JSON.parse(key).map((value, n) => ranks[n].get(JSON.stringify(value)));
+  return all.toSorted((one, other) => rank(one).reduce((found, place, n) => found || place - rank(other)[n], 0));
+}
+
+function unitOf(answer) {
+  return answer.unit ?? UNITS.find(([end]) => answer.measure.endsWith(end))?.[1] ?? "";
+}
+
+/** Returns the entries of the legend for two experiments, whose lines are whole and dashed; null if there is only one. */
+function pairOf(experiment, other) {
+  if (other === null) return null;
+  const names = [experiment, other].map((one) => `${one.name} ${whenText(one.made)}`);
+  return names.map((name, n) => ({ key: `experiment ${n}`, name, dashed: n === 1, colour: "quiet", number: 0 }));
+}
+
+function Menus({ experiment, facts, columns, chosen }) {
+  const set = (changes) => (choices.value = { ...choices.value, [experiment.name]: { ...chosen, ...changes } });
+  const keys = keysOf(facts, columns);
+  const measures = columns.filter(isMeasure);
+  const factors = keys.filter((name) => sizeOf(facts, name) > 1 && name !== chosen.x);
+  const lines = [[], ...keys.filter((name) => name !== chosen.x).map((name) => [name]), ...(factors.length > 1 ? [factors.slice(0, 2)] : []), ...(factors.length > 2 ? [factors.slice(0, 3)] : [])];
+  if (!lines.some((by) => by.join() === chosen.by.join())) lines.push(chosen.by);
+  return html`<div class="menus">
+    <${Parts} experiment=${experiment} />
+    <select aria-label="Measure" title="What is averaged" value=${chosen.measure} onChange=${(event) => set({ measure: event.currentTarget.value })}>
+      ${measures.map(({ name, meaning }) => html`<option key=${name} value=${name} title=${meaning}>${labelOf(name)}</option>`)}
+    </select>
+    <label>by <select aria-label="Axis" value=${chosen.x} onChange=${(event) => set({ x: event.currentTarget.value, by: chosen.by.filter((name) => name !== event.currentTarget.value) })}>
+      ${keys.map((name) => html`<option key=${name} value=${name}>${labelOf(name)}</option>`)}
+    </select></label>
+    <label>lines <select aria-label="Lines" value=${chosen.by.join()} onChange=${(event) => set({ by: event.currentTarget.value.split(",").filter(Boolean) })}>
+      ${lines.map((by) => html`<option key=${by.join()} value=${by.join()}>${by.length === 0 ? "one" : by.map(labelOf).join(" × ")}</option>`)}
+    </select></label>
+  </div>`;
+}
+
+/** The choice of another experiment to draw beside this one. */
+function ComparedChoice({ experiment, other }) {
+  const others = (experiments.value ?? []).filter(({ id, done }) => id !== experiment.id && done > 0);
+  if (others.length === 0) return null;
+  return html`<select aria-label="Compare with" title="Draw another experiment beside it" value=${other?.id ?? ""} onChange=${(event) => (compared.value = event.currentTarget.value)}>
+    <option value="">compare with …</option>
+    ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.name}, ${whenText(one.made)}</option>`)}
+  </select>`;
+}
+
+/** A sample of a line: its colour, dashes and mark. */
+function Sample({ line }) {
+  const canvas = useRef(null);
+  useEffect(() => {
+    const surface = new CanvasSurface(scaled(canvas.current, 22, 10));
+    surface.line([0, 5, 22, 5], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
+    drawPoint(surface, 11, 5, line);
+  }, [line.number, line.dashed, dark.value]);
+  return html`<canvas ref=${canvas} style="width: 22px; height: 10px" aria-hidden="true"></canvas>`;
+}
+
+/** Returns a point as text: where it is, its mean, and what it is the mean of. */
+function pointText({ at, mean, error, participants, trials }, { x, unit }, line) {
+  const bars = error === null ? "" : ` ± ${numberText(error)}`;
+  const of = `${counted(participants, "participant")}, ${counted(trials, "trial")}`;
+  return `${labelOf(x)} ${valueText(at[0])}${line.name ? ` · ${line.name}` : ""}${line.dashed ? " · the other experiment" : ""}: ${numberText(mean)}${bars}${unit === "°" ? "°" : unit ? ` ${unit}` : ""} (${of})`;
+}
+
+function Plot({ lines, known, about, children }) {
+  const area = useRef(null);
+  const canvas = useRef(null);
+  const size = useSignal({ width: 0, height: 0 });
+  const pointed = useSignal(null);
+  const { width, height } = size.value;
+  const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
+  const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...(about.pair ?? [])];
+  const title = `${labelOf(about.measure)}${about.unit ? ` [${about.unit}]` : ""}`;
+
+  useEffect(() => {
+    const watch = new ResizeObserver(([{ contentRect }]) => (size.value = { width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) }));
+    watch.observe(area.current);
+    return () => watch.disconnect();
+  }, []);
+
+  useEffect(() => {
+    if (width > 0) drawFigure(new CanvasSurface(scaled(canvas.current, width, height)), lines, figure, labelOf(about.x));
+  }, [lines, figure, dark.value]);
+
+  function save(kind) {
+    const [wide, high] = [Math.max(640, width), Math.max(360, height)];
+    const draw = (surface) => {
+      let at = 52;
+      for (const line of legend) {
+        surface.line([at, 8, at + 20, 8], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
+        drawPoint(surface, at + 10, 8, line);
+        surface.text(line.name, at + 25, 8, "text");
+        at += 40 + widthOf(line.name);
+      }
+      const below = layout(lines, known, wide, high - 20);
+      below.box.y += 20; // below the legend
+      drawFigure(surface, lines, below, labelOf(about.x));
+    };
+    savePicture({ name: `${about.source} ${about.measure}`, title: `${title}, ${about.source}`, width: wide, height: high, draw }, kind);
+  }
+
+  const points = lines.flatMap((line) => line.points.map((point) => ({ line, point, x: figure.xOf(point.at[0]), y: figure.yOf(point.mean), text: pointText(point, about, line) })));
+  const leave = () => (pointed.value = null);
+  const hit = pointed.value ? points.filter(({ text }) => pointed.value.includes(text)) : [];
+
+  function point({ currentTarget, clientX, clientY }) {
+    const { left, top } = currentTarget.getBoundingClientRect();
+    const found = near(points, clientX - left, clientY - top).map(({ text }) => text);
+    pointed.value = found.length > 0 ? found : null;
+  }
+
+  /** Shows the trials of points: of several in one place, those with the values that all share. */
+  function show(some) {
+    if (some.length === 0) return;
+    const values = [about.x, ...about.by].map((name, n) => [name, some[0].point.at[n]]);
+    showExperiment(some[0].line.experiment, Object.fromEntries(values.filter(([, value], n) => some.every((one) => one.point.at[n] === value))));
+  }
+
+  return html`<figure class="means" aria-label=${title}>
+    <figcaption>
+      <b>${title}</b>
+      <span class="legend">${legend.map((line) => html`<span key=${line.key}><${Sample} line=${line} />${line.name}</span>`)}</span>
+      ${children}
+      <button class="bare" title="Keep the figure as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
+      <button class="bare" title="Keep the figure as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
+    </figcaption>
+    <div class="area ${hit.length > 0 ? "hit" : ""}" ref=${area} onPointerMove=${point} onPointerLeave=${leave} onClick=${() => show(hit)}>
+      <canvas ref=${canvas} role="img" aria-label=${title} style=${{ width: `${width}px`, height: `${height}px` }}></canvas>
+      ${points.slice(0, MOST_BUTTONS).map((one) => {
+        const key = `${one.line.key} ${one.point.at[0]}`;
+        const press = (event) => (event.stopPropagation(), show([one]));
+        return html`<button key=${key} class="point ${hit.includes(one) ? "hit" : ""}" style=${{ left: `${one.x}px`, top: `${one.y}px` }} aria-label="Trials of ${one.text}" onClick=${press} onFocus=${() => (pointed.value = [one.text])} onBlur=${leave}></button>`;
+      })}
+    </div>
+    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials</span>` : html`<span class="quiet">Means over participants, ± 1 standard error. ${about.counts}</span>`}</p>
+  </figure>`;
+}
+
+/** Returns the points at a place: the nearest one within reach, and those that it covers. */
+function near(points, x, y) {
+  const far = (one) => Math.hypot(one.x - x, one.y - y);
+  const nearest = points.reduce((best, one) => (best === null || far(one) < far(best) ? one : best), null);
+  if (nearest === null || far(nearest) > REACH) return [];
+  return points.filter((one) => Math.hypot(one.x - nearest.x, one.y - nearest.y) < 2);
+}
+
+/** @param experiment The summary of the experiment. @param facts Its facts. @param columns Its columns. */
+export function Figure({ experiment, facts, columns }) {
+  const chosen = chosenFor(experiment.name, facts, columns);
+  const other = (experiments.value ?? []).find(({ id, done }) => id === compared.value && id !== experiment.id && done > 0) ?? null;
+  const own = useFresh(pathOf(experiment.id, chosen), experiment.done);
+  const others = useFresh(other && pathOf(other.id, chosen), other?.done);
+  const answer = own.answer;
+  const second = other ? others.answer : null;
+  const same = (one) => one && one.x === answer.x && one.measure === answer.measure && one.by.join() === answer.by.join();
+  const lines = useMemo(() => {
+    if (!answer) return EMPTY;
+    const both = [answer, same(second) ? second : null];
+    const combinations = combinationsOf(both, answer.by, facts).slice(0, MOST_LINES);
+    const [first, dashed] = both.map((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other?.id : experiment.id));
+    return [...first, ...dashed];
+  }, [answer, second, other?.id]);
+  const all = answer ? combinationsOf([answer], answer.by, facts).length : 0;
+  const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
+  return html`
+    <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
+    ${error ? html`<p class="problem bad" role="alert">${error}</p>` : null}
+    ${all > MOST_LINES ? html`<p class="problem warning">The first ${MOST_LINES} of ${all} lines are drawn.</p>` : null}
+    ${answer && lines.length > 0
+      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`
+      : html`<p class="empty" role="status">${answer || error ? "No finished trial has a value of this measure." : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+  `;
+}

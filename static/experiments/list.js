@@ -1,0 +1,132 @@
+// The server's experiments, read again each second while one runs; which one is shown; and what can be done with them.
+
+import { confirmed } from "../parts/dialog.js";
+import { remembered } from "../local_storage.js";
+import { withTrust } from "../runs/trust.js";
+import { call, isLeft } from "../server.js";
+import { chooseRecording } from "../bar/models.js";
+import { complain } from "../store.js";
+import { effect, signal, untracked } from "../vendor/preact.js";
+
+const WHILE_RUNNING = 1000; // the interval between two requests for the list [ms]
+const OTHERWISE = 5000;
+
+/** The summaries of all experiments, the newest first; null before they are known. */
+export const experiments = signal(null);
+/** Why they cannot be listed; null if they can. */
+export const problem = signal(null);
+/** The id of the experiment that is shown, "new" for the form of a new one, "" for the list. */
+export const shown = remembered("experiment shown", "");
+/** The part of the experiment that is shown: "figure", "trials", "about" or "report". */
+export const part = signal("figure");
+/** The values that the listed trials must have: {column: value}. */
+export const where = signal({});
+/** What the page waits for: {text, cancel?}; null for nothing. */
+export const busy = signal(null);
+
+/** Whether an experiment runs. */
+export const isRunning = ({ state }) => state === "running" || state === "stopping";
+
+let asked = 0;
+
+/** Reads the list. */
+export async function listExperiments() {
+  asked += 1;
+  const mine = asked;
+  try {
+    const answer = await call("GET", "/api/experiments");
+    if (mine !== asked) return;
+    experiments.value = answer.experiments;
+    problem.value = null;
+  } catch (error) {
+    if (mine === asked) problem.value = error.message;
+  }
+}
+
+/** Keeps the list up to date while it is shown; returns the function that stops this. */
+export function follow() {
+  let over = false;
+  let timer = 0;
+  async function again() {
+    await listExperiments();
+    if (!over) timer = setTimeout(again, experiments.value?.some((one) => isRunning(one) || one.state === "elsewhere") ? WHILE_RUNNING : OTHERWISE);
+  }
+  const stop = effect(() => {
+    shown.value; // another one is shown: its newest state
+    clearTimeout(timer);
+    untracked(() => void again());
+  });
+  return () => {
+    over = true;
+    clearTimeout(timer);
+    stop();
+  };
+}
+
+/** Shows an experiment, optionally only those trials that have some values. */
+export function showExperiment(id, values = null) {
+  where.value = values ?? {};
+  part.value = values === null ? "figure" : "trials";
+  shown.value = id;
+}
+
+/** Does something that takes a while, with a text that says so; shows an error as a message. Returns whether it was done. */
+async function doing(text, work, cancel = null) {
+  if (busy.value) return false;
+  busy.value = { text, cancel };
+  try {
+    await work();
+    return true;
+  } catch (error) {
+    if (!isLeft(error) && !cancel?.signal.aborted) complain(error.message);
+    return false;
+  } finally {
+    busy.value = null;
+    await listExperiments();
+  }
+}
+
+const pathOf = (id) => `/api/experiments/${encodeURIComponent(id)}`;
+
+/** Starts an experiment and shows it; throws an Error with the reason if it cannot be run. */
+export async function startExperiment(wanted) {
+  const { id } = await call("POST", "/api/experiments", wanted);
+  await listExperiments();
+  showExperiment(id);
+}
+
+export function stopExperiment({ id }) {
+  return doing("Stopping …", () => call("POST", `${pathOf(id)}/stop`, {}));
+}
+
+export function resumeExperiment({ id }) {
+  return doing("Starting …", () => withTrust(id, "Continuing it", (trust) => call("POST", `${pathOf(id)}/resume`, { trust }), "experiments"));
+}
+
+/** Makes the report, and shows it. */
+export async function makeReport({ id }) {
+  const cancel = new AbortController();
+  const make = () => withTrust(id, "Its report", (trust) => call("POST", `${pathOf(id)}/report`, { trust }, cancel.signal), "experiments");
+  if ((await doing("Making the report …", make, cancel)) && shown.value === id) part.value = "report";
+}
+
+/** Runs a trial again, records it, and shows the recording. */
+export function openTrial(id, number) {
+  const cancel = new AbortController();
+  const record = (trust) => call("POST", `${pathOf(id)}/trial`, { number, trust }, cancel.signal);
+  return doing(
+    `Running trial ${number} again …`,
+    async () => {
+      const made = await withTrust(id, "Opening a trial", record, "experiments");
+      if (made !== null) await chooseRecording(made.recording);
+    },
+    cancel,
+  );
+}
+
+/** Deletes an experiment, after asking. */
+export async function deleteExperiment({ id, name, done }) {
+  const text = `Its ${done.toLocaleString("en")} finished trials go to the trash folder .workbench/trash.`;
+  if (!(await confirmed(`Delete the experiment ${name}?`, text, "Delete"))) return;
+  if (await doing("Deleting …", () => call("POST", `${pathOf(id)}/delete`, {}))) shown.value = "";
+}

@@ -1,0 +1,233 @@
+// The form of a new experiment: a design, its levels and numbers, and how long it would take.
+
+import { html, signal, useEffect, useLayoutEffect, useSignal } from "../vendor/preact.js";
+import { remembered } from "../local_storage.js";
+import { counted } from "../parts/count.js";
+import { Icon } from "../parts/icon.js";
+import { call } from "../server.js";
+import { experiments, isRunning, shown, startExperiment } from "./list.js";
+import { baseName, durationText, levelsText, readLevels } from "./wording.js";
+
+const PAUSE = 700; // how long the user has not typed before the design is checked [ms]
+const DESIGN = remembered("design", "");
+const NOTHING = { values: {}, participants: "", trials: "", workers: "" };
+
+/** The designs, and the number of processors: {designs: [{id, name, file, description}], processors}; null before they are known. */
+const known = signal(null);
+/** What was entered, by design: {values: {name: text}, participants, trials, workers}. */
+const drafts = signal({});
+/** The duration of a trial by design [s]. */
+const seconds = signal({});
+
+const draftOf = (design) => drafts.value[design] ?? NOTHING;
+
+function change(design, changes) {
+  drafts.value = { ...drafts.value, [design]: { ...draftOf(design), ...changes } };
+}
+
+/** Returns a whole number from 1 on; null for an empty text, NaN for any other. */
+function readCount(text) {
+  return text.trim() === "" ? null : /^[1-9]\d{0,5}$/.test(text.trim()) ? Number(text) : NaN;
+}
+
+/** Returns what the server is asked for, and the number of trials; `problem` says what is wrong. */
+function wantedOf(design, facts) {
+  const { values: texts, ...counts } = draftOf(design);
+  const wanted = { design, values: {} };
+  let problem = null;
+  for (const [name, text] of Object.entries(texts)) {
+    const levels = readLevels(text);
+    const isFactor = Boolean(facts?.factors[name]);
+    if (levels === null || (!isFactor && levels.length !== 1)) problem ??= `${name}: ${isFactor ? "levels, each once, separated by commas" : "one value"}`;
+    else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) wanted.values[name] = isFactor ? levels : levels[0];
+  }
+  for (const [name, text] of Object.entries(counts)) {
+    const count = readCount(text);
+    if (Number.isNaN(count)) problem ??= `${name}: a whole number from 1 on`;
+    else if (count !== null) wanted[name] = count;
+  }
+  if (!facts || problem) return { wanted, problem, trials: null };
+  const cells = Object.entries(facts.factors).map(([name, levels]) => [wanted.values[name] ?? levels].flat().length);
+  const people = Object.values(facts.groups).reduce((sum, number) => sum + (wanted.participants ?? number), 0);
+  const trials = cells.reduce((product, number) => product * number, people * (wanted.trials ?? facts.trials_a_cell));
+  return { wanted, problem, trials };
+}
+
+/** Reads the facts of a design, and then how long a trial takes; returns {facts, error}. */
+function useFacts(design) {
+  const found = useSignal({ of: "", facts: null, error: null });
+  useEffect(() => {
+    if (!design) return undefined;
+    const leave = new AbortController();
+    const ask = (trial) => call("POST", "/api/designs/check", { design, trial }, leave.signal);
+    async function read() {
+      const facts = await ask(false);
+      found.value = { of: design, facts, error: null };
+      if (seconds.value[design] !== undefined) return;
+      const { seconds_a_trial, error } = await ask(true);
+      seconds.value = { ...seconds.value, [design]: seconds_a_trial };
+      if (error) found.value = { of: design, facts, error: `A trial fails: ${error.trim().split("\n").at(-1)}` };
+    }
+    read().catch((error) => !leave.signal.aborted && (found.value = { ...found.value, of: design, error: error.message, facts: found.value.of === design ? found.value.facts : null }));
+    return () => leave.abort();
+  }, [design]);
+  return found.value.of === design ? found.value : { facts: null, error: null };
+}
+
+/** Checks changed values in the server when the user pauses; returns what is wrong with them, or null. */
+function useCheck(wanted, problem) {
+  const found = useSignal({ of: "", error: null });
+  const key = JSON.stringify({ ...wanted, workers: undefined });
+  const changed = Object.keys(wanted.values).length > 0;
+  useEffect(() => {
+    if (!changed || problem) return undefined;
+    const leave = new AbortController();
+    const timer = setTimeout(() => {
+      call("POST", "/api/designs/check", JSON.parse(key), leave.signal)
+        .then(() => (found.value = { of: key, error: null }))
+        .catch((error) => !leave.signal.aborted && (found.value = { of: key, error: error.message }));
+    }, PAUSE);
+    return () => (clearTimeout(timer), leave.abort());
+  }, [key, changed, problem]);
+  return found.value.of === key ? found.value.error : null;
+}
+
+function DesignChoice({ design }) {
+  const { designs } = known.value;
+  const files = [...new Set(designs.map(({ file }) => file))];
+  const option = ({ id, name }) => html`<option key=${id} value=${id}>${name}</option>`;
+  return html`<select aria-label="Design" value=${design} onChange=${(event) => (DESIGN.value = event.currentTarget.value)}>
+    ${files.map((file) => html`<optgroup key=${file} label=${file ?? "The library's designs"}>${designs.filter((one) => one.file === file).map(option)}</optgroup>`)}
+  </select>`;
+}
+
+function Field({ label, value, otherwise, onInput, invalid, wide = false }) {
+  return html`<input class=${wide ? "" : "count"} aria-label=${label} value=${value} placeholder=${otherwise} inputmode=${wide ? "text" : "numeric"} spellcheck=${false} autocomplete="off" aria-invalid=${invalid} onInput=${(event) => onInput(event.currentTarget.value)} />`;
+}
+
+/** Returns the participants of each group of a design, if all have the same number, or else those of each. */
+function numberText(groups) {
+  const numbers = [...new Set(Object.values(groups))];
+  return numbers.length === 1 ? String(numbers[0]) : Object.values(groups).join(", ");
+}
+
+function Form({ design, facts }) {
+  const draft = draftOf(design);
+  const set = (name, text) => change(design, { values: { ...draft.values, [name]: text } });
+  const unset = (name) => change(design, { values: Object.fromEntries(Object.entries(draft.values).filter(([other]) => other !== name)) });
+  const more = Object.keys(draft.values).filter((name) => !facts.factors[name]);
+  const grouped = new Set(Object.values(facts.group_parameters).flatMap(Object.keys));
+  const others = ["seed", ...facts.parameters.map(({ name }) => name)].filter((name) => !facts.factors[name] && !more.includes(name));
+  const settings = Object.entries(facts.settings).filter(([name]) => !more.includes(name));
+  const count = (name, label, otherwise) => html`<tr>
+    <th scope="row">${label}</th>
+    <td><${Field} label=${label} value=${draft[name]} otherwise=${otherwise} invalid=${Number.isNaN(readCount(draft[name]))} onInput=${(text) => change(design, { [name]: text })} /></td>
+    <td></td>
+  </tr>`;
+  return html`<table class="design-form">
+    <tbody>
+      ${Object.entries(facts.factors).map(([name, levels]) => {
+        const text = draft.values[name] ?? levelsText(levels);
+        const read = readLevels(text);
+        return html`<tr key=${name}>
+          <th scope="row" title="A factor: each participant does all combinations">${name}</th>
+          <td><${Field} wide label="Levels of ${name}" value=${text} invalid=${read === null} onInput=${(entered) => set(name, entered)} /></td>
+          <td class="quiet number">${read === null ? "" : counted(read.length, "level")}
+            ${draft.values[name] === undefined ? null : html`<button class="bare" title="The levels of the design" aria-label="Reset ${name}" onClick=${() => unset(name)}><${Icon} name="restart" /></button>`}</td>
+        </tr>`;
+      })}
+      ${more.map((name) => html`<tr key=${name}>
+        <th scope="row" title=${facts.parameters.find((one) => one.name === name)?.help}>${name}</th>
+        <td><${Field} wide label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name])?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
+        <td class="quiet"><button class="bare" aria-label="Remove ${name}" title="Remove" onClick=${() => unset(name)}><${Icon} name="close" /></button></td>
+      </tr>`)}
+      ${others.length > 0
+        ? html`<tr>
+            <th scope="row"></th>
+            <td colspan="2"><select class="quiet" aria-label="Set another parameter" value="" onChange=${(event) => (set(event.currentTarget.value, defaultText(facts, event.currentTarget.value)), (event.currentTarget.value = ""))}>
+              <option value="">Set another parameter …</option>
+              ${others.map((name) => html`<option key=${name} value=${name}>${name}${grouped.has(name) ? " (of all groups)" : ""}</option>`)}
+            </select></td>
+          </tr>`
+        : null}
+      ${count("participants", Object.keys(facts.groups).length > 1 ? "participants a group" : "participants", numberText(facts.groups))}
+      ${count("trials", "trials a combination", String(facts.trials_a_cell))}
+      ${count("workers", "processes", String(known.value.processors))}
+      ${Object.entries(facts.groups).length > 1 || grouped.size > 0
+        ? html`<tr><th scope="row">groups</th><td colspan="2">${Object.keys(facts.groups).map((name) => html`<div key=${name}><b>${name}</b> <span class="quiet mono">${valuesText(facts.group_parameters[name])}</span></div>`)}</td></tr>`
+        : null}
+      ${settings.length > 0 ? html`<tr><th scope="row">settings</th><td colspan="2" class="quiet mono">${valuesText(Object.fromEntries(settings))}</td></tr>` : null}
+      <tr><th scope="row">model</th><td colspan="2">${baseName(facts.model)}</td></tr>
+    </tbody>
+  </table>`;
+}
+
+function defaultText(facts, name) {
+  if (name === "seed") return String(facts.seed);
+  const value = facts.settings[name] ?? facts.parameters.find((one) => one.name === name)?.default;
+  return value === undefined || value === null || typeof value === "object" ? "" : levelsText([value]);
+}
+
+function valuesText(values) {
+  return Object.entries(values ?? {}).map(([name, value]) => `${name}: ${value}`).join(", ");
+}
+
+function estimate(design, trials, workers) {
+  const each = seconds.value[design];
+  if (each === undefined) return "measuring the duration of a trial …";
+  const processes = Math.max(1, Math.min(workers ?? Infinity, known.value.processors));
+  return `about ${durationText((each * trials) / processes)} (${each < 0.1 ? each.toFixed(3) : each.toFixed(2)} s a trial)`;
+}
+
+function Foot({ design, facts, error }) {
+  const starting = useSignal(false);
+  const refused = useSignal({ of: "", error: null });
+  const { wanted, problem, trials } = wantedOf(design, facts);
+  const wrong = useCheck(wanted, problem);
+  const key = JSON.stringify(wanted);
+  const last = refused.value.of === key ? refused.value.error : null;
+  const full = experiments.value?.filter(isRunning).length >= 2;
+
+  async function start() {
+    starting.value = true;
+    try {
+      await startExperiment(wanted);
+    } catch (reason) {
+      refused.value = { of: key, error: reason.message };
+    }
+    starting.value = false;
+  }
+
+  const trouble = last ?? wrong ?? error;
+  return html`
+    ${trouble ? html`<pre class="trouble" role="alert">${trouble}</pre>` : null}
+    <div class="foot">
+      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${estimate(design, trials, wanted.workers)}</span>`}</span>
+      <span class="stretch"></span>
+      <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments run already" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
+    </div>
+  `;
+}
+
+export function NewExperiment() {
+  const problem = useSignal(null);
+  useLayoutEffect(() => {
+    call("GET", "/api/designs").then((answer) => (known.value = answer)).catch((error) => (problem.value = error.message));
+  }, []);
+  const designs = known.value?.designs ?? [];
+  const chosen = designs.find(({ id }) => id === DESIGN.value) ?? designs.find(({ file }) => file !== null) ?? designs[0];
+  const design = chosen?.id ?? "";
+  const { facts, error } = useFacts(design);
+  return html`
+    <div class="tools">
+      <button class="bare" title="All experiments" onClick=${() => (shown.value = "")}><span class="back"><${Icon} name="right" /></span>Experiments</button>
+      ${known.value ? html`<${DesignChoice} design=${design} />` : null}
+    </div>
+    ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
+    <div class="new">
+      ${chosen ? html`<div class="description">${chosen.description.split("\n\n").map((text, n) => html`<p key=${n} class=${n ? "quiet" : ""}>${text}</p>`)}</div>` : null}
+      ${facts ? html`<${Form} key=${design} design=${design} facts=${facts} />` : null}
+    </div>
+    ${chosen ? html`<${Foot} key=${design} design=${design} facts=${facts} error=${error} />` : null}
+  `;
+}

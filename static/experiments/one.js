@@ -1,0 +1,107 @@
+// One experiment: its state and progress, its figure, trials, facts and report.
+
+import { html, useSignal, useEffect } from "../vendor/preact.js";
+import { valueText } from "../parts/chunk.js";
+import { Icon } from "../parts/icon.js";
+import { whenInFull, whenText } from "../runs/wording.js";
+import { call } from "../server.js";
+import { useFresh } from "./answer.js";
+import { Figure } from "./figure.js";
+import { busy, deleteExperiment, experiments, isRunning, makeReport, part, resumeExperiment, shown, stopExperiment } from "./list.js";
+import { Parts } from "./parts.js";
+import { Trials } from "./trials.js";
+import { baseName, changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
+
+function Actions({ experiment }) {
+  const { state, done, total } = experiment;
+  const waits = busy.value !== null;
+  return html`
+    ${state === "running" || state === "stopping" ? html`<button disabled=${waits || state === "stopping"} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
+    ${(state === "stopped" || state === "failed") && (total === null || done < total) ? html`<button class="primary" disabled=${waits} title="Run the trials that are left" onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
+    ${done > 0 && !isRunning(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
+    ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${waits} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
+  `;
+}
+
+function Progress({ experiment }) {
+  const { done, total, failures, rate, left, state, workers } = experiment;
+  const going = state === "running" || state === "stopping";
+  const facts = [
+    going && done === 0 ? (workers > 0 ? "the first trials are running …" : "starting …") : null,
+    rate && state === "running" ? rateText(rate) : null,
+    left !== null && state === "running" ? `${durationText(left)} left` : null,
+    going && workers > 0 && done > 0 ? `${workers} ${workers === 1 ? "process" : "processes"}` : null,
+  ].filter(Boolean);
+  return html`<div class="progress" role="status">
+    <progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress>
+    <span class="number">${doneText(experiment)}</span>
+    ${facts.map((text) => html`<span key=${text.replace(/[\d.,]+/g, "")} class="number quiet">${text}</span>`)}
+    ${failures > 0 ? html`<span class="bad number">${failuresText(failures)}</span>` : null}
+    ${busy.value ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${busy.value.text}></progress> ${busy.value.text} ${busy.value.cancel ? html`<button class="bare" onClick=${() => busy.value?.cancel.abort()}>Cancel</button>` : null}</span>` : null}
+  </div>`;
+}
+
+function About({ experiment, facts }) {
+  const rows = [
+    ["began", whenInFull(experiment.made)],
+    ["folder", html`<span class="mono">.workbench/experiments/${experiment.id}</span>`],
+    ["changed", changedText(experiment.changed) || "nothing"],
+    ["model", facts.model && baseName(facts.model)],
+    ...Object.entries(facts.factors ?? {}).map(([name, levels]) => [name, levelsText(levels)]),
+    ...Object.entries(facts.groups ?? {}).map(([name, number]) => [
+      `group ${name}`,
+      `${number} ${number === 1 ? "participant" : "participants"}; ${Object.entries(facts.group_parameters?.[name] ?? {}).map(([key, value]) => `${key} ${valueText(value)}`).join(", ") || "no parameters"}`,
+    ]),
+    ...Object.entries(facts.settings ?? {}).map(([name, value]) => [name, valueText(value)]),
+    ["trials a combination", facts.trials_a_cell],
+    ["seed", facts.seed],
+  ];
+  return html`<div class="about-design">
+    <div class="description">${(facts.description ?? "").split("\n\n").map((text, n) => html`<p key=${n} class=${n ? "quiet" : ""}>${text}</p>`)}</div>
+    <table><tbody>${rows.filter(([, value]) => value !== undefined && value !== "").map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>
+  </div>`;
+}
+
+/** Reads the facts of an experiment, which do not change while it runs. */
+function useFacts(experiment) {
+  const found = useSignal({ id: null, facts: null });
+  useEffect(() => {
+    const leave = new AbortController();
+    call("GET", `/api/experiments/${encodeURIComponent(experiment.id)}`, undefined, leave.signal)
+      .then(({ facts }) => (found.value = { id: experiment.id, facts }))
+      .catch(() => null);
+    return () => leave.abort();
+  }, [experiment.id, experiment.state]);
+  return found.value.id === experiment.id ? found.value.facts : null;
+}
+
+function Contents({ experiment, facts }) {
+  const path = `/api/experiments/${encodeURIComponent(experiment.id)}`;
+  const columns = useFresh(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
+  const parts = html`<div class="menus"><${Parts} experiment=${experiment} /></div>`;
+  if (facts === null) return html`${parts}<p class="empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
+  if (part.value === "about") return html`${parts}<${About} experiment=${experiment} facts=${facts} />`;
+  if (part.value === "trials") return html`<${Trials} experiment=${experiment} facts=${facts} />`;
+  if (part.value === "report" && experiment.report) return html`${parts}<iframe class="report" title="Report" sandbox="" src="${path}/report?${experiment.done}"></iframe>`;
+  if (columns.length > 2) return html`<${Figure} experiment=${experiment} facts=${facts} columns=${columns} />`;
+  return html`${parts}<p class="empty" role="status">${isRunning(experiment) ? "The figure appears with the first finished trials." : experiment.done > 0 ? html`<progress aria-label="Reading"></progress> Reading the trials …` : "No trial has finished."}</p>`;
+}
+
+export function Experiment() {
+  const experiment = experiments.value?.find(({ id }) => id === shown.value);
+  const facts = useFacts(experiment);
+  const back = () => (shown.value = "");
+  return html`
+    <div class="tools">
+      <button class="bare" title="All experiments" onClick=${back}><span class="back"><${Icon} name="right" /></span>Experiments</button>
+      <b class="name" title=${experiment.id}>${experiment.name}</b>
+      <span class="quiet when" title=${whenInFull(experiment.made)}>${whenText(experiment.made)}</span>
+      <span class="state ${experiment.state}">${stateText(experiment)}</span>
+      <span class="stretch"></span>
+      <${Actions} experiment=${experiment} />
+    </div>
+    <${Progress} experiment=${experiment} />
+    ${experiment.problem ? html`<pre class="trouble" role="alert">${experiment.problem}</pre>` : null}
+    <div class="contents"><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} /></div>
+  `;
+}

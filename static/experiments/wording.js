@@ -1,0 +1,62 @@
+// Experiments as text: states, rates, levels.
+
+import { counted } from "../parts/count.js";
+import { valueText } from "../parts/chunk.js";
+
+const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };
+
+export const stateText = ({ state }) => STATES[state] ?? state;
+
+/** Returns the number of finished trials, of all. */
+export function doneText({ done, total }) {
+  const of = total === null ? "" : ` of ${total.toLocaleString("en")}`;
+  return `${done.toLocaleString("en")}${of} ${(total ?? done) === 1 ? "trial" : "trials"}`;
+}
+
+/** Returns a duration in a unit that suits it. */
+export function durationText(seconds) {
+  if (seconds < 1) return "less than 1 s";
+  if (seconds < 100) return `${Math.ceil(seconds)} s`;
+  if (seconds < 100 * 60) return `${Math.round(seconds / 60)} min`;
+  return seconds < 72 * 3600 ? `${(seconds / 3600).toFixed(1)} h` : `${Math.round(seconds / 86_400)} days`;
+}
+
+export function rateText(rate) {
+  return rate >= 10 ? `${Math.round(rate).toLocaleString("en")} a second` : rate >= 0.2 ? `${rate.toFixed(1)} a second` : `${(60 * rate).toFixed(1)} a minute`;
+}
+
+export const failuresText = (failures) => `${counted(failures, "trial")} failed`;
+
+/** Returns the values that replace those of the design, in one line. */
+export function changedText(changed) {
+  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${Array.isArray(value) ? value.map(valueText).join(", ") : valueText(value)}`).join(" · ");
+}
+
+/** Returns a level as text that `readLevels` reads as the same value. */
+function levelText(level) {
+  if (typeof level !== "string") return level === null ? "none" : String(level);
+  return /^[^\s",;][^",;]*[^\s",;]$|^[^\s",;]$/.test(level) && typeof readLevel(level) === "string" ? level : JSON.stringify(level);
+}
+
+export const levelsText = (levels) => levels.map(levelText).join(", ");
+
+function readLevel(text) {
+  if (text.startsWith('"')) return JSON.parse(text);
+  if (text !== "" && Number.isFinite(Number(text))) return Number(text);
+  return { true: true, false: false, none: null, True: true, False: false, None: null }[text] ?? (/^[Nn]one$/.test(text) ? null : text);
+}
+
+/** Returns the levels that a text lists, separated by commas; texts may stand in quotes. Returns null if it lists none, or one twice. */
+export function readLevels(text) {
+  const parts = text.match(/\s*(?:"(?:[^"\\]|\\.)*"|[^,;"]+)\s*(?:[,;]|$)/g) ?? [];
+  if (parts.join("").trim() !== text.trim() || parts.length === 0) return null;
+  try {
+    const levels = parts.map((part) => readLevel(part.trim().replace(/[,;]$/, "").trim()));
+    return levels.includes("") || new Set(levels.map((level) => JSON.stringify(level))).size < levels.length ? null : levels;
+  } catch {
+    return null; // wrong quotes
+  }
+}
+
+/** Returns the module of a path without its folders. */
+export const baseName = (path) => path.split("/").at(-1);

@@ -1,0 +1,51 @@
+// Experiments: a design run by many trials; their progress, figures and rows, and each trial in the 3D view.
+
+import { html, useEffect } from "../vendor/preact.js";
+import { Icon } from "../parts/icon.js";
+import { agoText, whenInFull, whenText } from "../runs/wording.js";
+import { experiments, follow, isRunning, listExperiments, problem, showExperiment, shown } from "../experiments/list.js";
+import { NewExperiment } from "../experiments/new.js";
+import { Experiment } from "../experiments/one.js";
+import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
+
+function Row({ experiment }) {
+  const { id, name, made, state, done, total, failures, left, changed } = experiment;
+  const open = () => showExperiment(id);
+  return html`<tr data-experiment=${id} onClick=${open}>
+    <td class="name"><button class="link" onClick=${(event) => (event.stopPropagation(), open())}>${name}</button><small>${changedText(changed) || "as designed"}</small></td>
+    <td class="when" title=${whenInFull(made)}><span class="number">${whenText(made)}</span><small>${agoText(made)}</small></td>
+    <td class="state ${state}"><span>${stateText(experiment)}</span><small>${isRunning(experiment) && left !== null ? `${durationText(left)} left` : failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : ""}</small></td>
+    <td class="done"><span class="number">${doneText(experiment)}</span><progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress></td>
+  </tr>`;
+}
+
+function List() {
+  const all = experiments.value;
+  const begin = html`<button class="primary" onClick=${() => (shown.value = "new")}>New experiment</button>`;
+  return html`
+    <div class="tools">
+      ${begin}
+      <span class="stretch"></span>
+      <span class="quiet number" role="status">${all === null ? "" : all.length}</span>
+      <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listExperiments}><${Icon} name="restart" /></button>
+    </div>
+    ${problem.value ? html`<p class="problem bad" role="alert">The experiments cannot be listed: ${problem.value}</p>` : null}
+    ${all === null ? html`<p class="empty" role="status">${problem.value ? "" : "Reading the experiments …"}</p>` : null}
+    ${all?.length === 0 ? html`<p class="empty">No experiments yet. An experiment runs a model many times: for several participants, in all combinations of conditions. Each trial can be opened in the 3D view.</p>` : null}
+    ${all?.length > 0
+      ? html`<div class="list"><table aria-label="Experiments">
+          <thead><tr><th scope="col">Design</th><th scope="col" class="when">Began</th><th scope="col" class="state">State</th><th scope="col" class="done">Finished</th></tr></thead>
+          <tbody>${all.map((experiment) => html`<${Row} key=${experiment.id} experiment=${experiment} />`)}</tbody>
+        </table></div>`
+      : null}
+  `;
+}
+
+function Experiments() {
+  useEffect(follow, []);
+  const isThere = experiments.value?.some(({ id }) => id === shown.value);
+  const view = shown.value === "new" ? html`<${NewExperiment} />` : isThere ? html`<${Experiment} />` : html`<${List} />`;
+  return html`<div class="experiments">${view}</div>`;
+}
+
+export const panel = { id: "experiments", title: "Experiments", order: 8.5, View: Experiments };

@@ -1,0 +1,95 @@
+"""Experiments in a real browser: chosen, changed, run, watched, read, and each trial opened."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.helpers.experiments import write_experiment
+from tests.helpers.page import open_tab, until
+from tests.helpers.workbench_server import Served
+
+
+@pytest.fixture(scope="module")
+def design(workbench: Served) -> Iterator[str]:
+    """A small experiment among the models."""
+    path = write_experiment(workbench.folder)
+    yield f"{path.name}:counting"
+    path.unlink()
+    (workbench.folder / "counter.py").unlink()
+
+
+def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page], workbench: Served, design: str) -> None:
+    page = pages("counting.py", tab=None)
+    open_tab(page, "Experiments")
+    expect(page.get_by_text("No experiments yet.")).to_be_visible()
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    foot = page.locator(".foot")
+    expect(foot).to_contain_text("24 trials")
+    levels = page.get_by_label("Levels of n")
+    expect(levels).to_have_value("1, 2, 5")
+    levels.fill("1, 2, 2")
+    expect(foot).to_contain_text("n: levels, each once, separated by commas")
+    levels.fill("1, 2, 5, 9")
+    page.get_by_label("trials a combination").fill("3")
+    expect(foot).to_contain_text("24 trials")  # 4 numbers, 3 times, 2 participants
+    page.get_by_label("processes").fill("1")
+    page.get_by_label("Set another parameter").select_option("mode")
+    page.get_by_label("Value of mode").fill("count")
+    expect(foot).to_contain_text("s a trial")
+    foot.get_by_role("button", name="Run").click()
+
+    expect(page.locator(".tools .state")).to_have_text("finished")
+    expect(page.locator(".progress")).to_contain_text("24 of 24 trials")
+    points = page.locator(".point")
+    expect(points).to_have_count(4)
+    expect(points.nth(2)).to_have_attribute("aria-label", re.compile(r"Trials of n 5: 0\.300 .*\(2 participants, 6 trials\)"))
+    points.nth(2).press("Enter")
+    rows = page.locator(".trials tbody tr")
+    expect(rows).to_have_count(6)
+    page.get_by_role("button", name="Any n").click()
+    expect(rows).to_have_count(24)
+    page.get_by_role("button", name="Sort by luck").click()
+    expect(page.get_by_role("columnheader").filter(has_text="luck")).to_have_attribute("aria-sort", "descending")
+    number = rows.first.locator("td").first.inner_text()
+    rows.first.click()
+    page.wait_for_url(re.compile(rf"recording=counting_trial_{number}-"))
+    expect(page.get_by_text("Recording", exact=True)).to_be_visible()
+
+    page.reload()
+    expect(page.locator(".tools .name")).to_have_text("counting")  # the experiment is still shown
+    page.get_by_role("button", name="Design").click()
+    expect(page.locator(".about-design")).to_contain_text("trials 3 · n 1, 2, 5, 9 · mode count")
+    (name,) = [one["id"] for one in workbench.get("/api/experiments").json()["experiments"]]
+    (workbench.folder / ".workbench/experiments" / name / "report.html").write_text("<h1>The report</h1>", "utf-8")
+    page.get_by_role("button", name="Report", exact=True).click()
+    expect(page.frame_locator("iframe.report").get_by_role("heading")).to_have_text("The report")
+
+
+def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], workbench: Served, design: str) -> None:
+    wanted = {"design": design, "trials": 2000, "workers": 1}
+    name = workbench.post("/api/experiments", wanted).json()["id"]
+    first, second = (pages("counting.py", tab="experiments", refusals=True) for _ in range(2))
+    for page in (first, second):
+        page.locator(f"tr[data-experiment='{name}']").click()
+        expect(page.locator(".point")).not_to_have_count(0)
+    first.get_by_role("button", name="Stop", exact=True).click()
+    for page in (first, second):
+        expect(page.locator(".tools .state")).to_have_text("stopped")
+    done = workbench.get(f"/api/experiments/{name}").json()["done"]
+    second.get_by_role("button", name="Resume").click()
+    for page in (first, second):
+        expect(page.locator(".tools .state")).to_have_text("running")
+    until(first, lambda: workbench.get(f"/api/experiments/{name}").json()["done"] > done)
+    open_tab(first, "Buffers")  # and back: the same experiment
+    open_tab(first, "Experiments")
+    first.get_by_role("button", name="Stop", exact=True).click()
+    expect(second.locator(".tools .state")).to_have_text("stopped")
+    second.get_by_role("button", name="Delete", exact=True).click()
+    second.get_by_role("dialog").get_by_role("button", name="Delete", exact=True).click()
+    for page in (first, second):
+        expect(page.get_by_role("table", name="Experiments")).not_to_contain_text("stopped")

@@ -1,0 +1,367 @@
+"""Experiments over REST: checked, run, stopped, continued, read, and refused where something is wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.workbench_server import Served, served
+
+PATIENCE = 120.0
+SLOW = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.05)\nif mode == "fail"')
+COUNTING = "counting_design.py:counting"
+
+
+@pytest.fixture(scope="module")
+def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    folder = tmp_path_factory.mktemp("experiments") / "models"
+    folder.mkdir()
+    write_experiment(folder)
+    (folder / "slow").mkdir()
+    write_experiment(folder / "slow", factors='{"n": [1, 2]}', participants=4, trials=100, model=SLOW)
+    with served(folder) as running:
+        yield running
+
+
+def started(workbench: Served, design: str = COUNTING, **more: Any) -> str:
+    answer = workbench.post("/api/experiments", {"design": design, "workers": 1, **more})
+    assert answer.status_code == 201, answer.text
+    return answer.json()["id"]
+
+
+def state_of(workbench: Served, name: str) -> dict[str, Any]:
+    return workbench.get(f"/api/experiments/{name}").json()
+
+
+def awaited(workbench: Served, name: str, *states: str, done: int = 0) -> dict[str, Any]:
+    """Waits until an experiment has one of some states, and so many finished trials."""
+    end = time.monotonic() + PATIENCE
+    while (now := state_of(workbench, name))["state"] not in states or now["done"] < done:
+        assert time.monotonic() < end, now
+        time.sleep(0.1)
+    return now
+
+
+@pytest.fixture(scope="module")
+def finished(workbench: Served) -> str:
+    """A small experiment that has run: 2 participants, 3 numbers, 4 trials each."""
+    name = started(workbench)
+    now = awaited(workbench, name, "finished")
+    assert (now["done"], now["total"], now["failures"], now["problem"]) == (24, 24, 0, None)
+    assert now["facts"]["factors"] == {"n": [1, 2, 5]}
+    return name
+
+
+def test_designs_of_the_library_and_of_model_files_are_listed_without_running_them(workbench: Served) -> None:
+    (workbench.folder / "bad_design.py").write_text("import nothing_like_this\n@design\ndef bad():\n    '''Never runs.'''\n", "utf-8")
+    listed = {one["id"]: one for one in workbench.get("/api/designs").json()["designs"]}
+    assert listed[COUNTING] == {
+        "id": COUNTING,
+        "name": "counting",
+        "file": "counting_design.py",
+        "description": "Counts to several numbers.",
+    }
+    assert listed["bad_design.py:bad"]["description"] == "Never runs."
+    assert listed["warren_whang_1987"]["file"] is None
+    assert "slow/counting_design.py:counting" in listed
+    answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
+    assert answer.status_code == 422
+    assert "nothing_like_this" in answer.json()["error"]
+    (workbench.folder / "bad_design.py").unlink()
+
+
+def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
+    facts = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": [3, 4]}, "participants": 5, "trials": 7}).json()
+    assert (facts["trials"], facts["factors"], facts["groups"], facts["trials_a_cell"]) == (70, {"n": [3, 4]}, {"all": 5}, 7)
+    assert [parameter["name"] for parameter in facts["parameters"]] == ["n", "mode"]
+    tried = workbench.post("/api/designs/check", {"design": COUNTING, "trial": True}).json()
+    assert 0 < tried["seconds_a_trial"] < 60
+    wrong = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"nn": 3}})
+    assert wrong.status_code == 422
+    assert wrong.json()["error"].startswith("--set nn: Design: the model has no parameter 'nn'; did you mean 'n'?")
+    assert workbench.post("/api/experiments", {"design": COUNTING, "values": {"nn": 3}}).json() == wrong.json()
+
+
+def test_values_reach_the_design_as_they_are(workbench: Served) -> None:
+    texts = ["a, b", "'", '"', "1", "None", "é\n", "--json", "[1]"]
+    facts = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": [1, 2.5, True, None], "mode": "x"}}).json()
+    assert facts["factors"]["n"] == [1, 2.5, True, None]
+    facts = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": texts}}).json()
+    assert facts["factors"]["n"] == texts
+
+
+def test_rows_are_paged_sorted_and_filtered(workbench: Served, finished: str) -> None:
+    path = f"/api/experiments/{finished}/rows"
+    page = workbench.get(path, params={"first": 4, "most": 3}).json()
+    assert (page["total"], [row["trial"] for row in page["rows"]]) == (24, [4, 5, 6])
+    roles = {column["name"]: column["role"] for column in page["columns"]}
+    assert (roles["n"], roles["rt"], roles["luck"], roles["trial"], roles["wall_s"]) == ("value", "measure", "measure", "own", "own")
+    found = workbench.get(path, params={"where": json.dumps({"n": 5, "participant": "all 2"}), "sort": "luck", "down": True}).json()
+    luck = [row["luck"] for row in found["rows"]]
+    assert found["total"] == 4
+    assert luck == sorted(luck, reverse=True)
+    assert {(row["n"], row["participant"]) for row in found["rows"]} == {(5, "all 2")}
+    assert workbench.get(path, params={"failed": True}).json()["total"] == 0
+    assert workbench.get(path, params={"first": 10**15}).json()["rows"] == []
+
+
+def test_means_are_those_of_participants(workbench: Served, finished: str) -> None:
+    rows = workbench.get(f"/api/experiments/{finished}/rows").json()["rows"]
+    answer = workbench.get(f"/api/experiments/{finished}/means", params={"x": "n", "measure": "luck", "by": ["group"]}).json()
+    assert [point["at"] for point in answer["points"]] == [[1, "all"], [2, "all"], [5, "all"]]
+    for point in answer["points"]:
+        of = [[row["luck"] for row in rows if (row["n"], row["participant"]) == (point["at"][0], who)] for who in ("all 1", "all 2")]
+        means = [sum(values) / len(values) for values in of]
+        assert point["mean"] == pytest.approx(sum(means) / 2)
+        assert point["error"] == pytest.approx(abs(means[0] - means[1]) / 2)
+        assert (point["participants"], point["trials"]) == (2, 8)
+    assert len(workbench.get(f"/api/experiments/{finished}/means?x=participant&measure=rt").json()["points"]) == 2
+
+
+def test_a_trial_is_recorded_and_opened(workbench: Served, finished: str) -> None:
+    row = workbench.get(f"/api/experiments/{finished}/rows?first=3&most=1").json()["rows"][0]
+    name = workbench.post(f"/api/experiments/{finished}/trial", {"number": 3}).json()["recording"]
+    assert name.startswith("counting_trial_3-")
+    assert workbench.post(f"/api/experiments/{finished}/trial", {"number": 3}).json()["recording"] == name
+    summary = workbench.get(f"/api/recordings/{name}").json()
+    assert summary["time"] == pytest.approx(row["rt"])
+    opened = workbench.post(f"/api/recordings/{name}/open")
+    assert opened.status_code == 201, opened.text
+    workbench.post(f"/api/sessions/{opened.json()['id']}/close")
+    assert workbench.post(f"/api/recordings/{name}/replay").json()["agrees"] is True
+    missing = workbench.post(f"/api/experiments/{finished}/trial", {"number": 24})
+    assert (missing.status_code, "from 0 to 23" in missing.text) == (409, True)
+
+
+def test_failed_trials_are_rows_with_their_errors(workbench: Served) -> None:
+    name = started(workbench, values={"n": [1], "mode": "fail"}, participants=1, trials=2)
+    now = awaited(workbench, name, "finished")
+    assert (now["done"], now["failures"], now["changed"]) == (2, 2, {"participants": 1, "trials": 2, "n": [1], "mode": "fail"})
+    rows = workbench.get(f"/api/experiments/{name}/rows?failed=true").json()["rows"]
+    assert all("cannot count to 1" in row["error"] for row in rows)
+    assert len(rows) == 2
+    assert workbench.post(f"/api/experiments/{name}/trial", {"number": 0}).status_code == 200  # it shows how far the trial came
+
+
+def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: Served) -> None:
+    name = started(workbench, "slow/counting_design.py:counting")
+    assert workbench.post(f"/api/experiments/{name}/resume").json()["error"] == "this experiment runs already"
+    assert workbench.post(f"/api/experiments/{name}/delete").status_code == 409
+    now = awaited(workbench, name, "running", done=20)
+    assert now["workers"] == 1
+    assert now["rate"] is None or now["rate"] > 0
+    begin = time.monotonic()
+    session = workbench.post("/api/sessions", {"model": "counting.py", "run": True}).json()["id"]
+    assert time.monotonic() - begin < 20
+    workbench.post(f"/api/sessions/{session}/close")
+    points = workbench.get(f"/api/experiments/{name}/means?x=n&measure=rt").json()["points"]
+    assert sum(point["trials"] for point in points) >= 20
+    assert workbench.post(f"/api/experiments/{name}/stop").json() == {"stopping": name}
+    workbench.post(f"/api/experiments/{name}/stop")  # a second time changes nothing
+    stopped = awaited(workbench, name, "stopped")
+    assert 20 <= stopped["done"] < 800
+    assert stopped["problem"] is None
+    assert workbench.post(f"/api/experiments/{name}/stop").json()["error"] == "this experiment does not run"
+    resumed = workbench.post(f"/api/experiments/{name}/resume", {"workers": 2}).json()
+    assert (resumed["state"], resumed["done"] >= stopped["done"]) == ("running", True)
+    assert awaited(workbench, name, "running", done=stopped["done"] + 5)["total"] == 800
+    workbench.post(f"/api/experiments/{name}/stop")
+    awaited(workbench, name, "stopped")
+
+
+def test_no_more_than_two_run_at_once(workbench: Served) -> None:
+    names = [started(workbench, "slow/counting_design.py:counting") for _ in range(2)]
+    refused = workbench.post("/api/experiments", {"design": COUNTING})
+    assert (refused.status_code, refused.json()["error"]) == (409, "2 experiments run already: stop one, or wait for its end")
+    for name in names:
+        workbench.post(f"/api/experiments/{name}/stop")
+    for name in names:
+        awaited(workbench, name, "stopped")
+        assert workbench.post(f"/api/experiments/{name}/delete").json()["trash"].startswith(".workbench/trash/")
+        assert workbench.get(f"/api/experiments/{name}").status_code == 404
+
+
+def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Path) -> None:
+    folder = tmp_path / "models"
+    folder.mkdir()
+    write_experiment(folder, participants=4, trials=200, model=SLOW)
+    with served(folder) as first:
+        name = started(first)
+        awaited(first, name, "running", done=5)
+    lock = folder / ".workbench" / "experiments" / name / "lock"
+    pid = int(lock.read_text("utf-8"))
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    assert (lock.parent / "trials.csv").is_file()  # it has ended in order
+    with served(folder) as second:
+        now = state_of(second, name)
+        assert (now["state"], now["total"], now["done"] >= 5) == ("stopped", 2400, True)
+        assert second.post(f"/api/experiments/{name}/resume", {"workers": 1}).json()["state"] == "running"
+        awaited(second, name, "running", done=now["done"] + 1)
+
+
+def test_an_experiment_whose_process_is_killed_says_so_and_can_be_continued(workbench: Served) -> None:
+    name = started(workbench, "slow/counting_design.py:counting")
+    awaited(workbench, name, "running", done=1)
+    os.kill(int((workbench.folder / ".workbench/experiments" / name / "lock").read_text("utf-8")), signal.SIGKILL)
+    assert awaited(workbench, name, "failed")["problem"] == "its process was ended by the signal SIGKILL"
+    assert workbench.post(f"/api/experiments/{name}/resume", {"workers": 1}).json()["problem"] is None
+    workbench.post(f"/api/experiments/{name}/stop")
+    awaited(workbench, name, "stopped")
+
+
+def test_code_of_an_experiment_from_elsewhere_runs_only_with_permission(workbench: Served, finished: str) -> None:
+    folder = workbench.folder / ".workbench/experiments"
+    shutil.copytree(folder / finished, folder / "from-elsewhere")
+    described = json.loads((folder / "from-elsewhere/experiment.json").read_text("utf-8"))
+    described["model"]["text"] += "\n# changed\n"
+    (folder / "from-elsewhere/experiment.json").write_text(json.dumps(described), "utf-8")
+    for what, body in (("resume", {}), ("trial", {"number": 0}), ("report", {})):
+        assert workbench.post(f"/api/experiments/from-elsewhere/{what}", body).status_code == 403
+    code = workbench.get("/api/experiments/from-elsewhere/code").json()
+    assert code["made_here"] is False
+    assert code["file"].endswith("counting_design.py")
+    assert any("# changed" in text for text in code["helpers"].values())
+    assert workbench.post("/api/experiments/from-elsewhere/trial", {"number": 0, "trust": True}).status_code == 200
+    assert workbench.get("/api/experiments/from-elsewhere/code").json()["made_here"] is True
+
+
+def test_a_report_is_shown_without_scripts(workbench: Served, finished: str) -> None:
+    path = f"/api/experiments/{finished}/report"
+    folder = workbench.folder / ".workbench/experiments" / finished
+    if not state_of(workbench, finished)["report"]:
+        assert workbench.get(path).status_code == 404
+    (folder / "report").mkdir(exist_ok=True)
+    (folder / "report/index.html").write_text("<h1>Report</h1><script>alert(1)</script>", "utf-8")
+    assert state_of(workbench, finished)["report"] is True
+    answer = workbench.get(path)
+    assert answer.text.startswith("<h1>Report</h1>")
+    assert answer.headers["content-type"] == "text/html; charset=utf-8"
+    policy = answer.headers.get_list("content-security-policy")
+    assert len(policy) == 1
+    assert "sandbox" in policy[0].split("; ")
+    assert "default-src 'none'" in policy[0]
+    (folder / "report/index.html").unlink()
+    (folder / "report/index.html").symlink_to("/etc/passwd")
+    assert workbench.get(path).status_code == 404
+    (folder / "report/index.html").unlink()
+
+
+@pytest.mark.parametrize(
+    "name", ["..", "..%2Frecordings", "%2e%2e", "..%2F..%2Fmodels", ".hidden", "a" * 155, "x\0y", "counting_design.py"]
+)
+def test_names_that_lead_elsewhere_are_not_found(workbench: Served, name: str) -> None:
+    outside = workbench.folder / ".workbench" / "experiment.json"
+    outside.parent.mkdir(exist_ok=True)
+    outside.write_text("{}", "utf-8")
+    quoted = name.replace("\0", "%00")
+    for what in ("", "/rows", "/means?x=n&measure=rt", "/report", "/code"):
+        url = httpx.URL(workbench.url, raw_path=f"/api/experiments/{quoted}{what}".encode())
+        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
+    outside.unlink()
+
+
+def test_a_folder_that_is_a_link_is_no_experiment(workbench: Served, finished: str, tmp_path: Path) -> None:
+    folder = workbench.folder / ".workbench/experiments"
+    shutil.copytree(folder / finished, tmp_path / "elsewhere")
+    (folder / "linked").symlink_to(tmp_path / "elsewhere")
+    assert workbench.get("/api/experiments/linked").status_code == 404
+    assert "linked" not in [one["id"] for one in workbench.get("/api/experiments").json()["experiments"]]
+    (folder / "linked").unlink()
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        ({}, 422),
+        ({"design": "nothing_like_this"}, 404),
+        ({"design": "--help"}, 404),
+        ({"design": "/etc/passwd:x"}, 400),
+        ({"design": "../counting_design.py:counting"}, 400),
+        ({"design": "counting_design.py:other"}, 404),
+        ({"design": "counting_design.py:__import__"}, 404),
+        ({"design": COUNTING, "values": {"n; import os": 1}}, 422),
+        ({"design": COUNTING, "values": {"n": []}}, 422),
+        ({"design": COUNTING, "values": {"n": [[1]]}}, 422),
+        ({"design": COUNTING, "values": {"n": "x" * 1001}}, 422),
+        ({"design": COUNTING, "participants": 0}, 422),
+        ({"design": COUNTING, "trials": -1}, 422),
+        ({"design": COUNTING, "workers": 10_000}, 422),
+        ({"design": COUNTING, "scheduler": "tcp://elsewhere:1"}, 422),
+    ],
+)
+def test_what_cannot_be_started_is_refused(workbench: Served, body: dict[str, Any], status: int) -> None:
+    before = len(workbench.get("/api/experiments").json()["experiments"])
+    answer = workbench.post("/api/experiments", body)
+    assert (answer.status_code, isinstance(answer.json()["error"], str)) == (status, True)
+    assert len(workbench.get("/api/experiments").json()["experiments"]) == before
+
+
+@pytest.mark.parametrize(
+    ("query", "status"),
+    [
+        ("rows?sort=nothing", 409),
+        ("rows?sort=n%27%29%3B%20DROP%20TABLE%20trial%3B%20--", 409),
+        ("rows?where=%7B%22n%27%29%20OR%20%281%22%3A1%7D", 409),
+        ("rows?where=nothing", 409),
+        ("rows?where=%5B1%5D", 409),
+        ("rows?where=%7B%22n%22%3A%7B%7D%7D", 409),
+        ("rows?where=%7B%22n%22%3A1e999%7D", 409),
+        ("rows?where=%7B%22n%22%3A99999999999999999999%7D", 200),
+        ("rows?most=100000", 422),
+        ("rows?first=-1", 422),
+        ("means?x=n", 422),
+        ("means?x=n&measure=participant", 409),
+        ("means?x=n%22&measure=rt", 409),
+        ("means?x=n&measure=rt&by=a&by=b&by=c&by=d&by=e", 422),
+    ],
+)
+def test_odd_questions_get_an_answer_and_change_nothing(workbench: Served, finished: str, query: str, status: int) -> None:
+    answer = workbench.get(f"/api/experiments/{finished}/{query}")
+    assert answer.status_code == status, answer.text
+    assert workbench.get(f"/api/experiments/{finished}/rows?most=1").json()["total"] == 24
+
+
+def test_a_folder_with_damaged_files_is_listed_and_read_with_an_error(workbench: Served) -> None:
+    folder = workbench.folder / ".workbench/experiments" / "damaged"
+    folder.mkdir(parents=True)
+    (folder / "experiment.json").write_bytes(b"\xff not JSON")
+    (folder / "workbench.json").write_text('{"facts": 1}', "utf-8")
+    (folder / "trials.sqlite").write_bytes(b"no database" * 100)
+    now = state_of(workbench, "damaged")
+    assert (now["state"], now["total"], now["name"]) == ("failed", None, "damaged")
+    assert now["problem"].startswith("its table cannot be read: ")
+    assert workbench.get("/api/experiments/damaged/rows").status_code == 409
+    assert workbench.get("/api/experiments/damaged/code").status_code == 409
+    assert workbench.post("/api/experiments/damaged/resume", {"trust": True}).status_code == 422
+    shutil.rmtree(folder)
+
+
+def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    packages = tmp_path / "packages"
+    packages.mkdir()
+    (packages / "distributed.py").write_text("raise ModuleNotFoundError('no', name='distributed')\n", "utf-8")
+    folder = tmp_path / "models"
+    folder.mkdir()
+    write_experiment(folder)
+    monkeypatch.setenv("PYTHONPATH", str(packages))
+    with served(folder) as running:
+        answer = running.post("/api/experiments", {"design": COUNTING})
+        assert (answer.status_code, answer.json()["error"].endswith("install: pip install 'actr3d[experiment]'")) == (422, True)
+        assert running.get("/api/experiments").json() == {"experiments": []}
+
+
+def test_a_file_beside_the_models_does_not_stand_in_for_a_package(workbench: Served) -> None:
+    (workbench.folder / "rich.py").write_text("raise SystemExit('not this one')\n", "utf-8")
+    assert workbench.post("/api/designs/check", {"design": COUNTING, "trials": 99}).json()["trials"] == 594
+    (workbench.folder / "rich.py").unlink()

@@ -1,0 +1,115 @@
+"""Finds designs of experiments in the texts of files, without running them: those of the library, and those of the user's model files."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import actr3d
+from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.loading.source_text import read_source
+from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
+from actr3d.values import escape_surrogates
+from workbench.files import LARGEST, ModelFolder
+
+LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
+"""The folder of the library's own designs; importing them would load what only experiments need."""
+
+
+class NoSuchDesignError(Actr3dError):
+    """There is no design of that name."""
+
+    status = 404
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignOutline:
+    """Describes a design, as far as this is possible without running it."""
+
+    id: str
+    """What identifies it for the page: its name, or `FILE:NAME` for one in a model file."""
+    name: str
+    file: str | None
+    """The model file; None for one of the library's."""
+    description: str
+    """Its docstring."""
+
+
+def designs_of(folder: ModelFolder) -> list[DesignOutline]:
+    """Returns the designs of the library and of the model files."""
+    found = [outline for path in sorted(LIBRARY.glob("*.py")) for outline in _in_file(path, None)]
+    return found + [outline for path in folder.paths() for outline in _in_file(folder.root / path, escape_surrogates(path))]
+
+
+def design_argument(folder: ModelFolder, design: str) -> str:
+    """Returns the name of a design for the command `actr3d experiment`.
+
+    Args:
+        folder: The folder of the models.
+        design: The `id` of the design.
+
+    Raises:
+        NoSuchDesignError: If there is no such design.
+        FileError: If the file is not one of the model files.
+    """
+    file, colon, name = design.rpartition(":")
+    if not colon:
+        known = [outline.name for path in LIBRARY.glob("*.py") for outline in _in_file(path, None)]
+        if name not in known:
+            raise NoSuchDesignError(f"the library has no design '{name}'{did_you_mean(name, known)}")
+        return name
+    where = folder.locate(file)
+    if name not in [outline.name for outline in _in_file(where, file)]:
+        raise NoSuchDesignError(f"'{file}' has no design '{name}'")
+    return f"{where}:{name}"
+
+
+def stamp_of(folder: ModelFolder, design: str) -> Any:
+    """Returns a value that changes whenever the file of a design changes, or another file in its folder."""
+    file, colon, _ = design.rpartition(":")
+    beside = folder.locate(file).parent.glob("*.py") if colon else ()
+    return sorted((path.name, *_stamp(path)) for path in beside if path.is_file())
+
+
+def _in_file(path: Path, file: str | None) -> list[DesignOutline]:
+    try:
+        stamp = _stamp(path)
+        return list(_read(path, file, stamp)) if stamp[1] <= LARGEST else []
+    except (OSError, ModelFileError):
+        return []
+
+
+def _stamp(path: Path) -> tuple[int, int]:
+    now = path.stat()
+    return now.st_mtime_ns, now.st_size
+
+
+@lru_cache(maxsize=1000)
+def _read(path: Path, file: str | None, _: tuple[int, int]) -> tuple[DesignOutline, ...]:
+    """Reads a file; the numbers change when the file changes."""
+    text = read_source(path)
+    if "design" not in text:
+        return ()
+    marked = [node for node in syntax_tree(text).body if isinstance(node, ast.FunctionDef) and any(map(_marks, node.decorator_list))]
+    return tuple(
+        DesignOutline(
+            id=node.name if file is None else f"{file}:{node.name}",
+            name=node.name,
+            file=file,
+            description=escape_surrogates(ast.get_docstring(node) or ""),
+        )
+        for node in marked
+    )
+
+
+def _marks(mark: ast.expr) -> bool:
+    """Returns whether a decorator is `@design`, also as `@experiment.design`."""
+    return (mark.attr if isinstance(mark, ast.Attribute) else mark.id if isinstance(mark, ast.Name) else "") == "design"
+
+
+def described(folder: ModelFolder) -> list[dict[str, Any]]:
+    """Returns the designs as plain values."""
+    return [asdict(outline) for outline in designs_of(folder)]

@@ -1,0 +1,134 @@
+"""Runs the command `actr3d` in a process of its own: the server itself loads nothing of what experiments need."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+from collections import deque
+from collections.abc import AsyncGenerator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import msgspec
+
+from actr3d.errors import Actr3dError
+from workbench.experiment_messages import EVENTS, AnyEvent
+
+NICENESS = 10
+"""How far its processes stand back behind the server and the sessions, from 0 to 19."""
+LONGEST_LINE = 4_000_000
+"""Maximum length of a line of its output [bytes]."""
+LAST_LINES = 60
+"""How many lines of its messages are kept."""
+PART = 4_000
+"""How much of a message is read at a time, and shown at most [characters]."""
+
+
+class ExperimentError(Actr3dError):
+    """An experiment cannot be run, continued or read as requested."""
+
+    status = 409
+
+
+class ExperimentCommand:
+    """Holds a process that runs `actr3d`, and reads its output.
+
+    Args:
+        process: The process, the leader of a process group.
+    """
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        self._process = process
+        self._messages: deque[str] = deque(maxlen=LAST_LINES)
+        self._reading = asyncio.create_task(self._read_messages())
+        self._interrupted = False
+
+    @classmethod
+    async def start(cls, arguments: Sequence[str], folder: Path) -> ExperimentCommand:
+        """Starts the command.
+
+        Args:
+            arguments: Those of `actr3d`.
+            folder: The working folder.
+
+        Raises:
+            OSError: If no process can be started.
+        """
+        # A file of the user must not stand in for a package: with a safe path, Python does not search the working folder.
+        environment = {**os.environ, "PYTHONSAFEPATH": "1", "PYTHONUNBUFFERED": "1"}
+        pipe = asyncio.subprocess.PIPE
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "actr3d", *arguments),
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=pipe,
+            stderr=pipe,
+            cwd=folder,
+            env=environment,
+            limit=LONGEST_LINE,
+            start_new_session=True,
+        )
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, process.pid, NICENESS)
+        return cls(process)
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether it was asked to end."""
+        return self._interrupted
+
+    @property
+    def problem(self) -> str:
+        """Why it failed: the signal that ended it, or its last messages."""
+        code = self._process.returncode
+        if code is not None and code < 0 and not self._interrupted:
+            return f"its process was ended by the signal {signal.Signals(-code).name}"
+        text = "\n".join(self._messages).strip().removeprefix("error: ")
+        return text if len(text) <= PART else f"… {text[-PART:]}"
+
+    async def events(self) -> AsyncGenerator[AnyEvent]:
+        """Yields its messages; anything else that it prints is left out. Ends when it has closed its output."""
+        assert self._process.stdout is not None
+        while True:
+            try:
+                line = await self._process.stdout.readline()
+            except ValueError:  # the line is too long
+                continue
+            if not line:
+                return
+            with suppress(msgspec.MsgspecError, ValueError, RecursionError):
+                event = EVENTS.decode(line)
+                yield event
+
+    async def wait(self) -> int:
+        """Waits until it has ended; returns its exit code."""
+        async for _ in self.events():
+            pass
+        code = await self._process.wait()
+        with suppress(TimeoutError):
+            await asyncio.wait_for(asyncio.shield(self._reading), 1)
+        return code
+
+    def interrupt(self) -> None:
+        """Asks it to end in order, as Ctrl-C does; does so once, because a second time would break it off."""
+        if not self._interrupted and self._process.returncode is None:
+            self._interrupted = True
+            with suppress(ProcessLookupError):
+                self._process.send_signal(signal.SIGINT)
+
+    async def kill(self) -> None:
+        """Kills its process group, if it has not ended."""
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        await self._process.wait()
+        self._reading.cancel()
+
+    async def _read_messages(self) -> None:
+        assert self._process.stderr is not None
+        rest = ""
+        while part := await self._process.stderr.read(PART):
+            *lines, rest = (rest + part.decode("utf-8", "replace")).split("\n")
+            rest = rest[-PART:]
+            self._messages.extend(line[:PART] for line in lines)
+        self._messages.append(rest)

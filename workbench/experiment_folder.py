@@ -1,0 +1,170 @@
+"""Reads the folder of an experiment, which may come from anybody: nothing in it is executed, and no link is followed."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import secrets
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, cast
+
+import msgspec
+
+from actr3d.recording.key import is_sealed, make_key, seal
+from workbench.experiment_command import ExperimentError
+from workbench.experiment_messages import Facts
+
+SPECIFICATION, TABLE, LOCK, NOTES = "experiment.json", "trials.sqlite", "lock", "workbench.json"
+"""The files of an experiment's folder; the workbench writes only the last one."""
+REPORTS = ("report/index.html", "report.html")
+"""The places of a report."""
+LARGEST = 20_000_000
+"""Maximum size of a description [bytes]."""
+LARGEST_REPORT = 200_000_000
+"""Maximum size of a report that is shown [bytes]."""
+
+
+class Notes(msgspec.Struct, frozen=True, kw_only=True):
+    """What the workbench keeps of an experiment beside its table."""
+
+    facts: Facts | None = None
+    changed: dict[str, Any] = {}
+    """The values and numbers that replace those of the design."""
+    seal: str = ""
+    """The seal of this installation, with which it recognizes an experiment that it has made."""
+    problem: str | None = None
+    """Why its last run ended too early."""
+
+
+class ExperimentFolder:
+    """The folder of an experiment.
+
+    Args:
+        path: The folder.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @property
+    def is_experiment(self) -> bool:
+        """Whether there is an experiment."""
+        return not self.path.is_symlink() and is_plain(self.path / SPECIFICATION)
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether a process runs the experiment."""
+        lock = self.path / LOCK
+        if not is_plain(lock):
+            return False
+        try:
+            with lock.open("rb") as file:
+                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+        return False
+
+    @property
+    def table(self) -> Path | None:
+        """The file with the table of trials; None if no trial has finished."""
+        path = self.path / TABLE
+        return path if is_plain(path) else None
+
+    @property
+    def table_stamp(self) -> Any:
+        """A value that changes whenever the table changes; None if there is none."""
+        table = self.table
+        if table is None:
+            return None
+        found: list[Any] = []
+        for each in (table, table.with_name(f"{table.name}-wal")):
+            with suppress(OSError):
+                now = each.stat()
+                found.append((now.st_mtime_ns, now.st_size, now.st_ino))
+        return found
+
+    @property
+    def report(self) -> Path | None:
+        """The file of the report; None if there is none."""
+        for name in REPORTS:
+            path = self.path / name
+            if not path.parent.is_symlink() and is_plain(path) and path.stat().st_size <= LARGEST_REPORT:
+                return path
+        return None
+
+    def code(self) -> dict[str, Any]:
+        """Returns the code that continuing the experiment runs: the texts of design and model, and of their helper modules.
+
+        Raises:
+            ExperimentError: If the description cannot be read.
+        """
+        try:
+            given: Any = json.loads(self._read(SPECIFICATION))
+            design, model = given["design"], given["model"]
+            texts = {str(one["file"]): str(one["text"]) for one in (model, design)}
+            texts |= {str(file): str(text) for one in (design, model) for file, text in one.get("helpers", {}).values()}
+            file = str(design["file"])
+        except (OSError, KeyError, TypeError, ValueError, AttributeError, RecursionError):
+            raise ExperimentError(f"{SPECIFICATION} is not the description of an experiment") from None
+        return {"made_here": self.made_here, "file": file, "source": texts.pop(file), "helpers": texts}
+
+    # -- notes
+
+    @property
+    def notes(self) -> Notes:
+        """The notes; empty ones if there are none, or they cannot be read."""
+        try:
+            return msgspec.json.decode(self._read(NOTES), type=Notes)
+        except (OSError, msgspec.MsgspecError, ValueError, RecursionError):
+            return Notes()
+
+    def note(self, **changes: Any) -> None:
+        """Changes notes; does nothing if the folder is gone or cannot be written, because they are not needed to run an experiment."""
+        notes = msgspec.structs.replace(self.notes, **changes)
+        part = self.path / f".{NOTES}.{secrets.token_hex(4)}"
+        with suppress(OSError):
+            try:
+                part.write_bytes(msgspec.json.encode(notes))
+                part.replace(self.path / NOTES)
+            finally:
+                part.unlink(missing_ok=True)
+
+    @property
+    def made_here(self) -> bool:
+        """Whether this installation made the experiment, or its user has trusted it, and its description is still the same."""
+        try:
+            return is_sealed(self._checksum(), bytes.fromhex(self.notes.seal))
+        except (OSError, ValueError):
+            return False
+
+    def seal(self) -> None:
+        """Marks the experiment as made or trusted by this installation."""
+        key = make_key()
+        with suppress(OSError, ValueError):
+            if key is not None:
+                self.note(seal=seal(key, self._checksum()).hex())
+
+    def _checksum(self) -> bytes:
+        """Returns the checksum of the description, which differs from that of any recording."""
+        return hashlib.sha256(b"experiment\0" + self._read(SPECIFICATION)).digest()
+
+    def _read(self, name: str) -> bytes:
+        path = self.path / name
+        if not is_plain(path) or path.stat().st_size > LARGEST:
+            raise ValueError(f"{name} is no file, or too large")
+        return path.read_bytes()
+
+
+def is_plain(path: Path) -> bool:
+    """Returns whether a path is a file and no link."""
+    return path.is_file() and not path.is_symlink()
+
+
+def as_values(facts: Facts | None) -> dict[str, Any]:
+    """Returns facts as plain values."""
+    found = {} if facts is None else cast("dict[str, Any]", msgspec.to_builtins(facts))
+    return {name: value for name, value in found.items() if name != "event"}

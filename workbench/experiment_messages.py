@@ -1,0 +1,66 @@
+"""The messages of the command `actr3d experiment --json`, one JSON object a line; see `actr3d.experiment.command`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+
+class Event(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_field="event"):
+    """Base of all messages."""
+
+
+class Facts(Event, frozen=True, kw_only=True):
+    """What is known of an experiment before it runs."""
+
+    name: str
+    """That of the design."""
+    description: str
+    trials: int
+    """Their number."""
+    trials_a_cell: int
+    factors: dict[str, list[Any]]
+    """Levels by name."""
+    groups: dict[str, int]
+    """Numbers of participants by name."""
+    group_parameters: dict[str, dict[str, Any]] = {}
+    """Values of parameters by group and name; a text for a distribution."""
+    settings: dict[str, Any] = {}
+    """Values of other parameters by name."""
+    seed: int = 0
+    model: str = ""
+    """The model file."""
+    parameters: list[dict[str, Any]] = []
+    """The parameters of the model: name, help, unit, default, choices."""
+
+
+class Check(Facts, frozen=True, kw_only=True):
+    """The facts of an experiment of which a trial was run."""
+
+    seconds_a_trial: float
+    """Its duration on one processor [s]."""
+    error: str | None = None
+    """The traceback of the trial, if it failed."""
+
+
+class Progress(Event, frozen=True, kw_only=True):
+    """How far an experiment is."""
+
+    done: int
+    total: int
+    failures: int
+    workers: int = 0
+
+
+class End(Event, frozen=True, kw_only=True):
+    """An experiment has ended in order: all trials have run, or it was stopped."""
+
+    done: int
+    total: int
+    failures: int
+
+
+AnyEvent = Facts | Check | Progress | End
+EVENTS: msgspec.json.Decoder[AnyEvent] = msgspec.json.Decoder(AnyEvent)
+"""Decodes a message; other ones raise an error."""

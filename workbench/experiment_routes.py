@@ -1,0 +1,237 @@
+"""The REST interface for experiments: lists designs, checks and runs them, and returns their rows, figures and trials."""
+
+from __future__ import annotations
+
+import os
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import Response
+from pydantic import Field, TypeAdapter, ValidationError
+
+from actr3d.values import escape_surrogates, to_json
+from workbench.design_files import described
+from workbench.experiment_command import ExperimentError
+from workbench.experiments import Experiments
+from workbench.open_file import OpenFile, gone
+from workbench.page_commands import PageMessage
+from workbench.protocol import problem_of
+from workbench.readers import while_wanted
+from workbench.recording_routes import Trusting
+from workbench.routes import Id, sessions_of
+
+router = APIRouter(prefix="/api")
+
+MOST_ROWS = 500
+"""Maximum number of rows in one answer."""
+REPORT_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; sandbox; frame-ancestors 'self'"
+"""What a report may do: nothing but show itself; its code does not run."""
+
+Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
+Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
+Column = Annotated[str, Query(min_length=1, max_length=200)]
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
+WHERE: TypeAdapter[dict[str, Level]] = TypeAdapter(Annotated[dict[str, Level], Field(max_length=10)])
+
+
+class Wanted(PageMessage):
+    """A design, with what replaces some of it."""
+
+    design: Annotated[str, Field(min_length=1, max_length=500)]
+    """The name of one of the library's, or `FILE:NAME`."""
+    values: dict[Identifier, Level | Annotated[list[Level], Field(min_length=1, max_length=200)]] = Field(
+        default_factory=dict, max_length=100
+    )
+    """New levels of factors, or values of other parameters."""
+    participants: Count | None = None
+    """The number of participants of each group; null for that of the design."""
+    trials: Count | None = None
+    """The number of trials of each combination of levels; null for that of the design."""
+
+
+class Checking(Wanted):
+    """A design to check."""
+
+    trial: bool = False
+    """Whether a trial is run as well, which finds out how long it takes."""
+
+
+class Starting(Wanted):
+    """A design to run."""
+
+    workers: Annotated[int, Field(ge=1, le=256)] | None = None
+    """The number of processes that run trials; null for one on each processor."""
+
+
+class Continuing(Trusting):
+    """How an experiment is continued."""
+
+    workers: Annotated[int, Field(ge=1, le=256)] | None = None
+    """The number of processes that run trials; null for one on each processor."""
+
+
+class TrialWanted(Trusting):
+    """A trial to record."""
+
+    number: Annotated[int, Field(ge=0, lt=2**53)]
+
+
+def experiments_of(request: Request) -> Experiments:
+    """Returns the experiments of the server that handles the request."""
+    return request.app.state.experiments
+
+
+# -- designs
+
+
+@router.get("/designs")
+def designs(request: Request) -> dict[str, Any]:
+    """Lists the designs of the library and of the model files, without executing them; `processors` is how many this computer has."""
+    return {"designs": described(sessions_of(request).folder), "processors": os.cpu_count() or 1}
+
+
+@router.post("/designs/check")
+async def check_design(request: Request, body: Checking) -> Response:
+    """Checks a design and returns its facts; with `trial`, also `seconds_a_trial`, which takes longer. 422 if it is not valid."""
+    work = experiments_of(request).check(body.design, body.values, body.participants, body.trials, trial=body.trial)
+    return _json(await while_wanted(work, lambda: gone(request.receive)))
+
+
+# -- experiments
+
+
+@router.get("/experiments")
+async def experiments(request: Request) -> Response:
+    """Lists experiments, newest first: state, progress, rate [1/s], remaining time [s]."""
+    return _json({"experiments": await experiments_of(request).listing()})
+
+
+@router.post("/experiments", status_code=201)
+async def start_experiment(request: Request, body: Starting) -> Response:
+    """Starts an experiment, and returns its `id` once its design has been checked; 422 if it is not valid."""
+    name = await experiments_of(request).start(body.design, body.values, body.participants, body.trials, body.workers)
+    return _json(await experiments_of(request).one(name), 201)
+
+
+@router.get("/experiments/{experiment}")
+async def experiment(request: Request, experiment: Id) -> Response:
+    """Returns the state of an experiment, with its `facts`: factors, groups, description."""
+    return _json(await experiments_of(request).one(experiment))
+
+
+@router.post("/experiments/{experiment}/stop")
+async def stop_experiment(request: Request, experiment: Id) -> dict[str, Any]:
+    """Asks an experiment to end; its finished trials are kept, and it can be continued."""
+    experiments_of(request).stop(experiment)
+    return {"stopping": experiment}
+
+
+@router.post("/experiments/{experiment}/resume")
+async def resume_experiment(request: Request, experiment: Id, body: Continuing | None = None) -> Response:
+    """Continues an experiment; 409 if it runs already, 403 if this installation did not make it, unless `trust` is true."""
+    said = body or Continuing()
+    await experiments_of(request).resume(experiment, said.workers, trust=said.trust)
+    return _json(await experiments_of(request).one(experiment))
+
+
+@router.post("/experiments/{experiment}/delete")
+async def delete_experiment(request: Request, experiment: Id) -> dict[str, Any]:
+    """Moves an experiment to the trash folder; 409 while it runs."""
+    return {"trash": experiments_of(request).delete(experiment)}
+
+
+@router.get("/experiments/{experiment}/code")
+def experiment_code(request: Request, experiment: Id) -> dict[str, Any]:
+    """Returns the code that continuing an experiment, or opening one of its trials, runs; see `/recordings/{recording}/code`."""
+    code = experiments_of(request).folder(experiment).code()
+    helpers = {escape_surrogates(name): escape_surrogates(text) for name, text in code["helpers"].items()}
+    return {**code, "file": escape_surrogates(code["file"]), "source": escape_surrogates(code["source"]), "helpers": helpers}
+
+
+# -- what it has found
+
+
+@router.get("/experiments/{experiment}/rows")
+async def rows(
+    request: Request,
+    experiment: Id,
+    first: Annotated[int, Query(ge=0, lt=2**53)] = 0,
+    most: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 100,
+    where: Annotated[str, Query(max_length=2_000)] = "{}",
+    sort: Column | None = None,
+    down: bool = False,
+    failed: bool = False,
+) -> Response:
+    """Returns rows of the table of trials: their `total`, and those from number `first` on.
+
+    `where` is a JSON object with the values that the rows have, by column; `sort` a column; with `failed` only failed trials.
+    """
+    options = {"first": first, "most": most, "where": _where(where), "sort": sort, "down": down, "failed": failed}
+    return await _made(request, "trial rows", experiment, {"total": 0, "first": first, "columns": [], "rows": []}, **options)
+
+
+@router.get("/experiments/{experiment}/means")
+async def means(
+    request: Request, experiment: Id, x: Column, measure: Column, by: Annotated[list[Column] | None, Query(max_length=4)] = None
+) -> Response:
+    """Returns the mean of a measure for each combination of the values of columns, over participants, with its standard error.
+
+    `{points: [{at: [value of x and of each column of by], mean, error, participants, trials}]}`; of True and False, the share of True.
+    """
+    empty = {"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []}
+    return await _made(request, "trial means", experiment, empty, x=x, by=by or [], measure=measure)
+
+
+@router.post("/experiments/{experiment}/trial")
+async def record_trial(request: Request, experiment: Id, body: TrialWanted) -> dict[str, Any]:
+    """Runs a trial again, records it, and returns the name of the recording; 403 as for `resume`."""
+    work = experiments_of(request).record(experiment, body.number, trust=body.trust)
+    return {"recording": await while_wanted(work, lambda: gone(request.receive))}
+
+
+@router.post("/experiments/{experiment}/report")
+async def make_report(request: Request, experiment: Id, body: Trusting | None = None) -> dict[str, Any]:
+    """Makes the report of an experiment with `actr3d report`; 409 if there is no such command, or it fails; 403 as for `resume`."""
+    await while_wanted(
+        experiments_of(request).make_report(experiment, trust=body is not None and body.trust), lambda: gone(request.receive)
+    )
+    return {"report": experiment}
+
+
+@router.get("/experiments/{experiment}/report")
+def report(request: Request, experiment: Id) -> Response:
+    """Returns the report of an experiment, an HTML page; no script in it runs."""
+    path = experiments_of(request).folder(experiment).report
+    if path is None:
+        return _json({"error": "there is no report yet"}, 404)
+    response = OpenFile(path.open("rb", buffering=0), "text/html; charset=utf-8")
+    response.headers["content-security-policy"] = REPORT_POLICY
+    return response
+
+
+async def _made(request: Request, form: str, name: str, empty: dict[str, Any], **options: Any) -> Response:
+    """Returns what a worker makes of a table of trials; `empty` if there is none yet."""
+    experiments = experiments_of(request)
+    table = experiments.folder(name).table
+    if table is None:
+        return _json(empty)
+    work = experiments.readers.make(form, table, **options)
+    return OpenFile(await while_wanted(work, lambda: gone(request.receive)), "application/json")
+
+
+def _where(text: str) -> dict[str, Any]:
+    """Returns the conditions for rows.
+
+    Raises:
+        ExperimentError: If they are not a JSON object with plain values.
+    """
+    try:
+        return dict(WHERE.validate_json(text))
+    except ValidationError as error:
+        problem = problem_of(error.errors(include_url=False, include_input=False)[0])
+        raise ExperimentError(f"where: {problem}") from None
+
+
+def _json(value: Any, status: int = 200) -> Response:
+    return Response(to_json(value), status, media_type="application/json")

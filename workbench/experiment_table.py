@@ -1,0 +1,201 @@
+"""Reads the table of trials of an experiment: columns, rows and means. It runs in workers, never in the server.
+
+It reads the SQLite file itself, because `actr3d.experiment.store` loads what only experiments need.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sqlite3
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from actr3d.errors import Actr3dError
+from actr3d.recording.opening import opened
+
+MOST_COLUMNS = 1_000
+MOST_CELLS = 50_000
+"""Maximum number of means of participants."""
+MOST_POINTS = 2_000
+"""Maximum number of points of a figure."""
+MOST_TEXT = 20_000
+"""Maximum length of a value of a row [characters]."""
+NUMBERS = ("integer", "real", "boolean")
+OUTSIDE = {"wall_s": "real", "worker": "text"}
+"""Columns that are not part of the rows themselves, with their types."""
+FIRST = ("trial", "participant", "group", "position", "repetition")
+"""The columns before the values of a trial; those after its seed are measures."""
+LAST = ("end", "error", "wall_s", "worker")
+
+
+class TableError(Actr3dError):
+    """The table of trials cannot be read as requested."""
+
+
+def counts(*paths: Path) -> list[dict[str, Any]]:
+    """Returns the numbers of finished and of failed trials of experiments; `problem` says why a table cannot be read.
+
+    Args:
+        paths: The tables.
+    """
+    found: list[dict[str, Any]] = []
+    for path in paths:
+        try:
+            with closing(opened(path)) as file:
+                (done,) = file.execute("SELECT count(*) FROM trial").fetchone()
+                (failures,) = file.execute('SELECT count(*) FROM trial WHERE data LIKE \'%,"error":"%\'').fetchone()
+                found.append({"done": done, "failures": failures, "problem": None})
+        except (Actr3dError, sqlite3.Error) as error:
+            found.append({"done": 0, "failures": 0, "problem": f"its table cannot be read: {error}"})
+    return found
+
+
+class Table:
+    """The table of trials of an experiment.
+
+    Args:
+        path: The SQLite file.
+
+    Raises:
+        Actr3dError: If it cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = opened(path)
+        try:
+            listed = self._file.execute(
+                "SELECT name, type, unit, meaning FROM column ORDER BY place, name LIMIT ?", (MOST_COLUMNS,)
+            ).fetchall()
+        except sqlite3.Error as error:
+            raise TableError(f"the table of trials cannot be read: {error}") from None
+        texts = [tuple("" if value is None else str(value) for value in row) for row in listed]
+        self.columns = [{"name": n, "type": t, "unit": u or None, "meaning": m, "role": "value"} for n, t, u, m in texts if '"' not in n]
+        self._give_roles()
+        self._types = {str(column["name"]): str(column["type"]) for column in self.columns}
+
+    def _give_roles(self) -> None:
+        """Distinguishes measures from the values of a trial."""
+        names = [column["name"] for column in self.columns]
+        seed = names.index("seed") if "seed" in names else -1
+        for place, column in enumerate(self.columns):
+            name = column["name"]
+            column["role"] = "own" if name in (*FIRST, *LAST, "seed") else "measure" if place > seed else "value"
+        self.columns += [
+            {"name": n, "type": t, "unit": "s" if n == "wall_s" else None, "meaning": "", "role": "own"} for n, t in OUTSIDE.items()
+        ]
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._file.close()
+
+    def rows(self, first: int, most: int, where: Mapping[str, Any], sort: str | None, *, down: bool, failed: bool) -> dict[str, Any]:
+        """Returns rows, and how many there are.
+
+        Args:
+            first: How many are left out before.
+            most: The maximum number.
+            where: Values that the rows must have, by column.
+            sort: The column by which they are sorted; None for the trial.
+            down: Whether the largest comes first.
+            failed: Whether only failed trials are returned.
+
+        Raises:
+            TableError: If there is no such column.
+        """
+        conditions = [f"{self._value(name)} IS ?" for name in where]
+        conditions += ["json_extract(data, '$.error') IS NOT NULL"] * failed
+        condition = f"WHERE {' AND '.join(conditions)}" if conditions else ""
+        key = "number" if sort in (None, "trial") else self._value(str(sort))
+        direction = "DESC" if down else "ASC"
+        values = list(where.values())
+        (total,) = self._read(f"SELECT count(*) FROM trial {condition}", values)[0]
+        found = self._read(
+            f"SELECT number, data, wall_s, worker FROM trial {condition} ORDER BY {key} {direction}, number {direction} LIMIT ? OFFSET ?",
+            [*values, most, first],
+        )
+        rows = [{**_row(data), "trial": number, "wall_s": wall, "worker": worker} for number, data, wall, worker in found]
+        return {"total": total, "first": first, "columns": self.columns, "rows": rows}
+
+    def means(self, x: str, by: Sequence[str], measure: str) -> dict[str, Any]:
+        """Returns the mean of a measure for each combination of values: the mean of the participants' means, with its standard error.
+
+        Args:
+            x: The column along the axis.
+            by: The columns whose combinations are the lines.
+            measure: The column that is averaged; of True and False, the share of True.
+
+        Raises:
+            TableError: If there is no such column, the measure has no numbers, or there are too many points.
+        """
+        if self._types.get(measure) not in NUMBERS:
+            raise TableError(f"'{measure}' has no numbers" if measure in self._types else f"there is no column '{measure}'")
+        keys = [x, *by]
+        parts = ", ".join(f"{self._value(name)}, {self._kind(name)}" for name in keys)
+        value = self._value(measure)
+        sql = (
+            f"SELECT {parts}, json_extract(data, '$.participant'), count(*), avg({value}) FROM trial WHERE typeof({value}) IN "
+            f"('integer', 'real') GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
+        )
+        found = self._read(sql, [MOST_CELLS + 1])
+        cells: dict[tuple[Any, ...], list[tuple[int, float]]] = defaultdict(list)
+        for row in found:
+            key = tuple((row[2 * n], row[2 * n + 1]) for n in range(len(keys)))
+            cells[key].append((row[-2], row[-1]))
+        if len(found) > MOST_CELLS or len(cells) > MOST_POINTS:
+            raise TableError(f"{' and '.join(keys)} have too many different values for a figure")
+        points = [{"at": [_typed(*part) for part in key], **_mean(parts)} for key, parts in cells.items()]
+        unit = next((column["unit"] for column in self.columns if column["name"] == measure), None)
+        return {"x": x, "by": list(by), "measure": measure, "unit": unit, "columns": self.columns, "points": points}
+
+    def _value(self, name: str) -> str:
+        """Returns the SQL for the value of a column."""
+        if name not in self._types:
+            raise TableError(f"there is no column '{name}'")
+        if name in OUTSIDE:
+            return name
+        path = f'$."{name}"'.replace("'", "''")
+        return f"json_extract(data, '{path}')"
+
+    def _kind(self, name: str) -> str:
+        """Returns the SQL for whether a value is True, False or another."""
+        if name in OUTSIDE:
+            return "NULL"
+        path = f'$."{name}"'.replace("'", "''")
+        return f"json_type(data, '{path}')"
+
+    def _read(self, sql: str, values: Sequence[Any]) -> list[Any]:
+        try:
+            return self._file.execute(sql, values).fetchall()
+        except (sqlite3.Error, OverflowError) as error:
+            raise TableError(f"the table of trials cannot be read: {error}") from None
+
+
+def _typed(value: Any, kind: str | None) -> Any:
+    return bool(value) if kind in ("true", "false") else value
+
+
+def _mean(parts: Sequence[tuple[int, float]]) -> dict[str, Any]:
+    """Returns the mean of the means of participants, its standard error, and the numbers of participants and trials."""
+    means = [mean for _, mean in parts]
+    mean, number = math.fsum(means) / len(means), len(means)
+    error = math.sqrt(math.fsum((one - mean) ** 2 for one in means) / (number - 1) / number) if number > 1 else None
+    return {"mean": mean, "error": error, "participants": number, "trials": sum(count for count, _ in parts)}
+
+
+def _row(data: str) -> dict[str, Any]:
+    """Returns the values of a row.
+
+    Raises:
+        TableError: If they are not JSON.
+    """
+    try:
+        found = json.loads(data)
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise TableError("the table of trials is damaged")
+    return {str(name): value if not isinstance(value, str) else value[:MOST_TEXT] for name, value in found.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]

@@ -1,0 +1,503 @@
+"""Manages the experiments of a models folder: each is a folder, run by the command `actr3d experiment` in a process of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import secrets
+import time
+from collections import OrderedDict, deque
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from actr3d.errors import Actr3dError
+from workbench.design_files import design_argument, stamp_of
+from workbench.experiment_command import ExperimentCommand, ExperimentError
+from workbench.experiment_folder import REPORTS, ExperimentFolder, as_values
+from workbench.experiment_messages import AnyEvent, Check, Event, Facts, Progress
+from workbench.files import OWN
+from workbench.retention import begun, stamp
+from workbench.sessions import Sessions, UntrustedError
+
+E = TypeVar("E", bound=Event)
+MOST_RUNNING = 2
+"""Maximum number of experiments that run at once; each takes all processors."""
+MOST_COMMANDS = 2
+"""Maximum number of designs checked, and of trials recorded and reports made, at once; others wait."""
+MOST_LISTED = 300
+"""Maximum number of experiments in a list."""
+START_TIME = 180.0
+"""How long a design may take to load [s]."""
+WORK_TIME = 1_800.0
+"""How long a trial that is tried or recorded, or a report, may take [s]."""
+END_TIME = 12.0
+"""How long an experiment may take to end in order when the server ends [s]."""
+STOP_TIME = 120.0
+"""How long it may take when a user stops it [s]: at the end, its table is exported."""
+WINDOW = 30.0
+"""The time over which the rate is measured [s]."""
+KEPT = 100
+"""How many results of checks are kept."""
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
+_STAMP = re.compile(r"-\d{8}-\d{6}-[0-9a-f]{4}$")
+
+
+class NoSuchExperimentError(ExperimentError):
+    """There is no experiment of that name."""
+
+    status = 404
+
+    def __init__(self) -> None:
+        super().__init__("there is no such experiment")
+
+
+class RefusedDesignError(ExperimentError):
+    """A design cannot be run, or not with these values."""
+
+    status = 422
+
+
+class Run:
+    """An experiment that runs.
+
+    Args:
+        command: The command that runs it.
+        facts: Its facts; None if they are not known yet.
+        done: The number of trials that have finished before.
+    """
+
+    def __init__(self, command: ExperimentCommand, facts: Facts | None, done: int) -> None:
+        self.command = command
+        self.facts = facts
+        self.progress = Progress(done=done, total=0, failures=0)
+        self.ended = False
+        """Whether the command has reported its end."""
+        self.task: asyncio.Task[None] | None = None
+        self._seen: deque[tuple[float, int]] = deque()
+
+    def take(self, event: AnyEvent) -> None:
+        """Stores what the command reports."""
+        if isinstance(event, Facts):
+            self.facts = event
+        elif isinstance(event, Progress):
+            self.progress = event
+            now = time.monotonic()
+            self._seen.append((now, event.done))
+            while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW:
+                self._seen.popleft()
+        else:
+            self.ended = True
+
+    def summary(self) -> dict[str, Any]:
+        """Returns the state: trials, rate [1/s] and remaining time [s], None before they are known."""
+        rate = left = None
+        progress = self.progress
+        if len(self._seen) > 1:
+            (since, before), (_, now) = self._seen[0], self._seen[-1]
+            if now > before:
+                rate = (now - before) / max(0.1, time.monotonic() - since)
+                left = (progress.total - now) / rate
+        state = "stopping" if self.command.interrupted else "running"
+        trials = {"done": progress.done, "failures": progress.failures, "workers": progress.workers}
+        return {"state": state, **trials, "rate": rate, "left": left}
+
+
+class Experiments:
+    """Starts, continues, stops and lists experiments.
+
+    Args:
+        sessions: The sessions of the server: their folders of models and recordings, and their readers.
+    """
+
+    def __init__(self, sessions: Sessions) -> None:
+        self.readers = sessions.readers
+        self._models = sessions.folder
+        self._recordings = sessions.recordings
+        self._root = sessions.folder.root / OWN / "experiments"
+        self._running: dict[str, Run] = {}
+        self._starting = 0
+        self._closed = False
+        self._counts: dict[str, tuple[Any, dict[str, Any]]] = {}
+        """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
+        self._checked: OrderedDict[str, Facts] = OrderedDict()
+        self._recorded: dict[tuple[str, int], str] = {}
+        self._turns = asyncio.Semaphore(MOST_COMMANDS)
+
+    # -- listing
+
+    def folder(self, name: str) -> ExperimentFolder:
+        """Returns the folder of an experiment.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+        """
+        folder = ExperimentFolder(self._root / name)
+        if _NAME.fullmatch(name) is None or not folder.is_experiment:
+            raise NoSuchExperimentError
+        return folder
+
+    async def listing(self) -> list[dict[str, Any]]:
+        """Returns the summaries of all experiments, newest first.
+
+        Raises:
+            Actr3dError: If their tables cannot be read.
+            OSError: If no worker can be started.
+        """
+        return await self._summaries(await asyncio.to_thread(self._folders))
+
+    async def one(self, name: str) -> dict[str, Any]:
+        """Returns the summary of an experiment, with its facts.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+            Actr3dError: If its table cannot be read.
+            OSError: If no worker can be started.
+        """
+        folder = self.folder(name)
+        (summary,) = await self._summaries([folder])
+        return {**summary, "facts": as_values(self._facts(folder))}
+
+    def _folders(self) -> list[ExperimentFolder]:
+        there = self._root.iterdir() if self._root.is_dir() else ()
+        found = [folder for path in there if _NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
+        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MOST_LISTED]
+
+    async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
+        await self._count([folder for folder in folders if folder.path.name not in self._running])
+        return [self._summary(folder) for folder in folders]
+
+    def _summary(self, folder: ExperimentFolder) -> dict[str, Any]:
+        name, notes, facts = folder.path.name, folder.notes, self._facts(folder)
+        total = None if facts is None else facts.trials
+        found: dict[str, Any] = {
+            "id": name,
+            "name": _STAMP.sub("", name) if facts is None else facts.name,
+            "made": begun(folder.path),
+            "total": total,
+            "changed": notes.changed,
+            "report": folder.report is not None,
+            "problem": None,
+        }
+        if name in self._running:
+            return {**found, **self._running[name].summary()}
+        _, counted = self._counts.get(name, (None, _NOTHING))
+        problem = counted["problem"] or notes.problem
+        complete = total is not None and counted["done"] >= total
+        state = "finished" if complete else "elsewhere" if folder.is_locked else "failed" if problem else "stopped"
+        return {**found, **counted, "state": state, "problem": problem, "workers": 0, "rate": None, "left": None}
+
+    async def _count(self, folders: Sequence[ExperimentFolder]) -> None:
+        """Counts the trials of those experiments whose tables have changed; a worker reads them."""
+        fresh: list[tuple[str, Any, Path]] = []
+        for folder in folders:
+            name, now, table = folder.path.name, folder.table_stamp, folder.table
+            if table is None:
+                self._counts[name] = None, _NOTHING
+            elif self._counts.get(name, (None,))[0] != now:
+                fresh.append((name, now, table))
+        if fresh:
+            with await self.readers.make("trial counts", *(table for _, _, table in fresh)) as made:
+                counted: list[dict[str, Any]] = json.loads(made.readall())
+            for (name, now, _), found in zip(fresh, counted, strict=True):
+                self._counts[name] = now, found
+
+    def _facts(self, folder: ExperimentFolder) -> Facts | None:
+        run = self._running.get(folder.path.name)
+        return folder.notes.facts if run is None or run.facts is None else run.facts
+
+    # -- checking
+
+    async def check(
+        self, design: str, values: Mapping[str, Any], participants: int | None, trials: int | None, *, trial: bool
+    ) -> dict[str, Any]:
+        """Checks a design, and returns its facts.
+
+        Args:
+            design: The design.
+            values: Values that replace those of the design.
+            participants: The number of participants of each group; None for that of the design.
+            trials: The number of trials of each combination of levels; None for that of the design.
+            trial: Whether a trial is run as well, which finds out how long it takes.
+
+        Raises:
+            Actr3dError: If there is no such design.
+            RefusedDesignError: If the design is not valid.
+            OSError: If no process can be started.
+        """
+        argument = design_argument(self._models, design)
+        arguments = ["experiment", argument, "--check", "--json", *_options(values, participants, trials)]
+        key = json.dumps([arguments, trial, stamp_of(self._models, design)])
+        if key not in self._checked:
+            async with self._turns:
+                kind, patience = (Check, WORK_TIME) if trial else (Facts, START_TIME)
+                self._checked[key] = await self._first(arguments, kind, patience)
+        self._checked.move_to_end(key)
+        while len(self._checked) > KEPT:
+            self._checked.popitem(last=False)
+        return as_values(self._checked[key])
+
+    async def _first(self, arguments: Sequence[str], kind: type[E], patience: float) -> E:
+        """Runs a command until it sends a message of a kind; returns that message.
+
+        Raises:
+            RefusedDesignError: If the command ends without it, or takes too long.
+        """
+        command = await ExperimentCommand.start(arguments, self._made_root())
+        try:
+            async with asyncio.timeout(patience):
+                async for event in command.events():
+                    if type(event) is kind:
+                        return event
+                await command.wait()
+            raise RefusedDesignError(command.problem or "the design cannot be loaded")
+        except TimeoutError:
+            raise RefusedDesignError(f"the design takes longer than {patience:g} s") from None
+        finally:
+            await command.kill()
+
+    # -- running
+
+    async def start(self, design: str, values: Mapping[str, Any], participants: int | None, trials: int | None, workers: int | None) -> str:
+        """Starts a new experiment; returns its name once its design has been checked and its folder made.
+
+        Args:
+            design: The design.
+            values: Values that replace those of the design.
+            participants: The number of participants of each group; None for that of the design.
+            trials: The number of trials of each combination of levels; None for that of the design.
+            workers: The number of processes that run trials; None for one on each processor.
+
+        Raises:
+            Actr3dError: If there is no such design.
+            RefusedDesignError: If the design is not valid.
+            ExperimentError: If too many experiments run.
+            OSError: If no process can be started.
+        """
+        argument = design_argument(self._models, design)
+        name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{stamp()}"
+        arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *_options(values, participants, trials)]
+        numbers = {key: count for key, count in (("participants", participants), ("trials", trials)) if count is not None}
+        await self._begin(name, [*arguments, *_workers(workers)], {**numbers, **values})
+        return name
+
+    async def resume(self, name: str, workers: int | None, *, trust: bool) -> None:
+        """Continues an experiment.
+
+        Args:
+            name: The experiment.
+            workers: The number of processes that run trials; None for one on each processor.
+            trust: Whether its code may be run although this installation did not make it.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+            UntrustedError: If its code may not be run.
+            ExperimentError: If it runs already, cannot be continued, or too many experiments run.
+            OSError: If no process can be started.
+        """
+        folder = self._trusted(name, trust=trust)
+        if name in self._running or folder.is_locked:
+            raise ExperimentError("this experiment runs already")
+        await self._begin(name, ["experiment", str(folder.path), "--json", "--resume", *_workers(workers)], None)
+
+    async def _begin(self, name: str, arguments: Sequence[str], changed: Mapping[str, Any] | None) -> None:
+        """Starts a command that runs an experiment, and waits until it has checked the design.
+
+        Args:
+            name: The experiment.
+            arguments: Those of the command.
+            changed: The values that replace those of the design; None for an experiment that is continued.
+        """
+        if self._closed or len(self._running) + self._starting >= MOST_RUNNING:
+            raise ExperimentError(f"{MOST_RUNNING} experiments run already: stop one, or wait for its end")
+        folder = ExperimentFolder(self._root / name)
+        facts = None if changed is not None else folder.notes.facts
+        self._starting += 1
+        try:
+            command = await ExperimentCommand.start(arguments, self._made_root())
+        finally:
+            self._starting -= 1
+        run = self._running[name] = Run(command, facts, self._counts.get(name, (None, _NOTHING))[1]["done"])
+        began: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        run.task = asyncio.create_task(self._follow(folder, run, began, changed))
+        try:
+            await asyncio.wait_for(asyncio.shield(began), START_TIME)
+        except TimeoutError:
+            run.task.cancel()
+            raise RefusedDesignError(f"the design takes longer than {START_TIME:g} s") from None
+
+    async def _follow(self, folder: ExperimentFolder, run: Run, began: asyncio.Future[None], changed: Mapping[str, Any] | None) -> None:
+        """Reads what a command reports until it has ended."""
+        problem = None
+        try:
+            async for event in run.command.events():
+                run.take(event)
+                if isinstance(event, Facts) and not began.done():
+                    folder.note(facts=event, problem=None, **({} if changed is None else {"changed": dict(changed)}))
+                    if changed is not None:
+                        folder.seal()
+                    began.set_result(None)
+            await run.command.wait()
+            if not run.ended and not run.command.interrupted:
+                problem = run.command.problem or "its process has ended"
+        finally:
+            await run.command.kill()
+            self._running.pop(folder.path.name, None)
+            if not began.done():
+                began.set_exception(RefusedDesignError(problem or "it was stopped before it began"))
+                began.exception()  # nobody may wait for it any more
+            elif problem is not None:
+                folder.note(problem=problem)
+
+    def stop(self, name: str) -> None:
+        """Asks an experiment to end; all its finished trials are kept.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+            ExperimentError: If it does not run.
+        """
+        self.folder(name)
+        run = self._running.get(name)
+        if run is None:
+            raise ExperimentError("this experiment does not run")
+        if not run.command.interrupted:
+            run.command.interrupt()
+            asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)
+
+    async def close(self) -> None:
+        """Stops all experiments in order; those that take too long are killed."""
+        self._closed = True
+        tasks: list[asyncio.Task[None]] = []
+        for run in self._running.values():
+            run.command.interrupt()
+            if run.task is not None:
+                tasks.append(run.task)
+        if tasks:
+            _, late = await asyncio.wait(tasks, timeout=END_TIME)
+            for task in late:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    # -- one experiment
+
+    async def record(self, name: str, number: int, *, trust: bool) -> str:
+        """Runs a trial again and records it; returns the name of the recording.
+
+        Args:
+            name: The experiment.
+            number: The number of the trial.
+            trust: Whether its code may be run although this installation did not make it.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+            UntrustedError: If its code may not be run.
+            ExperimentError: If the trial cannot be recorded.
+            OSError: If no process can be started.
+        """
+        folder = self._trusted(name, trust=trust)
+        async with self._turns:
+            known = self._recorded.get((name, number))
+            if known is not None:
+                with suppress(Actr3dError):
+                    return self._recordings.path(known).stem
+            to = self._recordings.new(f"{_STAMP.sub('', name)}_trial_{number}")
+            problem = await self._work(["experiment", str(folder.path), "--trial", str(number), "--record", str(to)])
+            if not to.is_file():
+                raise ExperimentError(problem or "the trial was not recorded")
+            self._recorded[name, number] = to.stem  # also for a trial that fails: the recording shows how far it came
+            return to.stem
+
+    async def make_report(self, name: str, *, trust: bool) -> None:
+        """Makes the report of an experiment.
+
+        Args:
+            name: The experiment.
+            trust: Whether its code may be run although this installation did not make it.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+            UntrustedError: If its code may not be run.
+            ExperimentError: If there is no command for reports, or it fails.
+            OSError: If no process can be started.
+        """
+        folder = self._trusted(name, trust=trust)
+        async with self._turns:
+            problem = await self._work(["report", str(folder.path)])
+        if problem is not None:
+            missing = "invalid choice: 'report'" in problem
+            raise ExperimentError("this version of ACT-R 3D has no command 'actr3d report'" if missing else problem)
+        if folder.report is None:
+            raise ExperimentError(f"the command 'actr3d report' has made no {' or '.join(REPORTS)}")
+
+    async def _work(self, arguments: Sequence[str]) -> str | None:
+        """Runs a command to its end; returns None, or its messages if it fails."""
+        command = await ExperimentCommand.start(arguments, self._made_root())
+        try:
+            async with asyncio.timeout(WORK_TIME):
+                code = await command.wait()
+            return None if code == 0 else command.problem or f"the command ended with exit code {code}"
+        except TimeoutError:
+            raise ExperimentError(f"it takes longer than {WORK_TIME:g} s") from None
+        finally:
+            await command.kill()
+
+    def delete(self, name: str) -> str:
+        """Moves an experiment to the trash folder; returns its new path inside the models folder.
+
+        Raises:
+            NoSuchExperimentError: If there is no experiment of that name.
+            ExperimentError: If it runs.
+            OSError: If it cannot be moved.
+        """
+        folder = self.folder(name)
+        if name in self._running or folder.is_locked:
+            raise ExperimentError("this experiment runs: stop it, then delete it")
+        trash = self._models.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
+        trash.mkdir(parents=True, exist_ok=True)
+        target = trash / f"{secrets.token_hex(2)}-{name}"
+        folder.path.rename(target)
+        return target.relative_to(self._models.root).as_posix()
+
+    def _trusted(self, name: str, *, trust: bool) -> ExperimentFolder:
+        """Returns the folder of an experiment whose code may be run.
+
+        Raises:
+            UntrustedError: If this installation did not make it, and the user does not permit it.
+        """
+        folder = self.folder(name)
+        if not folder.made_here:
+            if not trust:
+                raise UntrustedError(
+                    "this workbench did not make the experiment (or it was changed since), and the code in it would be run: "
+                    'send "trust": true if you know where it comes from'
+                )
+            folder.seal()
+        return folder
+
+    def _made_root(self) -> Path:
+        self._root.mkdir(parents=True, exist_ok=True)
+        return self._root
+
+
+_NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None}
+
+
+def _end_late(run: Run) -> None:
+    if run.task is not None:
+        run.task.cancel()
+
+
+def _options(values: Mapping[str, Any], participants: int | None, trials: int | None) -> list[str]:
+    counts = [f"--{name}={count}" for name, count in (("participants", participants), ("trials", trials)) if count is not None]
+    return counts + [f"--set={name}={_literal(value)}" for name, value in values.items()]
+
+
+def _literal(value: Any) -> str:
+    """Returns a value as the command reads it: as a literal of Python, in ASCII."""
+    return ascii(list(cast("Sequence[Any]", value)) if isinstance(value, (list, tuple)) else value)
+
+
+def _workers(number: int | None) -> list[str]:
+    return [] if number is None else [f"--workers={number}"]
