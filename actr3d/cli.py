@@ -304,7 +304,7 @@ def _experiment(options: argparse.Namespace) -> int:
             if options.trial is None or options.record is None:
                 raise SettingError("--trial ID and --record RECORDING are given together")
             return command.run_again(options.name, options.trial, options.record, out)
-        numbers = {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
+        numbers: dict[str, Any] = {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
         if options.check:
             return command.check(options.name, out, **numbers)
         how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
