@@ -18,7 +18,7 @@ from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.passing import Passing, baseline_angle
 from actr3d.experiment.aperture.trials import original_means
 from actr3d.experiment.report.analyses import analysis
-from actr3d.experiment.report.beside import Beside
+from actr3d.experiment.report.beside import Beside, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import noting_warnings, pandas, pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -34,8 +34,22 @@ BASELINE = (
 ANGLE = "shoulder angle at the wall [degrees]"
 OF_RATIO = "aperture / shoulder width (A/S)"
 PEOPLE_TURN = f"people turn below {CRITICAL[0]:g} to {CRITICAL[1]:g}"
-NEEDED = ("participant", "group", "condition", "aperture", "shoulder_width", "wall_angle_deg", "peak_angle_deg", "clearance_left_m")
-NEEDED = (*NEEDED, "clearance_right_m", "contacts", "outcome", "bar", "aside", "off")
+NEEDED = (
+    "participant",
+    "group",
+    "condition",
+    "aperture",
+    "shoulder_width",
+    "wall_angle_deg",
+    "peak_angle_deg",
+    "clearance_left_m",
+    "clearance_right_m",
+    "contacts",
+    "outcome",
+    "bar",
+    "aside",
+    "off",
+)
 """The columns that a `Passing` is made of."""
 SIDES_DIFFER = 0.001
 """Sides that differ by less than this in every trial are equal [m]."""
@@ -44,8 +58,8 @@ SIDES_DIFFER = 0.001
 def passings_of(results: Results) -> list[Passing]:
     """Returns the trials of an experiment with apertures."""
     found: list[Passing] = []
-    for row in results.rows[[name for name in NEEDED if name in results.rows]].to_dict("records"):
-        row = {name: None if isinstance(value, float) and math.isnan(value) else value for name, value in row.items()}
+    for given in results.rows[[name for name in NEEDED if name in results.rows]].to_dict("records"):
+        row: dict[str, Any] = {name: None if missing(value) else value for name, value in given.items()}
         if row["shoulder_width"] is None:
             continue
         found.append(
@@ -257,7 +271,7 @@ class Rotation:
         ]
         frame["baseline"] = self._baseline(frame)
         frame = frame.rename(columns={"level": self._findings.by})
-        units = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
+        units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
         units |= {"aperture": "m"} if self._by_aperture else {}
         note = "Angles at the wall. sd: between participants; low, high: 95 % interval; n: participants."
         digits = dict.fromkeys(units, 1) | {"aperture": 2, "ratio": 2}
@@ -307,7 +321,7 @@ class Rotation:
             "df": float(found["dof"]),
             "p": float(found["pval"]),
         }
-        row["result"] = "equivalent" if row["p"] < 0.05 else "not shown to be equivalent"
+        row["result"] = "equivalent" if float(found["pval"]) < 0.05 else "not shown to be equivalent"
         note = (
             "Two one-sided Welch t tests on the mean angle of each participant at the common ratios from 1.0 to 1.4. A small p says that "
             "the groups differ by less than the bound."
@@ -329,12 +343,11 @@ class Rotation:
         rows: list[dict[str, Any]] = []
         for name, column in (("A/S", "ratio"), ("A", "level")):
             x, y = means[column].to_numpy(dtype=float), means["angle"].to_numpy(dtype=float)
-            design = np.column_stack([np.ones_like(x), x, x**2])
-            coefficients, *_ = np.linalg.lstsq(design, y, rcond=None)
-            error = float(np.sum((y - design @ coefficients) ** 2))
+            found: Any = np.polynomial.Polynomial.fit(x, y, 2)
+            error = float(np.sum((y - found(x)) ** 2))
             if error <= 0:
                 return []
-            rows.append({"angle_depends_on": name, "aic": len(y) * math.log(error / len(y)) + 2 * (design.shape[1] + 1)})
+            rows.append({"angle_depends_on": name, "aic": len(y) * math.log(error / len(y)) + 2 * 4})
         note = "Akaike's criterion of a quadratic regression of participants' mean angles on A/S, or on the aperture A; smaller is better."
         return [Table(name="aic", title="Ratio or width?", frame=pandas().DataFrame(rows), note=note, digits={"aic": 1})]
 
@@ -377,7 +390,7 @@ def _critical_ratios(findings: Findings) -> Parts:
     digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3, "baseline_deg": 1}
     note = (
         f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
-        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood; it cannot be narrower than the step between two apertures. "
+        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood; an abrupt change is known to one step of apertures. "
         "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
     parts: Parts = []
@@ -526,6 +539,7 @@ def original_bar_means() -> dict[tuple[float, float], float]:
 
 
 def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
+    """Returns the figure and the table of rotation with bars."""
     original = original_bar_means()
     curves, rows = list[Curve](), list[dict[str, Any]]()
     for ratio, lengths in bars.items():
@@ -534,7 +548,7 @@ def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
         for length, of in lengths.items():
             values = list(of.values())
             interval = bootstrap_interval(values)
-            y.append(float(np.mean(values)))
+            y.append(float(np.mean(values)) if values else math.nan)
             low.append(interval[0])
             high.append(interval[1])
             baseline = float(baseline_angle([ratio * length], length)[0])
@@ -553,7 +567,9 @@ def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
     )
     frame = pandas().DataFrame(rows)
     parts: Parts = [Plot(name="bars", title="Rotation with a bar", figure=figure, note=note)]
-    both = frame[frame["original"].notna()]
+    both = frame[frame["original"].notna() & frame["mean"].notna()]
+    if frame["mean"].isna().any():
+        parts.append(Caution("In some cells no walker set out, so there is no angle; see the outcomes below."))
     units = dict.fromkeys(("mean", "low", "high", "original", "baseline"), "degrees") | {"bar": "body widths"}
     digits: dict[str, int] = dict.fromkeys(("mean", "low", "high", "original", "baseline"), 1)
     parts.append(Table(name="bars", title="Rotation with a bar", frame=frame, units=units, digits=digits))

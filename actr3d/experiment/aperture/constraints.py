@@ -279,12 +279,14 @@ class Findings:
 
     def bar_angles(self) -> dict[float, dict[float, dict[str, float]]]:
         """Returns the mean angle of each participant [degrees] by ratio of the aperture to the total width, length of the bar in shoulder
-        widths, and participant."""
+        widths, and participant; no participant where none set out."""
         held: defaultdict[float, defaultdict[float, defaultdict[str, list[float]]]]
         held = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
         for one in self.passings:
-            if one.bar is not None and one.straight and one.angle is not None:
-                held[round(one.total_ratio, 2)][round(one.bar_ratio, 2)][one.participant].append(one.angle)
+            if one.bar is not None and one.straight:
+                of = held[round(one.total_ratio, 2)][round(one.bar_ratio, 2)]
+                if one.angle is not None:
+                    of[one.participant].append(one.angle)
         return {
             ratio: {bar: {name: mean(angles) for name, angles in sorted(of.items())} for bar, of in sorted(bars.items())}
             for ratio, bars in sorted(held.items())
@@ -298,9 +300,9 @@ class Findings:
             return _untested(BARS, says, "it needs bars of several lengths in the hands")
         met, found = True, list[str]()
         for ratio, bars in angles.items():
-            means = [mean(of.values()) for of in bars.values()]
+            means = [mean(of.values()) if of else math.nan for of in bars.values()]
             met &= all(a > b for a, b in pairwise(means))
-            found.append(f"{', '.join(f'{angle:.1f}' for angle in means)} at A/S {ratio:g}")
+            found.append(f"{', '.join('none' if math.isnan(angle) else f'{angle:.1f}' for angle in means)} at A/S {ratio:g}")
         lengths = _listed(next(iter(angles.values())))
         return Constraint(number=BARS, says=says, met=met, found=f"degrees with bars of {lengths} body widths: {'; '.join(found)}")
 
@@ -314,7 +316,7 @@ class Findings:
 
 
 def _untested(number: int, says: str, why: str) -> Constraint:
-    return Constraint(number=number, says=says, met=None, found=f"not testable with this design: {why}")
+    return Constraint(number=number, says=says, met=None, found=why)
 
 
 def _spans(ratios: Sequence[float], bounds: tuple[float, float]) -> bool:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 STEEPEST = 200.0
 """The greatest slope of the logistic curve per unit of the ratio: steeper ones cannot be distinguished."""
@@ -46,17 +46,20 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
     Args:
         trials: The ratio of each trial, and whether the walker turned, which is more likely at small ratios.
     """
-    pairs = list(trials)
-    ratios, inverse = np.unique([ratio for ratio, _ in pairs], return_inverse=True)
-    turned = np.bincount(inverse, weights=[float(yes) for _, yes in pairs])
-    total = np.bincount(inverse).astype(float)
+    counts: defaultdict[float, list[float]] = defaultdict(lambda: [0.0, 0.0])
+    for ratio, yes in trials:
+        counts[ratio][0] += float(yes)
+        counts[ratio][1] += 1.0
+    levels = sorted(counts)
+    ratios = np.array(levels)
+    turned, total = (np.array([counts[level][n] for level in levels]) for n in (0, 1))
     if not 0 < turned.sum() < total.sum():
         return None
-    centres: NDArray[np.float64] = np.linspace(ratios[0], ratios[-1], STEPS)
+    centres = np.linspace(levels[0], levels[-1], STEPS)
     slopes = np.geomspace(2.0, STEEPEST, 16)
     profile = np.full(STEPS, -np.inf)
     for slope in slopes:
-        signed: NDArray[np.float64] = slope * (ratios[None, :] - centres[:, None])
+        signed = slope * (ratios[None, :] - centres[:, None])
         likelihood = -(np.logaddexp(0.0, signed) @ turned) - np.logaddexp(0.0, -signed) @ (total - turned)
         profile = np.maximum(profile, likelihood)
     best = profile.max()
@@ -78,8 +81,8 @@ def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
     if len(np.unique(x)) < 4:
         return None
     best: tuple[float, Bend] | None = None
-    places: list[float] = np.linspace(x.min(), x.max(), STEPS)[1:].tolist()
-    for at in places:
+    places: list[float] = np.linspace(min(ratios), max(ratios), STEPS).tolist()
+    for at in places[1:]:
         fall = np.maximum(0.0, at - x)
         design = np.column_stack([np.ones_like(x), fall])
         (base, slope), *_ = np.linalg.lstsq(design, y, rcond=None)

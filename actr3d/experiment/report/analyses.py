@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pkgutil
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Sequence
 from importlib import import_module
 from typing import Any, TypeVar
 
@@ -12,20 +11,11 @@ import actr3d.experiment
 from actr3d.experiment.report.parts import Section
 from actr3d.registry import Registry
 
-F = TypeVar("F", bound=Callable[[Any, Sequence[Any]], Sequence[Section]])
+Sections = Callable[[Any, Sequence[Any]], Sequence[Section]]
+"""Returns sections, from the `Results` of the experiment and the `Beside` means of people and other experiments."""
+F = TypeVar("F", bound=Sections)
 
-
-@dataclass(frozen=True)
-class Analysis:
-    """An analysis of experiments of one kind."""
-
-    make: Callable[[Any, Sequence[Any]], Sequence[Section]]
-    """Returns the sections, from the `Results` of the experiment and the `Beside` means of people and other experiments."""
-    columns: frozenset[str]
-    """The columns of the trials that it needs."""
-
-
-ANALYSES: Registry[Analysis] = Registry("analysis")
+ANALYSES: Registry[Sections] = Registry("analysis")
 """All analyses by name."""
 
 
@@ -43,16 +33,21 @@ def analysis(*columns: str) -> Callable[[F], F]:
     """
 
     def register(function: F) -> F:
-        ANALYSES.add(f"{function.__module__}.{function.__qualname__}", Analysis(function, frozenset(columns)))
+        function.__dict__["needed_columns"] = frozenset(columns)
+        ANALYSES.add(f"{function.__module__}.{function.__qualname__}", function)
         return function
 
     return register
 
 
-def find_analyses() -> Registry[Analysis]:
-    """Imports the module `analysis` of each package of `actr3d.experiment`, and returns all analyses."""
+def find_analyses(columns: Collection[str]) -> list[Sections]:
+    """Imports the module `analysis` of each package of `actr3d.experiment`, and returns the analyses that can be made.
+
+    Args:
+        columns: The columns of the trials that there are.
+    """
     home = actr3d.experiment
     for package in pkgutil.iter_modules(home.__path__, f"{home.__name__}."):
         if package.ispkg and any(inner.name == "analysis" for inner in pkgutil.iter_modules(import_module(package.name).__path__)):
             import_module(f"{package.name}.analysis")
-    return ANALYSES
+    return [function for function in ANALYSES.values() if function.__dict__["needed_columns"] <= set(columns)]

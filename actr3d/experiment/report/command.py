@@ -42,9 +42,8 @@ def write_report(folder: Path | str, *, human: Path | str | None = None, compare
     beside = None if other is None else beside_experiment(other, results)
     others: list[Beside] = [one for one in (people, beside) if one is not None]
     sections = [what_was_run(results)]
-    for one in find_analyses().values():
-        if one.columns <= set(results.rows.columns):
-            sections += one.make(results, others)
+    for make in find_analyses(results.rows.columns):
+        sections += make(results, others)
     sections.append(human_section(results, data, why, people))
     if other is not None:
         sections.append(comparison_section(results, other, beside))

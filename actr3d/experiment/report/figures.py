@@ -47,6 +47,8 @@ STYLE: dict[str, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "actr3d",
 }
+SCALE = 1.53
+"""The size of figures on the page [CSS pixels per point]: texts in them are then nearly as large as those of tables."""
 Look = Literal["model", "points", "human", "other", "baseline"]
 """`model`: the experiment of the report; `points`: the same without a line; `human`: people;
 `other`: another experiment or model; `baseline`: what any model must beat."""
@@ -217,4 +219,8 @@ def inline_svg(text: str, name: str, title: str) -> str:
     body = re.sub(r"font: ((?:bold |\d+ )*)([\d.]+)px [^;\"]*", r"font-size: \2px; font-weight: \1", body)
     body = re.sub(r"; font-weight: (?=[;\"])|font-family: [^;\"]*;? ?", "", body)
     label = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
-    return re.sub(r"<svg [^>]*?viewBox=\"([^\"]*)\"[^>]*>", f'<svg viewBox="\\1" role="img" aria-label="{label}">', body, count=1)
+    box = re.search(r"<svg [^>]*?viewBox=\"(\S+ \S+ (\S+) \S+)\"[^>]*>", body)
+    if box is None:
+        return body
+    wide = round(float(box[2]) * SCALE)
+    return f'<svg viewBox="{box[1]}" style="max-width: {wide}px" role="img" aria-label="{label}">{body[box.end() :]}'

@@ -15,7 +15,7 @@ from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results, plain_text
-from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, participant_means, tests_of
+from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, participant_means, run_tests
 
 MOST_PANES = 6
 """A factor with more levels than this makes no panes of a figure."""
@@ -174,7 +174,7 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -
     table = Table(
         name=f"means_{measure}", title="Means", frame=means, units=units, hidden=("measure", "unit"), note=note, folded=len(means) > 12
     )
-    parts += [table, *_participants(results, measure, unit), *test_parts(tests_of(results, measure), measure)]
+    parts += [table, *_participants(results, measure, unit), *test_parts(run_tests(results, measure), measure)]
     return Section(title=results.name_with_unit(measure), parts=parts, folded=True)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -48,16 +49,22 @@ table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabu
 th, td { padding: .28rem .8rem .28rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; color: var(--muted); vertical-align: bottom; } td.number, th.number { text-align: right; white-space: nowrap; }
 td.good { color: var(--good); font-weight: 600; } td.bad { color: var(--bad); font-weight: 600; }
-td.text { max-width: 34rem; overflow-wrap: break-word; }
+td.short { white-space: nowrap; } td.text { max-width: 34rem; overflow-wrap: break-word; }
 details { margin: .6rem 0; } summary { cursor: pointer; padding: .25rem 0; color: var(--link); }
 details.section { border-top: 1px solid var(--line); margin: 0; padding: .35rem 0; }
 details.section > summary { font-weight: 600; color: var(--ink); }
 details.section[open] { padding-bottom: 1.2rem; }
-pre { background: var(--soft); padding: .8rem 1rem; overflow-x: auto; border-radius: 6px; font-size: .82rem; }
+code { font-size: .9em; } pre { background: var(--soft); padding: .8rem 1rem; overflow-x: auto; border-radius: 6px; font-size: .82rem; }
 @media print { :root { color-scheme: light; } nav { display: none; } }
 """
+ROUNDING = 1e-12
+"""Smaller numbers are shown as 0."""
 MET = {"met": "good", "not met": "bad"}
 """Texts of cells that are coloured."""
+
+
+SHORT = 16
+"""Texts of cells up to this length are not broken into lines."""
 
 
 def page(title: str, lead: str, facts: Mapping[str, str], sections: Sequence[Section], drawings: Mapping[str, str]) -> str:
@@ -92,7 +99,8 @@ def _section(section: Section, drawings: Mapping[str, str]) -> str:
 def _part(part: str | Table | Plot | Caution, drawings: Mapping[str, str]) -> str:
     match part:
         case str():
-            return f"<p>{_text(part)}</p>"
+            code = re.sub(r"`([^`]+)`", r"<code>\1</code>", _text(part))
+            return f"<p>{code}</p>"
         case Caution():
             return f'<div class="caution">{_text(part.text)}</div>'
         case Plot():
@@ -132,7 +140,7 @@ def _cell(name: str, value: Any, numeric: set[str], table: Table) -> str:
     if name in numeric:
         return f'<td class="number">{number(value, table.digits.get(name), p=name.partition("_")[0] == "p")}</td>'
     text = "" if value is None or (isinstance(value, float) and math.isnan(value)) else str(value)
-    kind = MET.get(text, "text")
+    kind = MET.get(text, "short" if len(text) <= SHORT else "text")
     return f'<td class="{kind}">{_text(text)}</td>'
 
 
@@ -144,6 +152,7 @@ def number(value: float, digits: int | None = None, *, p: bool = False) -> str:
         digits: The number of decimals; None for three significant digits.
         p: Whether it is a probability of a test.
     """
+    value = 0.0 if abs(value) < ROUNDING else value
     if not math.isfinite(value):
         return "–" if math.isnan(value) else "∞" if value > 0 else "−∞"
     if p:

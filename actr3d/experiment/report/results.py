@@ -20,6 +20,8 @@ NUMBERS = ("boolean", "integer", "real")
 """The types of columns that are analysed as numbers."""
 ENDINGS = {"degrees": "_deg", "m/s": "_m_s"}
 """The endings of names of columns by units, where they are not the unit."""
+RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
+"""Names of columns of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
 SHORT = {"r2": "r²", "rmse": "RMSE", "aic": "AIC", "sd": "SD", "chi2": "χ²"}
 """Names of statistics as they are written."""
 LEFT_OUT = ("seed", "wall_s", "worker", "position")
@@ -57,7 +59,7 @@ class Results:
     @property
     def all_factors(self) -> dict[str, list[float] | list[str]]:
         """All factors of the design, also those with one level, with their levels as in `factors`."""
-        return {name: plain_levels(levels) for name, levels in self.design.factors.items()}
+        return {factor_name(name): plain_levels(levels) for name, levels in self.design.factors.items()}
 
     @property
     def groups(self) -> list[str]:
@@ -77,8 +79,13 @@ class Results:
 def name_with_unit(name: str, unit: str) -> str:
     """Returns a name for axes: words instead of underscores, and the unit instead of an ending that is the same: `clearance left [m]`."""
     base = name.removesuffix(ENDINGS.get(unit, f"_{unit.lower()}")) if unit else name
-    words = SHORT.get(base, base.replace("_", " "))
+    words = SHORT.get(base, base.replace("_", " ").strip())
     return f"{words} [{unit}]" if unit else words
+
+
+def factor_name(name: str) -> str:
+    """Returns the name of a factor in the tables of a report."""
+    return f"{name}_" if name in RESERVED else name
 
 
 def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
@@ -111,15 +118,17 @@ def read_results(folder: Path | str) -> Results:
         frame = _frame(store, texts)
     if frame is None:
         raise ExperimentError(f"'{folder}': no trial has finished yet; run it with: actr3d experiment {folder} --resume")
-    frame = _sorted(frame, design)
+    renamed = {name: factor_name(name) for name in design.factors}
+    columns = {renamed.get(name, name): column for name, column in columns.items()}
+    frame = _sorted(frame.rename(columns=renamed), design)
     failed = frame["error"].notna()
     rows = frame[~failed].drop(columns=["error", "versions"]).reset_index(drop=True)
-    about = [name for name in ("trial", "participant", "group", *design.factors, "end", "error") if name in frame]
+    about = [name for name in ("trial", "participant", "group", *renamed.values(), "end", "error") if name in frame]
     failures = frame.loc[failed, about].reset_index(drop=True)
     if not len(rows):
         first = str(failures["error"].iloc[0]).strip().splitlines()[-1]
         raise ExperimentError(f"'{folder}': all {len(failures):,} trials failed; the first one with: {first}")
-    of_design = {*design.trial(0).columns, *OWN_COLUMNS}
+    of_design = {*design.trial(0).columns, *OWN_COLUMNS, *renamed.values()}
     kinds = {name: columns[name].type for name in rows if name in columns and name not in of_design}
     return Results(
         label=Path(folder).resolve().name,
@@ -138,7 +147,7 @@ def read_results(folder: Path | str) -> Results:
 def _sorted(frame: Any, design: Design) -> Any:
     """Returns the rows sorted by group, participant and factors, each in the order of the design, and by the number of the trial."""
     orders: dict[str, list[Any]] = {"group": list(design.groups), "participant": [one.name for one in design.participants]}
-    orders |= {name: list(plain_levels(levels)) for name, levels in design.factors.items() if name in frame}
+    orders |= {factor_name(name): list(plain_levels(levels)) for name, levels in design.factors.items()}
 
     def rank(column: Any) -> Any:
         order = orders.get(column.name)

@@ -111,7 +111,7 @@ class Tests:
     """What was not tested, and why; what a library warned of."""
 
 
-def tests_of(results: Results, measure: str) -> Tests:
+def run_tests(results: Results, measure: str) -> Tests:
     """Runs the tests that the design allows on the means of participants."""
     pd, notes = pandas(), list[str]()
     factors = list(results.factors)

@@ -1,0 +1,113 @@
+"""Human data: what follows the schema is read, and what does not is named by file, line and column."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from actr3d.errors import ExperimentError
+from actr3d.experiment.human_data import SHOWN, Schema, library_human_data, read_human_data
+from actr3d.experiment.specification import library_designs, specify
+
+SCHEMA = Schema(
+    groups=["small", "large"],
+    factors={"aperture": [0.4, 0.5], "condition": ["normal", "fast"]},
+    measures=["wall_angle_deg", "speed_m_s"],
+)
+
+
+def read(folder: Path, text: str, schema: Schema = SCHEMA):
+    path = folder / "people.csv"
+    path.write_text(text, encoding="utf-8")
+    return read_human_data(path, schema)
+
+
+def test_trials_are_read(tmp_path: Path) -> None:
+    data = read(tmp_path, "# by hand\nparticipant,group,aperture,condition,wall_angle_deg\n1,small,0.4,fast,50.5\n1,small,0.45,normal,\n")
+    assert (data.published, data.measures, data.notes) == (False, ["wall_angle_deg"], ["by hand"])
+    assert data.rows[0] == {"participant": "1", "group": "small", "aperture": 0.4, "condition": "fast", "wall_angle_deg": 50.5}
+    assert data.rows[1]["wall_angle_deg"] is None, "an empty cell is a missing value"
+    assert data.rows[1]["aperture"] == 0.45, "people may have been at other apertures than the model"
+
+
+def test_published_means_are_read_and_may_be_means_over_all_levels(tmp_path: Path) -> None:
+    text = 'group,aperture,measure,mean,sd,n,source\nlarge,,speed_m_s,1.28,,5,"W & W (1987), p. 3"\n,0.4,wall_angle_deg,60,3.5,,X\n'
+    data = read(tmp_path, text)
+    assert data.published
+    assert data.sources == ["W & W (1987), p. 3", "X"]
+    assert (data.rows[0]["aperture"], data.rows[0]["condition"], data.rows[0]["sd"], data.rows[0]["n"]) == (None, None, None, 5.0)
+    assert (data.rows[1]["group"], data.rows[1]["sd"]) == (None, 3.5)
+
+
+HEAD = "participant,group,aperture,condition,wall_angle_deg\n"
+MEANS = "group,aperture,measure,mean,sd,n,source\n"
+BAD = {
+    "empty": ("", r"people.csv: is empty; the first line must name the columns"),
+    "no row": (HEAD, r"people.csv:1: no row follows"),
+    "unknown column": (
+        "participant,group,apperture,wall_angle_deg\n",
+        r"people.csv:1: unknown column 'apperture'; did you mean 'aperture'\?",
+    ),
+    "twice": ("participant,group,group,wall_angle_deg\n", r"people.csv:1: column 'group' stands there twice"),
+    "no participant": ("group,aperture,wall_angle_deg\n", r"people.csv:1: column 'participant' is missing; trials need"),
+    "no measure": ("participant,group,aperture\n", r"people.csv:1: no column is a measure; there may be: wall_angle_deg, speed_m_s"),
+    "no source": ("group,measure,mean\n", r"people.csv:1: column 'source' is missing; published means need"),
+    "text for a number": (HEAD + "1,small,0.4,fast,fifty\n", r"people.csv:2: column 'wall_angle_deg': must be a number \(got 'fifty'\)"),
+    "comma": (HEAD + '1,small,0.4,fast,"50,5"\n', r"must be a number; write the decimal point as '.' \(got '50,5'\)"),
+    "not finite": (HEAD + "1,small,0.4,fast,nan\n", r"people.csv:2: column 'wall_angle_deg': must be a number \(got 'nan'\)"),
+    "wrong group": (
+        HEAD + "1,smal,0.4,fast,50\n",
+        r"people.csv:2: column 'group': must be one of: small, large .*; did you mean 'small'\?",
+    ),
+    "no group": (HEAD + "1,,0.4,fast,50\n", r"people.csv:2: column 'group': must be one of: small, large \(got ''\)"),
+    "wrong level": (HEAD + "1,small,0.4,slow,50\n", r"people.csv:2: column 'condition': must be one of: normal, fast \(got 'slow'\)"),
+    "few cells": (HEAD + "1,small,0.4\n", r"people.csv:2: must have 5 cells, as the first line has \(got 3\)"),
+    "negative sd": (MEANS + "small,0.4,wall_angle_deg,5,-1,5,X\n", r"people.csv:2: column 'sd': must be a number from 0 on \(got '-1'\)"),
+    "part of a person": (MEANS + "small,0.4,wall_angle_deg,5,1,2.5,X\n", r"column 'n': must be a whole number from 1 on \(got '2.5'\)"),
+    "no mean": (MEANS + "small,0.4,wall_angle_deg,,1,5,X\n", r"people.csv:2: column 'mean': must be a number \(got ''\)"),
+    "unknown measure": (
+        MEANS + "small,0.4,angle,5,1,5,X\n",
+        r"column 'measure': must be one of: wall_angle_deg, speed_m_s \(got 'angle'\)",
+    ),
+    "where it is from": (MEANS + "small,0.4,wall_angle_deg,5,1,5,\n", r"people.csv:2: column 'source': must be given \(got ''\)"),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_what_is_wrong_is_named_with_its_place(what: str, tmp_path: Path) -> None:
+    text, says = BAD[what]
+    with pytest.raises(ExperimentError, match=says):
+        read(tmp_path, text)
+
+
+def test_all_errors_are_named_at_once_but_not_without_end(tmp_path: Path) -> None:
+    with pytest.raises(ExperimentError) as raised:
+        read(tmp_path, HEAD + "1,small,x,fast,50\n" * 2 + "1,small,0.4,fast,50\n" + "1,small,y,fast,50\n" * 40)
+    lines = str(raised.value).splitlines()
+    assert [re.sub(r".*csv:(\d+):.*", r"\1", line) for line in lines[:4]] == ["2", "3", "5", "6"]
+    assert len(lines) == SHOWN + 1
+    assert lines[-1] == "... and 22 more errors"
+
+
+def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "people.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ExperimentError, match="it is not UTF-8"):
+        read_human_data(tmp_path / "people.csv", SCHEMA)
+    with pytest.raises(ExperimentError, match="No such file"):
+        read_human_data(tmp_path / "nobody.csv", SCHEMA)
+
+
+def test_the_librarys_designs_name_data_that_follow_the_schema() -> None:
+    known = library_human_data()
+    assert "warren_whang_1987" in known
+    for name in library_designs():
+        design = specify(name).design
+        if design.human is not None:
+            assert design.human in known
+    design = specify("warren_whang_1987").design
+    factors = {name: [*levels] for name, levels in design.factors.items()}
+    data = read_human_data(known["warren_whang_1987"], Schema(groups=[*design.groups], factors=factors, measures=["speed_m_s"]))
+    assert [row["mean"] for row in data.rows] == [1.29, 1.61, 1.28, 1.77]
+    assert "not available in print" in data.notes[0]

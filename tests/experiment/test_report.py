@@ -1,0 +1,209 @@
+"""Reports of experiments: what the page and its files hold, and which experiments have none."""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.cli import main
+from actr3d.errors import ExperimentError
+from actr3d.experiment.report.analyses import ANALYSES
+from actr3d.experiment.report.command import write_report
+from actr3d.experiment.specification import specify
+from actr3d.experiment.store import Store
+from tests.helpers.experiments import write_experiment
+from tests.helpers.reports import store_rows, walk
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """Returns all files of a report."""
+    report = folder / "report"
+    return {str(path.relative_to(report)): path.read_bytes() for path in sorted(report.rglob("*")) if path.is_file()}
+
+
+def table(folder: Path, name: str) -> list[dict[str, str]]:
+    with (folder / "report" / "tables" / f"{name}.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def page(folder: Path) -> str:
+    return (folder / "report" / "index.html").read_text(encoding="utf-8")
+
+
+def count(trial: Any) -> dict[str, Any]:
+    return {"rt": 0.05 * trial.values["n"] + 0.001 * (trial.number % 5), "luck": (trial.number * 7 % 10) / 10}
+
+
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An experiment with apertures, and its report."""
+    folder = store_rows(tmp_path_factory.mktemp("report") / "walks", "warren_whang_1987", walk, trials=1)
+    write_report(folder)
+    return folder
+
+
+def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walked: Path) -> None:
+    text = page(walked)
+    assert "<script" not in text
+    assert not re.findall(r"(?:src|href)=\"(?:https?:|//)", text)
+    for link in re.findall(r"href=\"((?:figures|tables)/[^\"]+)\"", text):
+        assert (walked / "report" / link).exists()
+    anchors, ids = re.findall(r"href=\"#([^\"]+)\"", text), re.findall(r"\bid=\"([^\"]+)\"", text)
+    assert set(anchors) <= set(ids)
+    assert len(ids) == len(set(ids))
+    named = set(re.findall(r"(?:figures|tables)/[\w.]+", text))
+    assert named == {name for name in files(walked) if name != "index.html"}, "each file is named on the page"
+
+
+def test_the_same_rows_give_the_same_files(walked: Path, tmp_path: Path) -> None:
+    again = store_rows(tmp_path / "walks", "warren_whang_1987", walk, trials=1)
+    write_report(again)
+    assert files(again) == files(walked)
+
+
+def test_apertures_have_their_own_sections(walked: Path) -> None:
+    assert [(row["number"], row["result"]) for row in table(walked, "constraints")] == [
+        *((str(number), "met") for number in (1, 2, 3, 4, 5)),
+        ("6", "met"),
+        ("7", "met"),
+        ("8", "not testable"),
+        ("9", "not testable"),
+    ]
+    agreement = {(row["means_of"], row["compared_with"]): row for row in table(walked, "agreement")}
+    assert float(agreement["geometry (baseline)", "this model"]["rmse"]) < 6
+    assert int(agreement["this model", "original ACT-R 3D"]["cells"]) == 28
+    assert agreement["geometry (baseline)", "original ACT-R 3D"]["r2"]
+    (equal,) = table(walked, "equivalence")
+    assert equal["result"] == "equivalent"
+    same = next(row for row in table(walked, "constraints") if row["number"] == "3")
+    assert f"p = {float(equal['p']):.3g}" in same["found"], "pingouin and the constraint agree"
+    for row in table(walked, "critical_ratios"):
+        assert float(row["low"]) < 1.3 < float(row["high"])
+    assert {row["left_mean"] for row in table(walked, "margins")} == {"6.9"}
+    assert "Human mean angles for each aperture are not available in print" in page(walked)
+
+
+def test_published_speeds_are_shown_with_their_source(walked: Path) -> None:
+    (fit,) = table(walked, "fit_to_people")
+    assert (fit["measure"], fit["cells"]) == ("speed_m_s", "4")
+    assert "doi 10.1037/0096-1523.13.3.371" in page(walked)
+
+
+def test_own_human_data_are_drawn_and_compared(walked: Path, tmp_path: Path) -> None:
+    people = tmp_path / "people.csv"
+    rows = [f"{n},{group},{wide},normal,{30 + n}" for group in ("small", "large") for n in range(3) for wide in (0.4, 0.5, 0.6)]
+    people.write_text("\n".join(["participant,group,aperture,condition,wall_angle_deg", *rows]), encoding="utf-8")
+    write_report(walked, human=people)
+    try:
+        fit = next(row for row in table(walked, "fit_to_people") if row["measure"] == "wall_angle_deg")
+        assert fit["cells"] == "6"
+        assert "people.csv: 18 rows of trials of people" in page(walked)
+        assert ">people</text>" in (walked / "report/figures/rotation_by_aperture.svg").read_text(encoding="utf-8")
+        assert "Human mean angles for each aperture are not available" not in page(walked)
+    finally:
+        write_report(walked)
+
+
+def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=3)
+
+    def measures(trial: Any) -> dict[str, Any]:
+        return {"error": "Traceback\nValueError: <b>no</b>"} if trial.number % 9 == 1 else count(trial)
+
+    folder = store_rows(tmp_path / "out", str(path), measures, least=4)
+    write_report(folder)
+    assert sum(int(row["trials"]) for row in table(folder, "failures")) == 3
+    text = page(folder)
+    assert "Only 32 of 36 trials have finished" in text
+    assert "3 of 32 trials failed" in text
+    assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in text
+    assert "The design names no human data" in text
+
+
+def test_one_participant_is_described_and_not_tested(tmp_path: Path) -> None:
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    write_report(folder)
+    assert "A group has one participant. With fewer than 3 nothing can be said" in page(folder)
+    assert {row["low"] for row in table(folder, "means_rt")} == {""}
+    assert not list((folder / "report/tables").glob("anova*"))
+
+
+def test_one_cell_has_no_figure(tmp_path: Path) -> None:
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, factors='{"n": [2]}', participants=4)), count)
+    write_report(folder)
+    assert not list((folder / "report/figures").iterdir())
+    assert "the design has one group and no factor" in page(folder)
+
+
+def test_two_experiments_are_compared(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=3))
+    one = store_rows(tmp_path / "one", path, count)
+    store_rows(tmp_path / "two", path, lambda trial: {**count(trial), "rt": count(trial)["rt"] + 0.1}, values={"seed": 2})
+    assert main(["report", str(one), "--compare", str(tmp_path / "two")]) == 0
+    fit = {row["measure"]: row for row in table(one, "fit_to_other")}
+    assert float(fit["rt"]["mean_difference"]) == pytest.approx(-0.1, abs=0.002)
+    assert "differs in: seed = 2 (here None)" in page(one)
+    assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
+
+
+def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
+    path = write_experiment(tmp_path, participants=1)
+    empty = tmp_path / "empty"
+    Store.create(empty, specify(str(path)).specification).close()
+    assert main(["report", str(empty)]) == 1
+    assert f"error: '{empty}': no trial has finished yet" in capsys.readouterr().err
+    failed = store_rows(tmp_path / "failed", str(path), lambda _: {"error": "ValueError: never"})
+    assert main(["report", str(failed)]) == 1
+    assert "all 12 trials failed; the first one with: ValueError: never" in capsys.readouterr().err
+    assert main(["report", str(tmp_path)]) == 1
+    assert "holds no experiment" in capsys.readouterr().err
+
+
+def test_a_folder_that_is_no_report_is_not_replaced(tmp_path: Path) -> None:
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    (folder / "report").mkdir()
+    (folder / "report" / "thesis.tex").write_text("years of work")
+    with pytest.raises(ExperimentError, match="is not a report; move it away"):
+        write_report(folder)
+    assert (folder / "report" / "thesis.tex").exists()
+
+
+def test_a_design_can_add_sections_of_its_own(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=1)
+    own = """
+from actr3d.experiment.report import Section, analysis
+
+
+@analysis("rt", "n_")
+def speed(results, others):
+    return [Section(title="Speed of counting", parts=[f"{len(results.rows)} trials."])]
+"""
+    path.write_text(path.read_text(encoding="utf-8") + own, encoding="utf-8")
+    before = dict(ANALYSES)
+    try:
+        folder = store_rows(tmp_path / "out", str(path), count)
+        write_report(folder)
+        assert "Speed of counting" in page(folder)
+        assert "12 trials." in page(folder)
+    finally:
+        ANALYSES.clear()
+        ANALYSES.update(before)
+
+
+def test_levels_that_are_texts_switches_or_none_are_kept_apart(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count", None, True], "n": [1, 2]}', participants=3)
+    folder = store_rows(tmp_path / "out", str(path), count)
+    write_report(folder)
+    assert list(dict.fromkeys(row["mode"] for row in table(folder, "means_rt"))) == ["count", "none", "True"]
+
+
+def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) -> None:
+    path, folder = write_experiment(tmp_path, participants=3, trials=2), tmp_path / "run"
+    assert main(["experiment", str(path), "--out", str(folder), "--workers", "1"]) == 0
+    assert main(["report", str(folder)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report" / "index.html")
+    assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "3"), ("2", "3"), ("5", "3")]

@@ -1,0 +1,146 @@
+"""Statistics of reports: known answers, participants as the unit, and what a design does not allow."""
+
+from __future__ import annotations
+
+import math
+import random
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
+from actr3d.experiment.aperture.passing import baseline_angle
+from actr3d.experiment.report.libraries import pandas
+from actr3d.experiment.report.results import Results, read_results
+from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means, participant_means, run_tests
+from tests.helpers.experiments import write_experiment
+from tests.helpers.reports import store_rows
+
+GROUPED = '''
+from actr3d.experiment import Design, Group, design
+
+
+@design
+def counting():
+    """Counts to several numbers."""
+    return Design(
+        model="counter.py",
+        factors={"n": [1, 2, 5], "mode": ["count", "fail"]},
+        groups={"young": Group(participants=4), "old": Group(participants=4)},
+        trials=2,
+        measures=["rt", "luck"],
+    )
+'''
+
+
+def grouped(folder: Path, *, effect: float, **options: Any) -> Results:
+    """Returns the results of two groups, three numbers and two modes; the old are slower by `effect`, and each number costs 1 s."""
+    path = write_experiment(folder)
+    path.write_text(GROUPED, encoding="utf-8")
+    draw = random.Random(3)
+    person = {f"{group} {n}": draw.gauss(0, 0.3) for group in ("young", "old") for n in range(1, 9)}
+
+    def measures(trial: Any) -> dict[str, Any]:
+        slow = effect if trial.participant.group == "old" else 0.0
+        rt = trial.values["n"] + slow + person[trial.participant.name] + draw.gauss(0, 0.1)
+        return {"rt": rt, "luck": 0.5}
+
+    return read_results(store_rows(folder / "out", str(path), measures, **options))
+
+
+def test_participants_are_the_unit_of_means() -> None:
+    rows = pandas().DataFrame({"participant": ["a", "a", "a", "b"], "group": ["all"] * 4, "rt": [1.0, 1.0, 1.0, 3.0]})
+    assert participant_means(rows, "rt", [])["value"].tolist() == [1.0, 3.0]
+    cell = cell_means(rows, "rt", ["group"]).iloc[0]
+    assert (cell["mean"], cell["n"], cell["trials"]) == (2.0, 2, 4)
+    assert cell["sd"] == pytest.approx(math.sqrt(2))
+    assert (cell["low"], cell["high"]) == (1.0, 3.0)
+
+
+def test_bootstrap_intervals_are_the_same_each_time_and_cover_the_mean() -> None:
+    draw = np.random.default_rng(5)
+    covered = 0
+    for _ in range(200):
+        values = draw.normal(10, 2, 30).tolist()
+        low, high = bootstrap_interval(values)
+        assert (low, high) == bootstrap_interval(values)
+        covered += low < 10 < high
+    assert 176 <= covered <= 200
+    assert all(math.isnan(bound) for bound in bootstrap_interval([1.0])), "one participant says nothing about others"
+
+
+def test_agreement_is_rmse_and_squared_correlation() -> None:
+    assert agreement([1, 2, 3, 4], [1, 2, 3, 4]) == (0.0, pytest.approx(1))
+    assert agreement([3, 4, 5, 6], [1, 2, 3, 4]) == (2.0, pytest.approx(1)), "a correlation alone would hide the difference"
+    assert math.isnan(agreement([1, 1, 1], [1, 2, 3])[1])
+
+
+def test_a_known_effect_of_groups_and_levels_is_found(tmp_path: Path) -> None:
+    tests = run_tests(grouped(tmp_path, effect=2.0), "rt")
+    rows = {(row["analysis"], row["effect"]): row for row in tests.anova.to_dict("records")}
+    group = rows["group × n_", "group"]
+    assert (group["df1"], group["df2"]) == (1, 6)
+    assert group["p"] < 0.001
+    n = rows["group × n_", "n_"]
+    assert (n["df1"], n["df2"]) == (2, 12)
+    assert n["p_corrected"] < 0.001
+    assert n["effect_size"] > 0.8
+    assert rows["group × n_", "group × n_"]["p"] > 0.01
+    assert rows["group × mode", "mode"]["p"] > 0.01
+    assert ("differences fail − count", "mode × n_") in rows
+    wald = {row["effect"]: row for row in tests.mixed_model.to_dict("records")}
+    assert (wald["n_"]["df"], wald["group × n_ × mode"]["df"]) == (2, 2)
+    assert wald["n_"]["p"] < 0.001
+    assert set(tests.assumptions["test"]) == {"Mauchly", "Shapiro-Wilk", "Levene"}
+
+
+def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> None:
+    """The F of groups is the square of the t of the participants' means."""
+    results = grouped(tmp_path, effect=0.4)
+    row = run_tests(results, "rt").anova.iloc[0]
+    means = participant_means(results.rows, "rt", [])
+    young, old = (means[means["group"] == group]["value"].to_numpy() for group in ("young", "old"))
+    pooled = (young.var(ddof=1) + old.var(ddof=1)) / 2
+    assert row["F"] == pytest.approx((young.mean() - old.mean()) ** 2 / (pooled * 2 / 4))
+
+
+def test_what_a_design_does_not_allow_is_not_tested_and_says_why(tmp_path: Path) -> None:
+    results = grouped(tmp_path, effect=1.0, participants=2)
+    few = run_tests(results, "rt")
+    assert few.anova is None
+    assert few.notes == ["Not tested: a group has fewer than 3 participants with a value in every cell."]
+    assert run_tests(results, "luck").notes == ["Not tested: all means are the same."]
+
+
+def test_critical_ratios_are_found() -> None:
+    found = critical_ratio((ratio / 20, ratio / 20 < 1.3) for ratio in range(14, 36) for _ in range(5))
+    assert found is not None
+    assert found.value == pytest.approx(1.275, abs=0.003), "midway between the last that turned and the first that did not"
+    assert found.low == pytest.approx(1.25, abs=0.01)
+    assert found.high == pytest.approx(1.30, abs=0.01), "the interval is that between the two"
+    few = critical_ratio((ratio, ratio < 1.3) for ratio in (1.0, 1.1, 1.2, 1.4, 1.5))
+    assert few is not None
+    assert few.high - few.low > 0.2, "one trial each says less"
+
+
+def test_a_bend_has_a_baseline() -> None:
+    ratios = [0.9 + 0.05 * n for n in range(15)]
+    found = bend(ratios, [18 + 150 * max(0.0, 1.2 - ratio) for ratio in ratios])
+    assert found is not None
+    assert (found.ratio, found.baseline, found.slope) == (
+        pytest.approx(1.2, abs=0.005),
+        pytest.approx(18, abs=0.2),
+        pytest.approx(150, rel=0.02),
+    )
+    assert bend([1.0, 1.1, 1.2], [3.0, 2.0, 1.0]) is None
+
+
+def test_the_baseline_is_an_ellipse_that_leaves_room() -> None:
+    angles = baseline_angle([0.5, 0.863, 1.0, 1.3, 1.5])
+    assert angles.tolist()[:2] == [90, pytest.approx(90, abs=0.1)]
+    assert angles.tolist()[3:] == [0, 0]
+    width = math.hypot(math.cos(math.radians(angles[2])), 0.563 * math.sin(math.radians(angles[2])))
+    assert width == pytest.approx(0.7)
+    assert baseline_angle([2.0], 2.0)[0] == pytest.approx(math.degrees(math.acos(1.7 / 2)))
