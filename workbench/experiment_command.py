@@ -14,7 +14,7 @@ from pathlib import Path
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench.experiment_messages import EVENTS, AnyEvent
+from workbench.experiment_messages import EVENTS, AnyExperimentEvent
 
 NICENESS = 10
 """How far its processes stand back behind the server and the sessions, from 0 to 19."""
@@ -26,7 +26,7 @@ PART = 4_000
 """How much of a message is read at a time, and shown at most [characters]."""
 
 
-class ExperimentError(Actr3dError):
+class ExperimentRunError(Actr3dError):
     """An experiment cannot be run, continued or read as requested."""
 
     status = 409
@@ -87,7 +87,7 @@ class ExperimentCommand:
         text = "\n".join(self._messages).strip().removeprefix("error: ")
         return text if len(text) <= PART else f"… {text[-PART:]}"
 
-    async def events(self) -> AsyncGenerator[AnyEvent]:
+    async def events(self) -> AsyncGenerator[AnyExperimentEvent]:
         """Yields its messages; anything else that it prints is left out. Ends when it has closed its output."""
         assert self._process.stdout is not None
         while True:

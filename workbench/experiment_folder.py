@@ -13,8 +13,8 @@ from typing import Any, cast
 import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
-from workbench.experiment_command import ExperimentError
-from workbench.experiment_messages import Facts
+from workbench.experiment_command import ExperimentRunError
+from workbench.experiment_messages import ExperimentFacts
 
 SPECIFICATION, TABLE, LOCK, NOTES = "experiment.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
@@ -29,7 +29,7 @@ LARGEST_REPORT = 200_000_000
 class Notes(msgspec.Struct, frozen=True, kw_only=True):
     """What the workbench keeps of an experiment beside its table."""
 
-    facts: Facts | None = None
+    facts: ExperimentFacts | None = None
     changed: dict[str, Any] = {}
     """The values and numbers that replace those of the design."""
     seal: str = ""
@@ -100,7 +100,7 @@ class ExperimentFolder:
         """Returns the code that continuing the experiment runs: the texts of design and model, and of their helper modules.
 
         Raises:
-            ExperimentError: If the description cannot be read.
+            ExperimentRunError: If the description cannot be read.
         """
         try:
             given: Any = json.loads(self._read(SPECIFICATION))
@@ -109,7 +109,7 @@ class ExperimentFolder:
             texts |= {str(file): str(text) for one in (design, model) for file, text in one.get("helpers", {}).values()}
             file = str(design["file"])
         except (OSError, KeyError, TypeError, ValueError, AttributeError, RecursionError):
-            raise ExperimentError(f"{SPECIFICATION} is not the description of an experiment") from None
+            raise ExperimentRunError(f"{SPECIFICATION} is not the description of an experiment") from None
         return {"made_here": self.made_here, "file": file, "source": texts.pop(file), "helpers": texts}
 
     # -- notes
@@ -164,7 +164,7 @@ def is_plain(path: Path) -> bool:
     return path.is_file() and not path.is_symlink()
 
 
-def as_values(facts: Facts | None) -> dict[str, Any]:
+def as_values(facts: ExperimentFacts | None) -> dict[str, Any]:
     """Returns facts as plain values."""
     found = {} if facts is None else cast("dict[str, Any]", msgspec.to_builtins(facts))
     return {name: value for name, value in found.items() if name != "event"}

@@ -7,11 +7,11 @@ from typing import Any
 import msgspec
 
 
-class Event(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_field="event"):
+class ExperimentEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
     """Base of all messages."""
 
 
-class Facts(Event, frozen=True, kw_only=True):
+class ExperimentFacts(ExperimentEvent, frozen=True, kw_only=True, tag="facts"):
     """What is known of an experiment before it runs."""
 
     name: str
@@ -35,7 +35,7 @@ class Facts(Event, frozen=True, kw_only=True):
     """The parameters of the model: name, help, unit, default, choices."""
 
 
-class Check(Facts, frozen=True, kw_only=True):
+class TriedFacts(ExperimentFacts, frozen=True, kw_only=True, tag="check"):
     """The facts of an experiment of which a trial was run."""
 
     seconds_a_trial: float
@@ -44,7 +44,7 @@ class Check(Facts, frozen=True, kw_only=True):
     """The traceback of the trial, if it failed."""
 
 
-class Progress(Event, frozen=True, kw_only=True):
+class ExperimentProgress(ExperimentEvent, frozen=True, kw_only=True, tag="progress"):
     """How far an experiment is."""
 
     done: int
@@ -53,7 +53,7 @@ class Progress(Event, frozen=True, kw_only=True):
     workers: int = 0
 
 
-class End(Event, frozen=True, kw_only=True):
+class ExperimentEnd(ExperimentEvent, frozen=True, kw_only=True, tag="end"):
     """An experiment has ended in order: all trials have run, or it was stopped."""
 
     done: int
@@ -61,6 +61,6 @@ class End(Event, frozen=True, kw_only=True):
     failures: int
 
 
-AnyEvent = Facts | Check | Progress | End
-EVENTS: msgspec.json.Decoder[AnyEvent] = msgspec.json.Decoder(AnyEvent)
+AnyExperimentEvent = ExperimentFacts | TriedFacts | ExperimentProgress | ExperimentEnd
+EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExperimentEvent)
 """Decodes a message; other ones raise an error."""

@@ -11,7 +11,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from actr3d.values import escape_surrogates, to_json
 from workbench.design_files import described
-from workbench.experiment_command import ExperimentError
+from workbench.experiment_command import ExperimentRunError
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile, gone
 from workbench.page_commands import PageMessage
@@ -35,7 +35,7 @@ Count = Annotated[int, Field(ge=1, le=1_000_000)]
 WHERE: TypeAdapter[dict[str, Level]] = TypeAdapter(Annotated[dict[str, Level], Field(max_length=10)])
 
 
-class Wanted(PageMessage):
+class WantedDesign(PageMessage):
     """A design, with what replaces some of it."""
 
     design: Annotated[str, Field(min_length=1, max_length=500)]
@@ -50,14 +50,14 @@ class Wanted(PageMessage):
     """The number of trials of each combination of levels; null for that of the design."""
 
 
-class Checking(Wanted):
+class Checking(WantedDesign):
     """A design to check."""
 
     trial: bool = False
     """Whether a trial is run as well, which finds out how long it takes."""
 
 
-class Starting(Wanted):
+class Starting(WantedDesign):
     """A design to run."""
 
     workers: Annotated[int, Field(ge=1, le=256)] | None = None
@@ -224,13 +224,13 @@ def _where(text: str) -> dict[str, Any]:
     """Returns the conditions for rows.
 
     Raises:
-        ExperimentError: If they are not a JSON object with plain values.
+        ExperimentRunError: If they are not a JSON object with plain values.
     """
     try:
         return dict(WHERE.validate_json(text))
     except ValidationError as error:
         problem = problem_of(error.errors(include_url=False, include_input=False)[0])
-        raise ExperimentError(f"where: {problem}") from None
+        raise ExperimentRunError(f"where: {problem}") from None
 
 
 def _json(value: Any, status: int = 200) -> Response:

@@ -15,14 +15,14 @@ from typing import Any, TypeVar, cast
 
 from actr3d.errors import Actr3dError
 from workbench.design_files import design_argument, stamp_of
-from workbench.experiment_command import ExperimentCommand, ExperimentError
+from workbench.experiment_command import ExperimentCommand, ExperimentRunError
 from workbench.experiment_folder import REPORTS, ExperimentFolder, as_values
-from workbench.experiment_messages import AnyEvent, Check, Event, Facts, Progress
+from workbench.experiment_messages import AnyExperimentEvent, ExperimentEvent, ExperimentFacts, ExperimentProgress, TriedFacts
 from workbench.files import OWN
 from workbench.retention import begun, stamp
 from workbench.sessions import Sessions, UntrustedError
 
-E = TypeVar("E", bound=Event)
+E = TypeVar("E", bound=ExperimentEvent)
 MOST_RUNNING = 2
 """Maximum number of experiments that run at once; each takes all processors."""
 MOST_COMMANDS = 2
@@ -45,7 +45,7 @@ _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 _STAMP = re.compile(r"-\d{8}-\d{6}-[0-9a-f]{4}$")
 
 
-class NoSuchExperimentError(ExperimentError):
+class NoSuchExperimentError(ExperimentRunError):
     """There is no experiment of that name."""
 
     status = 404
@@ -54,13 +54,13 @@ class NoSuchExperimentError(ExperimentError):
         super().__init__("there is no such experiment")
 
 
-class RefusedDesignError(ExperimentError):
+class RefusedDesignError(ExperimentRunError):
     """A design cannot be run, or not with these values."""
 
     status = 422
 
 
-class Run:
+class RunningExperiment:
     """An experiment that runs.
 
     Args:
@@ -69,20 +69,20 @@ class Run:
         done: The number of trials that have finished before.
     """
 
-    def __init__(self, command: ExperimentCommand, facts: Facts | None, done: int) -> None:
+    def __init__(self, command: ExperimentCommand, facts: ExperimentFacts | None, done: int) -> None:
         self.command = command
         self.facts = facts
-        self.progress = Progress(done=done, total=0, failures=0)
+        self.progress = ExperimentProgress(done=done, total=0, failures=0)
         self.ended = False
         """Whether the command has reported its end."""
         self.task: asyncio.Task[None] | None = None
         self._seen: deque[tuple[float, int]] = deque()
 
-    def take(self, event: AnyEvent) -> None:
+    def take(self, event: AnyExperimentEvent) -> None:
         """Stores what the command reports."""
-        if isinstance(event, Facts):
+        if isinstance(event, ExperimentFacts):
             self.facts = event
-        elif isinstance(event, Progress):
+        elif isinstance(event, ExperimentProgress):
             self.progress = event
             now = time.monotonic()
             self._seen.append((now, event.done))
@@ -117,12 +117,12 @@ class Experiments:
         self._models = sessions.folder
         self._recordings = sessions.recordings
         self._root = sessions.folder.root / OWN / "experiments"
-        self._running: dict[str, Run] = {}
+        self._running: dict[str, RunningExperiment] = {}
         self._starting = 0
         self._closed = False
         self._counts: dict[str, tuple[Any, dict[str, Any]]] = {}
         """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
-        self._checked: OrderedDict[str, Facts] = OrderedDict()
+        self._checked: OrderedDict[str, ExperimentFacts] = OrderedDict()
         self._recorded: dict[tuple[str, int], str] = {}
         self._turns = asyncio.Semaphore(MOST_COMMANDS)
 
@@ -204,7 +204,7 @@ class Experiments:
             for (name, now, _), found in zip(fresh, counted, strict=True):
                 self._counts[name] = now, found
 
-    def _facts(self, folder: ExperimentFolder) -> Facts | None:
+    def _facts(self, folder: ExperimentFolder) -> ExperimentFacts | None:
         run = self._running.get(folder.path.name)
         return folder.notes.facts if run is None or run.facts is None else run.facts
 
@@ -232,7 +232,7 @@ class Experiments:
         key = json.dumps([arguments, trial, stamp_of(self._models, design)])
         if key not in self._checked:
             async with self._turns:
-                kind, patience = (Check, WORK_TIME) if trial else (Facts, START_TIME)
+                kind, patience = (TriedFacts, WORK_TIME) if trial else (ExperimentFacts, START_TIME)
                 self._checked[key] = await self._first(arguments, kind, patience)
         self._checked.move_to_end(key)
         while len(self._checked) > KEPT:
@@ -273,7 +273,7 @@ class Experiments:
         Raises:
             Actr3dError: If there is no such design.
             RefusedDesignError: If the design is not valid.
-            ExperimentError: If too many experiments run.
+            ExperimentRunError: If too many experiments run.
             OSError: If no process can be started.
         """
         argument = design_argument(self._models, design)
@@ -294,12 +294,12 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentError: If it runs already, cannot be continued, or too many experiments run.
+            ExperimentRunError: If it runs already, cannot be continued, or too many experiments run.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
         if name in self._running or folder.is_locked:
-            raise ExperimentError("this experiment runs already")
+            raise ExperimentRunError("this experiment runs already")
         await self._begin(name, ["experiment", str(folder.path), "--json", "--resume", *_workers(workers)], None)
 
     async def _begin(self, name: str, arguments: Sequence[str], changed: Mapping[str, Any] | None) -> None:
@@ -311,7 +311,7 @@ class Experiments:
             changed: The values that replace those of the design; None for an experiment that is continued.
         """
         if self._closed or len(self._running) + self._starting >= MOST_RUNNING:
-            raise ExperimentError(f"{MOST_RUNNING} experiments run already: stop one, or wait for its end")
+            raise ExperimentRunError(f"{MOST_RUNNING} experiments run already: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
         facts = None if changed is not None else folder.notes.facts
         self._starting += 1
@@ -319,7 +319,7 @@ class Experiments:
             command = await ExperimentCommand.start(arguments, self._made_root())
         finally:
             self._starting -= 1
-        run = self._running[name] = Run(command, facts, self._counts.get(name, (None, _NOTHING))[1]["done"])
+        run = self._running[name] = RunningExperiment(command, facts, self._counts.get(name, (None, _NOTHING))[1]["done"])
         began: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         run.task = asyncio.create_task(self._follow(folder, run, began, changed))
         try:
@@ -328,13 +328,13 @@ class Experiments:
             run.task.cancel()
             raise RefusedDesignError(f"the design takes longer than {START_TIME:g} s") from None
 
-    async def _follow(self, folder: ExperimentFolder, run: Run, began: asyncio.Future[None], changed: Mapping[str, Any] | None) -> None:
+    async def _follow(self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], changed: Mapping[str, Any] | None) -> None:
         """Reads what a command reports until it has ended."""
         problem = None
         try:
             async for event in run.command.events():
                 run.take(event)
-                if isinstance(event, Facts) and not began.done():
+                if isinstance(event, ExperimentFacts) and not began.done():
                     folder.note(facts=event, problem=None, **({} if changed is None else {"changed": dict(changed)}))
                     if changed is not None:
                         folder.seal()
@@ -356,12 +356,12 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            ExperimentError: If it does not run.
+            ExperimentRunError: If it does not run.
         """
         self.folder(name)
         run = self._running.get(name)
         if run is None:
-            raise ExperimentError("this experiment does not run")
+            raise ExperimentRunError("this experiment does not run")
         if not run.command.interrupted:
             run.command.interrupt()
             asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)
@@ -393,7 +393,7 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentError: If the trial cannot be recorded.
+            ExperimentRunError: If the trial cannot be recorded.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
@@ -405,7 +405,7 @@ class Experiments:
             to = self._recordings.new(f"{_STAMP.sub('', name)}_trial_{number}")
             problem = await self._work(["experiment", str(folder.path), "--trial", str(number), "--record", str(to)])
             if not to.is_file():
-                raise ExperimentError(problem or "the trial was not recorded")
+                raise ExperimentRunError(problem or "the trial was not recorded")
             self._recorded[name, number] = to.stem  # also for a trial that fails: the recording shows how far it came
             return to.stem
 
@@ -419,7 +419,7 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentError: If there is no command for reports, or it fails.
+            ExperimentRunError: If there is no command for reports, or it fails.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
@@ -427,9 +427,9 @@ class Experiments:
             problem = await self._work(["report", str(folder.path)])
         if problem is not None:
             missing = "invalid choice: 'report'" in problem
-            raise ExperimentError("this version of ACT-R 3D has no command 'actr3d report'" if missing else problem)
+            raise ExperimentRunError("this version of ACT-R 3D has no command 'actr3d report'" if missing else problem)
         if folder.report is None:
-            raise ExperimentError(f"the command 'actr3d report' has made no {' or '.join(REPORTS)}")
+            raise ExperimentRunError(f"the command 'actr3d report' has made no {' or '.join(REPORTS)}")
 
     async def _work(self, arguments: Sequence[str]) -> str | None:
         """Runs a command to its end; returns None, or its messages if it fails."""
@@ -439,7 +439,7 @@ class Experiments:
                 code = await command.wait()
             return None if code == 0 else command.problem or f"the command ended with exit code {code}"
         except TimeoutError:
-            raise ExperimentError(f"it takes longer than {WORK_TIME:g} s") from None
+            raise ExperimentRunError(f"it takes longer than {WORK_TIME:g} s") from None
         finally:
             await command.kill()
 
@@ -448,12 +448,12 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            ExperimentError: If it runs.
+            ExperimentRunError: If it runs.
             OSError: If it cannot be moved.
         """
         folder = self.folder(name)
         if name in self._running or folder.is_locked:
-            raise ExperimentError("this experiment runs: stop it, then delete it")
+            raise ExperimentRunError("this experiment runs: stop it, then delete it")
         trash = self._models.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
         trash.mkdir(parents=True, exist_ok=True)
         target = trash / f"{secrets.token_hex(2)}-{name}"
@@ -484,7 +484,7 @@ class Experiments:
 _NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None}
 
 
-def _end_late(run: Run) -> None:
+def _end_late(run: RunningExperiment) -> None:
     if run.task is not None:
         run.task.cancel()
 

@@ -8,13 +8,13 @@ import { savePicture } from "../parts/picture.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { remembered } from "../local_storage.js";
-import { labelOf, whenText } from "../runs/wording.js";
+import { whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { colourOf, drawFigure, drawPoint, layout, levelsOf } from "./drawing.js";
 import { experiments, showExperiment } from "./list.js";
 import { Parts } from "./parts.js";
-import { doneText } from "./wording.js";
+import { columnText, doneText } from "./wording.js";
 
 const MOST_LINES = 12;
 const MOST_BUTTONS = 300; // points that keys can reach
@@ -74,7 +74,7 @@ function linesOf(answer, facts, combinations, dashed, experiment) {
     const points = groups.get(key);
     if (!points) return [];
     const values = JSON.parse(key);
-    const name = values.map((value, n) => (typeof value === "string" ? value : `${labelOf(answer.by[n])} ${valueText(value)}`)).join(" · ");
+    const name = values.map((value, n) => (typeof value === "string" ? value : `${columnText(answer.by[n])} ${valueText(value)}`)).join(" · ");
     return { number, key: `${experiment} ${key}`, name, values, dashed, experiment, points: points.toSorted((one, other) => places.get(JSON.stringify(one.at[0])) - places.get(JSON.stringify(other.at[0]))) };
   });
 }
@@ -110,13 +110,13 @@ function Menus({ experiment, facts, columns, chosen }) {
   return html`<div class="menus">
     <${Parts} experiment=${experiment} />
     <select aria-label="Measure" title="What is averaged" value=${chosen.measure} onChange=${(event) => set({ measure: event.currentTarget.value })}>
-      ${measures.map(({ name, meaning }) => html`<option key=${name} value=${name} title=${meaning}>${labelOf(name)}</option>`)}
+      ${measures.map(({ name, meaning }) => html`<option key=${name} value=${name} title=${meaning}>${columnText(name)}</option>`)}
     </select>
     <label>by <select aria-label="Axis" value=${chosen.x} onChange=${(event) => set({ x: event.currentTarget.value, by: chosen.by.filter((name) => name !== event.currentTarget.value) })}>
-      ${keys.map((name) => html`<option key=${name} value=${name}>${labelOf(name)}</option>`)}
+      ${keys.map((name) => html`<option key=${name} value=${name}>${columnText(name)}</option>`)}
     </select></label>
     <label>lines <select aria-label="Lines" value=${chosen.by.join()} onChange=${(event) => set({ by: event.currentTarget.value.split(",").filter(Boolean) })}>
-      ${lines.map((by) => html`<option key=${by.join()} value=${by.join()}>${by.length === 0 ? "one" : by.map(labelOf).join(" × ")}</option>`)}
+      ${lines.map((by) => html`<option key=${by.join()} value=${by.join()}>${by.length === 0 ? "one" : by.map(columnText).join(" × ")}</option>`)}
     </select></label>
   </div>`;
 }
@@ -146,7 +146,7 @@ function Sample({ line }) {
 function pointText({ at, mean, error, participants, trials }, { x, unit }, line) {
   const bars = error === null ? "" : ` ± ${numberText(error)}`;
   const of = `${counted(participants, "participant")}, ${counted(trials, "trial")}`;
-  return `${labelOf(x)} ${valueText(at[0])}${line.name ? ` · ${line.name}` : ""}${line.dashed ? " · the other experiment" : ""}: ${numberText(mean)}${bars}${unit === "°" ? "°" : unit ? ` ${unit}` : ""} (${of})`;
+  return `${columnText(x)} ${valueText(at[0])}${line.name ? ` · ${line.name}` : ""}${line.dashed ? " · the other experiment" : ""}: ${numberText(mean)}${bars}${unit === "°" ? "°" : unit ? ` ${unit}` : ""} (${of})`;
 }
 
 function Plot({ lines, known, about, children }) {
@@ -157,7 +157,7 @@ function Plot({ lines, known, about, children }) {
   const { width, height } = size.value;
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
   const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...(about.pair ?? [])];
-  const title = `${labelOf(about.measure)}${about.unit ? ` [${about.unit}]` : ""}`;
+  const title = `${columnText(about.measure)}${about.unit ? ` [${about.unit}]` : ""}`;
 
   useEffect(() => {
     const watch = new ResizeObserver(([{ contentRect }]) => (size.value = { width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) }));
@@ -166,7 +166,7 @@ function Plot({ lines, known, about, children }) {
   }, []);
 
   useEffect(() => {
-    if (width > 0) drawFigure(new CanvasSurface(scaled(canvas.current, width, height)), lines, figure, labelOf(about.x));
+    if (width > 0) drawFigure(new CanvasSurface(scaled(canvas.current, width, height)), lines, figure, columnText(about.x));
   }, [lines, figure, dark.value]);
 
   function save(kind) {
@@ -181,7 +181,7 @@ function Plot({ lines, known, about, children }) {
       }
       const below = layout(lines, known, wide, high - 20);
       below.box.y += 20; // below the legend
-      drawFigure(surface, lines, below, labelOf(about.x));
+      drawFigure(surface, lines, below, columnText(about.x));
     };
     savePicture({ name: `${about.source} ${about.measure}`, title: `${title}, ${about.source}`, width: wide, height: high, draw }, kind);
   }

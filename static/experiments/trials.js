@@ -4,10 +4,10 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
-import { labelOf } from "../runs/wording.js";
 import { useFresh } from "./answer.js";
 import { busy, openTrial, where } from "./list.js";
 import { Parts } from "./parts.js";
+import { columnText } from "./wording.js";
 
 const PAGE = 50; // rows
 const NUMBERS = ["integer", "real"];
@@ -20,12 +20,10 @@ function shownOf(columns, facts) {
   return columns.filter(isShown).toSorted((one, other) => last(one.name) - last(other.name));
 }
 
-const TITLES = { wall_s: "took", end: "end" };
-
 function Head({ column, sort, onSort }) {
   const here = sort.by === column.name;
   return html`<th scope="col" class=${NUMBERS.includes(column.type) ? "number" : ""} aria-sort=${here ? (sort.down ? "descending" : "ascending") : "none"} title=${[column.meaning, column.unit && `[${column.unit}]`].filter(Boolean).join(" ")}>
-    <button class="bare" aria-label="Sort by ${column.name}" onClick=${onSort}>${TITLES[column.name] ?? labelOf(column.name)}<span class="arrow" aria-hidden="true">${here ? (sort.down ? "▾" : "▴") : ""}</span></button>
+    <button class="bare" aria-label="Sort by ${column.name}" onClick=${onSort}>${columnText(column.name)}<span class="arrow" aria-hidden="true">${here ? (sort.down ? "▾" : "▴") : ""}</span></button>
   </th>`;
 }
 
@@ -50,7 +48,7 @@ function Row({ experiment, columns, row }) {
 function Filter() {
   const names = Object.entries(where.value);
   const drop = (name) => (where.value = Object.fromEntries(names.filter(([other]) => other !== name)));
-  return names.map(([name, value]) => html`<button key=${name} class="filter" title="Show trials with any ${name}" aria-label="Any ${name}" onClick=${() => drop(name)}>${labelOf(name)} ${valueText(value)} <${Icon} name="close" /></button>`);
+  return names.map(([name, value]) => html`<button key=${name} class="filter" title="Show trials with any ${name}" aria-label="Any ${name}" onClick=${() => drop(name)}>${columnText(name)} ${valueText(value)} <${Icon} name="close" /></button>`);
 }
 
 /** @param experiment The summary of the experiment. @param facts Its facts. */

@@ -2,10 +2,14 @@
 
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
+import { labelOf } from "../runs/wording.js";
 
 const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };
 
 export const stateText = ({ state }) => STATES[state] ?? state;
+
+/** Returns the name of a column without its unit. */
+export const columnText = (name) => (name === "wall_s" ? "duration" : labelOf(name));
 
 /** Returns the number of finished trials, of all. */
 export function doneText({ done, total }) {
@@ -58,5 +62,5 @@ export function readLevels(text) {
   }
 }
 
-/** Returns the module of a path without its folders. */
+/** Returns the name of a file without its folders. */
 export const baseName = (path) => path.split("/").at(-1);
