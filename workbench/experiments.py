@@ -328,7 +328,9 @@ class Experiments:
             run.task.cancel()
             raise RefusedDesignError(f"the design takes longer than {START_TIME:g} s") from None
 
-    async def _follow(self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], changed: Mapping[str, Any] | None) -> None:
+    async def _follow(
+        self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], changed: Mapping[str, Any] | None
+    ) -> None:
         """Reads what a command reports until it has ended."""
         problem = None
         try:
