@@ -18,12 +18,14 @@ from workbench.experiment_messages import ExperimentFacts
 
 SPECIFICATION, TABLE, LOCK, NOTES = "experiment.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
-REPORTS = ("report/index.html", "report.html")
-"""The places of a report."""
+REPORT, PAGE = "report", "index.html"
+"""The folder of the report, and its page."""
+REPORT_FILES = {".html": "text/html; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png", ".csv": "text/csv; charset=utf-8"}
+"""The media types of the files of a report."""
 LARGEST = 20_000_000
 """Maximum size of a description [bytes]."""
 LARGEST_REPORT = 200_000_000
-"""Maximum size of a report that is shown [bytes]."""
+"""Maximum size of a file of a report that is shown [bytes]."""
 
 
 class Notes(msgspec.Struct, frozen=True, kw_only=True):
@@ -88,13 +90,23 @@ class ExperimentFolder:
         return found
 
     @property
-    def report(self) -> Path | None:
-        """The file of the report; None if there is none."""
-        for name in REPORTS:
-            path = self.path / name
-            if not path.parent.is_symlink() and is_plain(path) and path.stat().st_size <= LARGEST_REPORT:
-                return path
-        return None
+    def report_made(self) -> float | None:
+        """When the report was made [s since 1970]; None if there is none."""
+        page = self.report_file(PAGE)
+        return None if page is None else page.stat().st_mtime
+
+    def report_file(self, name: str) -> Path | None:
+        """Returns a file of the report; None if there is none.
+
+        Args:
+            name: Its page, or a file in one of the folders of the report: `figures/NAME.svg`, `tables/NAME.csv`.
+        """
+        path, here = self.path / REPORT / name, self.path / REPORT
+        between = (here, path.parent)
+        if path.suffix not in REPORT_FILES or path.parent not in (here, here / "figures", here / "tables"):
+            return None
+        there = is_plain(path) and not any(folder.is_symlink() for folder in between) and path.stat().st_size <= LARGEST_REPORT
+        return path if there else None
 
     def code(self) -> dict[str, Any]:
         """Returns the code that continuing the experiment runs: the texts of design and model, and of their helper modules.

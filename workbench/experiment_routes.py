@@ -12,6 +12,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from actr3d.values import escape_surrogates, to_json
 from workbench.design_files import described
 from workbench.experiment_command import ExperimentRunError
+from workbench.experiment_folder import REPORT_FILES
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile, gone
 from workbench.page_commands import PageMessage
@@ -24,8 +25,10 @@ router = APIRouter(prefix="/api")
 
 MOST_ROWS = 500
 """Maximum number of rows in one answer."""
-REPORT_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; sandbox; frame-ancestors 'self'"
-"""What a report may do: nothing but show itself; its code does not run."""
+REPORT_POLICY = (
+    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; sandbox allow-downloads; frame-ancestors 'self'"
+)
+"""What a report may do: show itself, and have its files kept; its code does not run."""
 
 Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
@@ -192,20 +195,21 @@ async def record_trial(request: Request, experiment: Id, body: TrialWanted) -> d
 
 @router.post("/experiments/{experiment}/report")
 async def make_report(request: Request, experiment: Id, body: Trusting | None = None) -> dict[str, Any]:
-    """Makes the report of an experiment with `actr3d report`; 409 if there is no such command, or it fails; 403 as for `resume`."""
+    """Makes the report of an experiment with `actr3d report`; 409 if that fails; 403 as for `resume`."""
     await while_wanted(
         experiments_of(request).make_report(experiment, trust=body is not None and body.trust), lambda: gone(request.receive)
     )
     return {"report": experiment}
 
 
-@router.get("/experiments/{experiment}/report")
-def report(request: Request, experiment: Id) -> Response:
-    """Returns the report of an experiment, an HTML page; no script in it runs."""
-    path = experiments_of(request).folder(experiment).report
+@router.get("/experiments/{experiment}/report/{file:path}")
+def report(request: Request, experiment: Id, file: str) -> Response:
+    """Returns a file of the report: `index.html`, whose scripts do not run, or for a download one of its figures and tables."""
+    path = experiments_of(request).folder(experiment).report_file(file)
     if path is None:
-        return _json({"error": "there is no report yet"}, 404)
-    response = OpenFile(path.open("rb", buffering=0), "text/html; charset=utf-8")
+        return _json({"error": "the report has no such file, or it has not been made yet"}, 404)
+    name = None if path.suffix == ".html" else f"{experiment}-{path.name}"
+    response = OpenFile(path.open("rb", buffering=0), REPORT_FILES[path.suffix], name)
     response.headers["content-security-policy"] = REPORT_POLICY
     return response
 

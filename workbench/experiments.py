@@ -16,7 +16,7 @@ from typing import Any, TypeVar, cast
 from actr3d.errors import Actr3dError
 from workbench.design_files import design_argument, stamp_of
 from workbench.experiment_command import ExperimentCommand, ExperimentRunError
-from workbench.experiment_folder import REPORTS, ExperimentFolder, as_values
+from workbench.experiment_folder import ExperimentFolder, as_values
 from workbench.experiment_messages import AnyExperimentEvent, ExperimentEvent, ExperimentFacts, ExperimentProgress, TriedFacts
 from workbench.files import OWN
 from workbench.retention import begun, stamp
@@ -178,7 +178,7 @@ class Experiments:
             "made": begun(folder.path),
             "total": total,
             "changed": notes.changed,
-            "report": folder.report is not None,
+            "report": folder.report_made,
             "problem": None,
         }
         if name in self._running:
@@ -421,17 +421,14 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentRunError: If there is no command for reports, or it fails.
+            ExperimentRunError: If it fails.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
         async with self._turns:
             problem = await self._work(["report", str(folder.path)])
         if problem is not None:
-            missing = "invalid choice: 'report'" in problem
-            raise ExperimentRunError("this version of ACT-R 3D has no command 'actr3d report'" if missing else problem)
-        if folder.report is None:
-            raise ExperimentRunError(f"the command 'actr3d report' has made no {' or '.join(REPORTS)}")
+            raise ExperimentRunError(problem)
 
     async def _work(self, arguments: Sequence[str]) -> str | None:
         """Runs a command to its end; returns None, or its messages if it fails."""

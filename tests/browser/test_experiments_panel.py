@@ -64,10 +64,13 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     expect(page.locator(".tools .name")).to_have_text("counting")  # the experiment is still shown
     page.get_by_role("button", name="Design").click()
     expect(page.locator(".about-design")).to_contain_text("trials 3 · n 1, 2, 5, 9 · mode count")
-    (name,) = [one["id"] for one in workbench.get("/api/experiments").json()["experiments"]]
-    (workbench.folder / ".workbench/experiments" / name / "report.html").write_text("<h1>The report</h1>", "utf-8")
-    page.get_by_role("button", name="Report", exact=True).click()
-    expect(page.frame_locator("iframe.report").get_by_role("heading")).to_have_text("The report")
+    page.get_by_role("button", name="Make report").click()
+    report = page.frame_locator("iframe.report")
+    expect(report.get_by_role("heading", level=1)).to_have_text("counting", timeout=120_000)
+    with page.expect_download() as download:
+        report.get_by_role("link", name="CSV").first.click()
+    assert download.value.suggested_filename.endswith(".csv")
+    assert download.value.path().stat().st_size > 0
 
 
 def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], workbench: Served, design: str) -> None:

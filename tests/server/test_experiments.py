@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import time
@@ -236,25 +237,37 @@ def test_code_of_an_experiment_from_elsewhere_runs_only_with_permission(workbenc
     assert workbench.get("/api/experiments/from-elsewhere/code").json()["made_here"] is True
 
 
-def test_a_report_is_shown_without_scripts(workbench: Served, finished: str) -> None:
+def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished: str) -> None:
     path = f"/api/experiments/{finished}/report"
-    folder = workbench.folder / ".workbench/experiments" / finished
-    if not state_of(workbench, finished)["report"]:
-        assert workbench.get(path).status_code == 404
-    (folder / "report").mkdir(exist_ok=True)
-    (folder / "report/index.html").write_text("<h1>Report</h1><script>alert(1)</script>", "utf-8")
-    assert state_of(workbench, finished)["report"] is True
-    answer = workbench.get(path)
-    assert answer.text.startswith("<h1>Report</h1>")
+    folder = workbench.folder / ".workbench/experiments" / finished / "report"
+    assert state_of(workbench, finished)["report"] is None
+    assert workbench.get(f"{path}/index.html").status_code == 404
+    assert workbench.post(path, {}).status_code == 200
+    made = state_of(workbench, finished)["report"]
+    assert made == (folder / "index.html").stat().st_mtime
+    answer = workbench.get(f"{path}/index.html")
+    assert answer.content == (folder / "index.html").read_bytes()
+    files = re.findall(r'href="((?:figures|tables)/[^"]+)"', answer.text)
+    assert {file.rpartition(".")[2] for file in files} == {"svg", "png", "csv"}
+    for file in files:
+        download = workbench.get(f"{path}/{file}")
+        assert download.content == (folder / file).read_bytes()
+        assert download.headers["content-disposition"] == f'attachment; filename="{finished}-{file.rpartition("/")[2]}"'
+    for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/../../experiment.json", "figures", "", "tables/none.csv"):
+        url = httpx.URL(workbench.url, raw_path=f"{path}/{file}".encode())
+        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code == 404
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
     policy = answer.headers.get_list("content-security-policy")
     assert len(policy) == 1
-    assert "sandbox" in policy[0].split("; ")
+    assert "sandbox allow-downloads" in policy[0].split("; ")
     assert "default-src 'none'" in policy[0]
-    (folder / "report/index.html").unlink()
-    (folder / "report/index.html").symlink_to("/etc/passwd")
-    assert workbench.get(path).status_code == 404
-    (folder / "report/index.html").unlink()
+    (folder / "index.html").unlink()
+    (folder / "index.html").symlink_to("/etc/passwd")
+    assert workbench.get(f"{path}/index.html").status_code == 404
+    shutil.rmtree(folder)
+    folder.symlink_to(folder.parent)
+    assert workbench.get(f"{path}/index.html").status_code == 404
+    folder.unlink()
 
 
 @pytest.mark.parametrize(
@@ -265,7 +278,7 @@ def test_names_that_lead_elsewhere_are_not_found(workbench: Served, name: str) -
     outside.parent.mkdir(exist_ok=True)
     outside.write_text("{}", "utf-8")
     quoted = name.replace("\0", "%00")
-    for what in ("", "/rows", "/means?x=n&measure=rt", "/report", "/code"):
+    for what in ("", "/rows", "/means?x=n&measure=rt", "/report/index.html", "/code"):
         url = httpx.URL(workbench.url, raw_path=f"/api/experiments/{quoted}{what}".encode())
         assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
     outside.unlink()
