@@ -25,10 +25,8 @@ router = APIRouter(prefix="/api")
 
 MOST_ROWS = 500
 """Maximum number of rows in one answer."""
-REPORT_POLICY = (
-    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; sandbox allow-downloads; frame-ancestors 'self'"
-)
-"""What a report may do: show itself, and have its files kept; its code does not run."""
+REPORT_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; sandbox allow-downloads allow-same-origin; frame-ancestors 'self'"
+"""What a report may do: show itself, and keep its files, for which it has the page's origin and cookie; its code does not run."""
 
 Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]

@@ -259,7 +259,7 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
     policy = answer.headers.get_list("content-security-policy")
     assert len(policy) == 1
-    assert "sandbox allow-downloads" in policy[0].split("; ")
+    assert "sandbox allow-downloads allow-same-origin" in policy[0].split("; ")
     assert "default-src 'none'" in policy[0]
     (folder / "index.html").unlink()
     (folder / "index.html").symlink_to("/etc/passwd")
